@@ -1,0 +1,347 @@
+"""The facts of a mission, in the past tense. The journal stores them; state is a fold of them.
+
+Every event has a `kind`. A stored event is wrapped in `Recorded` with its sequence number and UTC time. Bearings:
+degrees clockwise from true north. Rejected wishes are facts too (`CommandRefused`): the review must show them.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from backend.spec import Area, MissionSpec, Model, Place
+
+Phase = Literal[
+    "draft",  # editable, nothing flown
+    "ready",  # preflight passed
+    "taking_off",
+    "planning",  # choosing the next place
+    "waiting",  # a place is proposed, the operator must accept
+    "flying",
+    "measuring",
+    "hold",  # hovering until an operator resumes
+    "manual",  # the pilot has control
+    "returning",
+    "landing",
+    "done",  # localized, or ended with an honest "not localized"
+    "aborted",
+    "failed",
+]
+
+
+class Peak(Model):
+    bearing_deg: float
+    weight: float
+
+
+class CandidateFact(Model):
+    """One candidate next place. `dropped_in_round` None: survived."""
+
+    lat: float
+    lon: float
+    value_s: float
+    std_error_s: float
+    rollouts: int
+    dropped_in_round: int | None
+
+
+class CheckFact(Model):
+    name: str
+    ok: bool
+    detail: str
+    remedy: str
+    blocking: bool
+
+
+class EstimateFact(Model):
+    lat: float
+    lon: float
+    expected_rmse_m: float
+    c95: Area
+    c95_area_m2: float
+    major_axis_m: float
+    minor_axis_m: float
+    major_axis_deg: float
+
+
+class MissionDrafted(Model):
+    kind: Literal["mission_drafted"] = "mission_drafted"
+    spec: MissionSpec
+
+
+class MissionEdited(Model):
+    kind: Literal["mission_edited"] = "mission_edited"
+    spec: MissionSpec
+
+
+class PreflightChecked(Model):
+    kind: Literal["preflight_checked"] = "preflight_checked"
+    passed: bool
+    checks: list[CheckFact]
+
+
+class MissionStarted(Model):
+    """The vehicle's home at the start is the origin of the mission's local frame."""
+
+    kind: Literal["mission_started"] = "mission_started"
+    by: str
+    home: Place
+    home_amsl_m: float
+    software: str
+
+
+class PhaseChanged(Model):
+    kind: Literal["phase_changed"] = "phase_changed"
+    before: Phase
+    after: Phase
+    reason: str
+
+
+class TookOff(Model):
+    kind: Literal["took_off"] = "took_off"
+    place: Place
+    altitude_relative_m: float
+
+
+class PlanChosen(Model):
+    """The next measurement place. `place_number` counts places from 1. `expected_time_s`: mean time until localized
+    by way of this place; `time_90_s`: not exceeded in 90 % of the rollouts (None when not sampled)."""
+
+    kind: Literal["plan_chosen"] = "plan_chosen"
+    place_number: int
+    place: Place
+    source: Literal["planner", "operator"]
+    reason: str
+    expected_time_s: float | None
+    time_90_s: float | None
+    candidates: list[CandidateFact]
+    rollouts: int
+    plan_ms: float
+    by: str | None = None
+
+
+class PlanVetoed(Model):
+    """The operator refused the proposed place; the planner chooses again without it."""
+
+    kind: Literal["plan_vetoed"] = "plan_vetoed"
+    place: Place
+    by: str
+
+
+class FlightStarted(Model):
+    kind: Literal["flight_started"] = "flight_started"
+    place_number: int
+    place: Place
+    altitude_amsl_m: float
+
+
+class PlaceReached(Model):
+    kind: Literal["place_reached"] = "place_reached"
+    place_number: int
+    place: Place
+    distance_m: float
+    flight_time_s: float
+
+
+class SweepStarted(Model):
+    kind: Literal["sweep_started"] = "sweep_started"
+    place_number: int
+    attempt: int
+
+
+class SweepRejected(Model):
+    kind: Literal["sweep_rejected"] = "sweep_rejected"
+    sweep_id: str
+    place_number: int
+    attempt: int
+    quality: float
+    reason: str
+    place: Place
+    binned_db: list[float | None]
+    fitted_db: list[float | None]
+
+
+class BearingMeasured(Model):
+    """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard."""
+
+    kind: Literal["bearing_measured"] = "bearing_measured"
+    bearing_id: str
+    sweep_id: str
+    place_number: int
+    place: Place
+    altitude_amsl_m: float
+    bearing_deg: float
+    sigma_deg: float
+    quality: float
+    peaks: list[Peak]
+    snr_db: float | None
+    drift_m: float
+    binned_db: list[float | None]
+    fitted_db: list[float | None]
+
+
+class BearingExcluded(Model):
+    kind: Literal["bearing_excluded"] = "bearing_excluded"
+    bearing_id: str
+    by: str
+    reason: str
+
+
+class BeliefUpdated(Model):
+    """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
+    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate)."""
+
+    kind: Literal["belief_updated"] = "belief_updated"
+    bearings: int
+    estimate: EstimateFact | None
+    consistent: bool
+    localized: bool
+    not_yet: list[str]
+    digest: str
+
+
+class HoldOrdered(Model):
+    kind: Literal["hold_ordered"] = "hold_ordered"
+    by: str
+    reason: str
+
+
+class ResumeOrdered(Model):
+    kind: Literal["resume_ordered"] = "resume_ordered"
+    by: str
+
+
+class ReturnOrdered(Model):
+    kind: Literal["return_ordered"] = "return_ordered"
+    by: str
+    reason: str
+
+
+class AbortOrdered(Model):
+    kind: Literal["abort_ordered"] = "abort_ordered"
+    by: str
+    reason: str
+
+
+class AutomaticChanged(Model):
+    """"Accept the next location automatically" was armed or disarmed."""
+
+    kind: Literal["automatic_changed"] = "automatic_changed"
+    automatic: bool
+    by: str
+
+
+class ControlTaken(Model):
+    kind: Literal["control_taken"] = "control_taken"
+    mode: str
+    detail: str
+
+
+class ControlReleased(Model):
+    kind: Literal["control_released"] = "control_released"
+    by: str
+
+
+class CommandRefused(Model):
+    kind: Literal["command_refused"] = "command_refused"
+    command_id: str
+    command: str
+    by: str
+    reason: str
+
+
+class SafetyVetoed(Model):
+    kind: Literal["safety_vetoed"] = "safety_vetoed"
+    rule: str
+    detail: str
+    remedy: str
+
+
+class LinkLost(Model):
+    kind: Literal["link_lost"] = "link_lost"
+    link: Literal["vehicle", "receiver", "console", "payload"]
+    detail: str
+
+
+class LinkRestored(Model):
+    kind: Literal["link_restored"] = "link_restored"
+    link: Literal["vehicle", "receiver", "console", "payload"]
+    outage_s: float
+
+
+class AlertRaised(Model):
+    kind: Literal["alert_raised"] = "alert_raised"
+    alert_id: str
+    level: Literal["warning", "caution", "advisory"]
+    text: str
+    remedy: str
+
+
+class AlertAcknowledged(Model):
+    kind: Literal["alert_acknowledged"] = "alert_acknowledged"
+    alert_id: str
+    by: str
+
+
+class AlertCleared(Model):
+    kind: Literal["alert_cleared"] = "alert_cleared"
+    alert_id: str
+
+
+class ServerRestarted(Model):
+    kind: Literal["server_restarted"] = "server_restarted"
+    detail: str
+
+
+class MissionEnded(Model):
+    kind: Literal["mission_ended"] = "mission_ended"
+    outcome: Literal["localized", "not_localized", "aborted", "failed"]
+    reason: str
+    mission_time_s: float
+
+
+Event = Annotated[
+    MissionDrafted
+    | MissionEdited
+    | PreflightChecked
+    | MissionStarted
+    | PhaseChanged
+    | TookOff
+    | PlanChosen
+    | PlanVetoed
+    | FlightStarted
+    | PlaceReached
+    | SweepStarted
+    | SweepRejected
+    | BearingMeasured
+    | BearingExcluded
+    | BeliefUpdated
+    | HoldOrdered
+    | ResumeOrdered
+    | ReturnOrdered
+    | AbortOrdered
+    | AutomaticChanged
+    | ControlTaken
+    | ControlReleased
+    | CommandRefused
+    | SafetyVetoed
+    | LinkLost
+    | LinkRestored
+    | AlertRaised
+    | AlertAcknowledged
+    | AlertCleared
+    | ServerRestarted
+    | MissionEnded,
+    Field(discriminator="kind"),
+]
+
+
+class Recorded(Model):
+    """A stored event: `seq` counts from 1 without gaps within a mission."""
+
+    seq: int
+    mission_id: str
+    at_utc: datetime
+    event: Event

@@ -1,0 +1,90 @@
+"""What the live websocket sends. JSON text for events and telemetry; binary for belief frames (see belief_frame.py).
+
+Path: /api/live?mission=ID&after=SEQ. First `hello`, then every recorded event after SEQ (never dropped), then live.
+Telemetry, sweep progress and status are newest-wins: a slow client skips old ones, and `dropped` counts what it missed.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from backend.events import Recorded
+from backend.spec import Model
+
+
+class Hello(Model):
+    type: Literal["hello"] = "hello"
+    server_version: str
+    mission_id: str | None
+    last_seq: int
+    time_factor: float
+    """Seconds of mission time a second of the wall (1 in the field, more in a simulated demo)."""
+
+
+class EventMessage(Model):
+    type: Literal["event"] = "event"
+    recorded: Recorded
+
+
+class TelemetryMessage(Model):
+    """`*_age_s`: how old each group of values was when sent; None: never heard."""
+
+    type: Literal["telemetry"] = "telemetry"
+    at_utc: datetime
+    connected: bool
+    lat: float | None
+    lon: float | None
+    position_age_s: float | None
+    altitude_amsl_m: float | None
+    altitude_relative_m: float | None
+    heading_deg: float | None
+    heading_age_s: float | None
+    ground_speed_m_s: float | None
+    climb_m_s: float | None
+    battery_percent: float | None
+    battery_age_s: float | None
+    gps_fix: str | None
+    satellites: int | None
+    armed: bool | None
+    in_air: bool | None
+    mode: str | None
+    mode_age_s: float | None
+    controller: Literal["crossfix", "pilot", "nobody"]
+    autopilot: Literal["px4", "ardupilot", "unknown"]
+    dropped: int
+
+
+class SweepProgress(Model):
+    """The running sweep: antenna heading (true) and power of the samples so far, thinned to at most 360."""
+
+    type: Literal["sweep_progress"] = "sweep_progress"
+    mission_id: str
+    place_number: int
+    heading_deg: list[float]
+    power_db: list[float]
+    turned_deg: float
+
+
+class StatusMessage(Model):
+    """Once a second: what the mission does now, in words, and the health of each part."""
+
+    type: Literal["status"] = "status"
+    at_utc: datetime
+    mission_id: str | None
+    phase: str | None
+    doing: str
+    waits_for: str | None
+    receiver: Literal["ok", "silent", "off", "lost"]
+    receiver_power_db: float | None
+    receiver_age_s: float | None
+    viewers: int
+    battery_to_return_percent: float | None
+    database: Literal["ok", "slow", "lost"]
+
+
+LiveMessage = Annotated[
+    Hello | EventMessage | TelemetryMessage | SweepProgress | StatusMessage, Field(discriminator="type")
+]

@@ -1,0 +1,38 @@
+"""WGS84 to local east-north-up metres and back, and compass bearings to mathematical angles and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import pymap3d
+
+from hardware.readings import GeoPoint
+
+
+@dataclass(frozen=True, slots=True)
+class LocalFrame:
+    """ENU metres on the ellipsoid's tangent plane at `origin`; good to centimetres within a few kilometres."""
+
+    origin: GeoPoint
+
+    def to_enu(self, point: GeoPoint) -> tuple[float, float]:
+        """(east, north) in metres."""
+        east, north, _ = pymap3d.geodetic2enu(
+            point.lat_deg, point.lon_deg, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0
+        )
+        return float(east), float(north)
+
+    def to_geo(self, east: float, north: float) -> GeoPoint:
+        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0)
+        return GeoPoint(float(lat), float(lon))
+
+
+def compass_to_angle(bearing_deg: float) -> float:
+    """Degrees clockwise from true north -> radians counter-clockwise from east, in (-pi, pi]."""
+    return math.remainder(math.pi / 2 - math.radians(bearing_deg), 2 * math.pi)
+
+
+def angle_to_compass(angle: float) -> float:
+    """Radians counter-clockwise from east -> degrees clockwise from true north, in [0, 360)."""
+    return (90.0 - math.degrees(angle)) % 360.0 % 360.0

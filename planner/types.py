@@ -1,0 +1,206 @@
+"""The words of the theory as data: what every belief, policy and selection takes and returns.
+
+Frame: local east-north-up (ENU) metres. Angles: radians, counter-clockwise from east. Times: seconds.
+Source: F. Hoffmann's thesis on sensor path planning for emitter localization (spec sections 1-4, 7).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+Ring = FloatArray
+"""(n, 2) vertices in metres ENU, not closed (the last vertex differs from the first), either orientation."""
+
+Region = tuple[Ring, ...]
+"""Rings combined by the even-odd rule: one ring is a polygon, a ring inside another is a hole, disjoint rings a set."""
+
+Estimator = Literal["map", "expected_value", "geometric_median"]
+
+
+class PlannerError(ValueError):
+    """Input that the planner refuses; the message says what is wrong and how to mend it."""
+
+
+class InconsistentBearings(PlannerError):
+    """The +-4 sigma wedges have no common point inside the area: at least one bearing is an outlier."""
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """Another direction that one sweep may mean. `angle` rad; `weight` relative to the main peak's weight of 1."""
+
+    angle: float
+    weight: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bearing:
+    """One bearing z = atan2(y_t - y_s, x_t - x_s) + w, w ~ N(0, sigma^2), taken at (x, y) (4.2).
+
+    x, y: sensor position, m ENU. angle, sigma: rad. `outlier_probability` eps mixes in a uniform likelihood,
+    (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma.
+    """
+
+    x: float
+    y: float
+    angle: float
+    sigma: float
+    outlier_probability: float = 0.0
+    peaks: tuple[Peak, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class UniformPrior:
+    """Uniform on the target area."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaussianPrior:
+    """N((x, y), covariance) cut to the target area. `covariance` (2, 2), m^2."""
+
+    x: float
+    y: float
+    covariance: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class RingPrior:
+    """Uniform in area between two radii (m) around (x, y), cut to the target area: a known detection range."""
+
+    x: float
+    y: float
+    inner: float
+    outer: float
+
+
+Prior = UniformPrior | GaussianPrior | RingPrior
+
+
+@dataclass(frozen=True, slots=True)
+class LinearMotion:
+    """t = |d| / speed."""
+
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class LinearConstantMotion:
+    """t = |d| / speed + constant (thesis 6.4.3: 7 m/s, 11.2 s)."""
+
+    speed: float
+    constant: float
+
+
+@dataclass(frozen=True, slots=True)
+class FullMotion:
+    """Turn, accelerate, cruise, decelerate, settle (thesis 6.4.3: 30 deg/s, 1 m/s^2, 8 m/s, 3 s)."""
+
+    turn_rate: float = np.deg2rad(30.0)
+    acceleration: float = 1.0
+    speed: float = 8.0
+    constant: float = 3.0
+
+
+Motion = LinearMotion | LinearConstantMotion | FullMotion
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One localization task, everything that does not change while it is flown.
+
+    area: where the emitter may be. flight_area: where the platform may be (None: anywhere). no_fly: what it must not
+    enter or cross. sigma: rad, the bearing noise the planner assumes. threshold: mu, m. measurement_time: t_m, s.
+    standoff: r_min, m: actions nearer than this to C95 are removed (0: unconstrained).
+    action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
+    the flight area instead (the field system: 15 m).
+    """
+
+    area: Region
+    sigma: float
+    threshold: float
+    measurement_time: float
+    motion: Motion
+    flight_area: Region | None = None
+    no_fly: Region = ()
+    standoff: float = 0.0
+    action_grid: tuple[int, int] = (20, 20)
+    action_spacing: float | None = None
+    estimator: Estimator = "map"
+    prior: Prior = field(default_factory=UniformPrior)
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Point estimate and spread of a belief.
+
+    x, y: m ENU. covariance: (2, 2) m^2 about the point (3.34). expected_rmse: mu(b) = sum p |x~ - x|, m (3.58).
+    entropy: nat (3.59).
+    """
+
+    x: float
+    y: float
+    covariance: FloatArray
+    expected_rmse: float
+    entropy: float
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """One first action and what the selection learned of it.
+
+    x, y: m ENU. value: mean time until localization, s. std_error: s. rollouts: sample paths spent on it.
+    dropped_in_round: 1-based round that eliminated it, None when it survived to the end.
+    """
+
+    x: float
+    y: float
+    value: float
+    std_error: float
+    rollouts: int
+    dropped_in_round: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What a policy answers. x, y: the next measurement place, m ENU.
+
+    reason: one sentence for the operator. candidates: empty for policies that compare none.
+    times: (n,) s, sampled times until localization by way of the chosen action (empty when not sampled).
+    rollouts: sample paths used.
+    """
+
+    x: float
+    y: float
+    reason: str
+    candidates: tuple[Candidate, ...] = ()
+    times: FloatArray = field(default_factory=lambda: np.empty(0))
+    rollouts: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LocalizationRule:
+    """When "localized" may be said (design, mission rule 6).
+
+    threshold: mu, m. min_places: bearings from at least so many distinct places. min_place_distance: m between
+    distinct places. min_crossing_angle: rad, the best crossing angle of two bearing lines at the estimate.
+    """
+
+    threshold: float
+    min_places: int = 2
+    min_place_distance: float = 10.0
+    min_crossing_angle: float = np.deg2rad(20.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """localized, or the reasons (in the operator's words) why not yet. consistent: the wedges have a common point."""
+
+    localized: bool
+    consistent: bool
+    reasons: tuple[str, ...]
