@@ -1,0 +1,70 @@
+# Two commands do all the set-up on a fresh machine (Python 3.11, Node 20, make): `make run` and `make test`.
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
+
+.PHONY: run test check bench codegen setup setup-dev build browser unit system clean help
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
+
+run: setup build ## server, embedded SQLite, simulated vehicle and emitter; the page is open to use
+	$(BIN)/crossfix serve
+
+setup: $(VENV)/.installed ## the Python environment in .venv
+
+$(VENV)/bin/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[server,study]'
+	@touch $@
+
+setup-dev: $(VENV)/.installed-dev
+
+$(VENV)/.installed-dev: $(VENV)/.installed
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch $@
+
+frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
+	cd frontend && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
+build: frontend/dist/.built ## the page, into frontend/dist
+
+frontend/dist/.built: frontend/node_modules/.installed $(PAGE_SOURCES)
+	cd frontend && npm run --silent build
+	@touch $@
+
+browser: ## Debian's Chromium, when there is none
+	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
+
+test: check unit system ## everything CI runs
+
+check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, page unit tests
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/pyright
+	$(BIN)/python -m backend.wire.schema --check frontend/src/wire/openapi.json
+	cd frontend && npm run --silent codegen -- --check
+	cd frontend && npm run --silent check
+
+unit: setup-dev ## tests without a vehicle or a browser
+	$(BIN)/pytest -n 2 -m "not system and not browser"
+
+system: setup-dev build browser ## whole missions over real sockets, and the page in Chromium
+	$(BIN)/pytest -m "system or browser"
+
+codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
+	$(BIN)/python -m backend.wire.schema > frontend/src/wire/openapi.json
+	cd frontend && npm run --silent codegen
+
+bench: setup ## the planner's speed on this machine
+	$(BIN)/crossfix bench
+
+clean: ## everything that was made, but not the data
+	rm -rf $(VENV) frontend/node_modules frontend/dist
