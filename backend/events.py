@@ -244,12 +244,22 @@ class ControlReleased(Model):
     by: str
 
 
+class CommandAccepted(Model):
+    """What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again."""
+
+    kind: Literal["command_accepted"] = "command_accepted"
+    command_id: str
+    command: str
+    by: str
+
+
 class CommandRefused(Model):
     kind: Literal["command_refused"] = "command_refused"
     command_id: str
     command: str
     by: str
     reason: str
+    remedy: str = ""
 
 
 class SafetyVetoed(Model):
@@ -325,6 +335,7 @@ Event = Annotated[
     | AutomaticChanged
     | ControlTaken
     | ControlReleased
+    | CommandAccepted
     | CommandRefused
     | SafetyVetoed
     | LinkLost
