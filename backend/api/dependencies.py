@@ -1,0 +1,21 @@
+"""What the endpoints need, injected: the mission service, the journal, the hub and the settings."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import Depends, Path, Request
+
+from backend.api.services import Services
+from backend.auth.principal import Principal, current_principal
+
+MissionId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="The mission's id")]
+SweepId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="The sweep's id")]
+
+
+def services(request: Request) -> Services:
+    return request.app.state.services
+
+
+ServicesDep = Annotated[Services, Depends(services)]
+PrincipalDep = Annotated[Principal, Depends(current_principal)]

@@ -1,0 +1,117 @@
+"""The one wire schema: REST, the websocket's union and the events in one OpenAPI document.
+
+`python -m backend.api.schema FILE` writes it, `--check FILE` fails when FILE is not what the code says. A request
+that differs from its stored form (defaults may be left out) carries the suffix Input.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute
+
+from backend.api import missions, planning, review, system
+from backend.commands import Command
+from backend.events import Event
+from backend.spec import Area
+from backend.wire.messages import LiveMessage
+from backend.wire.problem import Problem
+
+ROUTERS = (system.router, missions.router, review.router, planning.router)
+
+UNIONS: dict[str, Any] = {"LiveMessage": LiveMessage, "Event": Event, "Command": Command, "Area": Area}
+"""Named unions of the live channel and the journal: pydantic writes them in place, the page wants them by name."""
+
+SCHEMA_ONLY = "/schema-only/"
+
+
+def operation_id(route: APIRoute) -> str:
+    return route.name
+
+
+def settle_names(schemas: dict[str, Any]) -> dict[str, str]:
+    """pydantic's Foo-Output becomes Foo; Foo-Input becomes FooInput, or Foo when both are the same. Old name -> new.
+
+    A tag (`kind`, `type`) is what a union is told apart by, so a request must carry it although it has a default.
+    """
+    for name, schema in schemas.items():
+        tags = [key for key, value in schema.get("properties", {}).items() if "const" in value]
+        if name.endswith("-Input") and tags:
+            schema["required"] = sorted({*schema.get("required", ()), *tags}, key=list(schema["properties"]).index)
+    names = {name: name.removesuffix("-Output").replace("-Input", "Input") for name in schemas}
+    merged = True
+    while merged:
+        merged = False
+        for name in [name for name in names if name.endswith("-Input")]:
+            plain = name.removesuffix("-Input")
+            both_known = names[name] != plain and f"{plain}-Output" in schemas
+            if both_known and renamed(schemas[name], names) == renamed(schemas[f"{plain}-Output"], names):
+                names[name] = plain
+                merged = True
+    return names
+
+
+def renamed(schema: Any, names: dict[str, str]) -> Any:
+    """The same schema with every reference under its new name, without the titles pydantic makes of field names."""
+    prefix = "#/components/schemas/"
+    if isinstance(schema, dict):
+        return {
+            key: renamed(value, names)
+            for key, value in schema.items()
+            if not (key == "title" and isinstance(value, str))
+        }
+    if isinstance(schema, list):
+        return [renamed(value, names) for value in schema]
+    if isinstance(schema, str) and schema.startswith(prefix):
+        return prefix + names[schema.removeprefix(prefix)]
+    return schema
+
+
+def wire_schema(version: str) -> dict[str, Any]:
+    """The OpenAPI document. Schema-only routes make FastAPI name the unions' models as it names all others."""
+    app = FastAPI(title="Crossfix", version=version, generate_unique_id_function=operation_id)
+    for router in ROUTERS:
+        app.include_router(router)
+    for name, union in {**UNIONS, "Problem": Problem}.items():
+        app.add_api_route(SCHEMA_ONLY + name, lambda: None, response_model=union, methods=["GET"], name=name)
+    document = get_openapi(title=app.title, version=app.version, routes=app.routes)
+    paths, schemas = document["paths"], document["components"]["schemas"]
+    for name in UNIONS:
+        schema = paths[SCHEMA_ONLY + name]["get"]["responses"]["200"]["content"]["application/json"]["schema"]
+        schema.pop("title", None)
+        schemas[name] = schema
+    document["paths"] = {path: item for path, item in paths.items() if not path.startswith(SCHEMA_ONLY)}
+    for unused in ("HTTPValidationError", "ValidationError"):
+        schemas.pop(unused, None)
+    names = settle_names(schemas)
+    schemas = {names[name]: schema for name, schema in sorted(schemas.items())}
+    document["components"]["schemas"] = dict(sorted(schemas.items()))
+    for part in ("paths", "components"):
+        document[part] = renamed(document[part], names)
+    return document
+
+
+def wire_schema_text(version: str = "0.1.0") -> str:
+    return json.dumps(wire_schema(version), indent=2) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Write the wire schema, or check that a file is up to date.")
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    text = wire_schema_text()
+    if not arguments.check:
+        arguments.file.write_text(text)
+    elif not arguments.file.exists() or arguments.file.read_text() != text:
+        sys.exit(f"{arguments.file} is not what the code says: run `make codegen` and commit the result")
+
+
+if __name__ == "__main__":
+    main()

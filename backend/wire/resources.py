@@ -1,0 +1,189 @@
+"""What the REST API answers, apart from problems and the live messages. Positions WGS84, times UTC, units in names."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import Field
+
+from backend.events import CandidateFact, CheckFact, EstimateFact, Phase, Recorded
+from backend.spec import Area, MissionSpec, Model, Place
+
+Outcome = Literal["localized", "not_localized", "aborted", "failed"]
+DatabaseState = Literal["ok", "slow", "lost"]
+
+
+class DatabaseHealth(Model):
+    """`spooled`: events kept on disk until the database is back."""
+
+    state: DatabaseState
+    kind: Literal["sqlite", "postgresql"]
+    detail: str
+    spooled: int
+
+
+class VehicleHealth(Model):
+    connected: bool
+    autopilot: Literal["px4", "ardupilot", "unknown"]
+    detail: str
+
+
+class Health(Model):
+    """ok: everything answers; degraded: the server works, a part it needs does not."""
+
+    state: Literal["ok", "degraded"]
+    version: str
+    uptime_s: float
+    database: DatabaseHealth
+    vehicle: VehicleHealth
+    viewers: int
+    simulated: bool
+    time_factor: float
+
+
+class Defaults(Model):
+    """A mission to start from. `home`: the vehicle's, None when it was never heard; the area is then around the
+    configured fallback place."""
+
+    spec: MissionSpec
+    home: Place | None
+
+
+class MissionSummary(Model):
+    """One line of the list. `started_at_utc`, `ended_at_utc`, `outcome`: None until it happened."""
+
+    mission_id: str
+    name: str
+    phase: Phase
+    outcome: Outcome | None
+    drafted_at_utc: datetime
+    started_at_utc: datetime | None
+    ended_at_utc: datetime | None
+    mission_time_s: float | None
+    bearings: int
+    rejected_sweeps: int
+    last_seq: int
+
+
+class Mission(MissionSummary):
+    """`estimate`: of the last belief, None before the first bearing or when the bearings are inconsistent.
+    `not_yet`: why "localized" is not said. `editable`: the specification may still be replaced."""
+
+    spec: MissionSpec
+    editable: bool
+    home: Place | None
+    estimate: EstimateFact | None
+    localized: bool
+    not_yet: list[str]
+    outcome_reason: str | None
+
+
+class MissionList(Model):
+    """Newest first."""
+
+    missions: list[MissionSummary]
+
+
+class PreflightReply(Model):
+    passed: bool
+    checks: list[CheckFact]
+
+
+class EventPage(Model):
+    """Events with seq > after, in order. `more`: ask again with after = the last seq."""
+
+    events: list[Recorded]
+    last_seq: int
+    more: bool
+
+
+class SweepRecord(Model):
+    """One raw sweep. at_s (since the first sample), heading_deg (the nose, true), power_db: one value a sample; None
+    where the receiver gave no number."""
+
+    sweep_id: str
+    mission_id: str
+    place_number: int
+    attempt: int
+    began_at_utc: datetime
+    place: Place
+    altitude_amsl_m: float
+    frequency_hz: float
+    drift_m: float
+    clipped_samples: int
+    noise_floor_db: float | None
+    tag: str | None
+    at_s: list[float | None]
+    heading_deg: list[float | None]
+    power_db: list[float | None]
+
+
+class TrackFact(Model):
+    at_utc: datetime
+    lat: float
+    lon: float
+    altitude_amsl_m: float
+    altitude_relative_m: float
+    heading_deg: float
+    battery_percent: float | None
+    mode: str | None
+
+
+class Track(Model):
+    """The flown path, thinned to 2 Hz, in time order."""
+
+    mission_id: str
+    points: list[TrackFact]
+
+
+class ExpectedTimeRequest(Model):
+    """What if the vehicle measured here next?"""
+
+    place: Place
+
+
+class ExpectedTime(Model):
+    """allowed False: the vehicle may not go there, `reason` says why (the times may still be known).
+
+    expected_time_s: mean time until localized by way of the place; time_90_s: not exceeded in 90 % of the rollouts.
+    """
+
+    place: Place
+    allowed: bool
+    reason: str
+    expected_time_s: float | None
+    std_error_s: float | None
+    time_90_s: float | None
+    rollouts: int
+
+
+class Preview(Model):
+    """A mission before take-off: where it would begin, where it would measure first and how long it may take."""
+
+    start: Place
+    first_place: Place
+    reason: str
+    expected_time_s: float | None
+    time_90_s: float | None
+    times_s: list[float]
+    candidates: list[CandidateFact]
+    rollouts: int
+    plan_ms: float
+
+
+class AreaUpload(Model):
+    """The text of a GeoJSON or KML file that holds one or more polygons."""
+
+    text: str = Field(min_length=1, max_length=5_000_000)
+    filename: str = Field(default="", max_length=255)
+
+
+class AreaImport(Model):
+    """`notes`: what was changed or left out while reading, one sentence each."""
+
+    area: Area
+    format: Literal["geojson", "kml"]
+    area_m2: float
+    vertices: int
+    notes: list[str]
