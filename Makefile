@@ -49,7 +49,7 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/pyright
-	$(BIN)/python -m backend.wire.schema --check frontend/src/wire/openapi.json
+	$(BIN)/python -m backend.api.schema --check frontend/src/wire/openapi.json
 	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
@@ -60,7 +60,7 @@ system: setup-dev build browser ## whole missions over real sockets, and the pag
 	$(BIN)/pytest -m "system or browser"
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
-	$(BIN)/python -m backend.wire.schema > frontend/src/wire/openapi.json
+	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
 	cd frontend && npm run --silent codegen
 
 bench: setup ## the planner's speed on this machine
