@@ -1,0 +1,111 @@
+"""When "localized" may be said (design, mission rule 6): never from one place, never from bearings that disagree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from planner.belief.estimate import estimate
+from planner.belief.grid import GridBelief
+from planner.geometry import clip_wedge, validate_region
+from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
+from planner.types import Bearing, FloatArray, LocalizationRule, Problem, Region, Verdict
+
+
+def verdict(
+    problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief | None
+) -> Verdict:
+    """Localized, or why not yet, in the operator's words. belief: None when the bearings are inconsistent.
+
+    Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
+    """
+    consistent = belief is not None and wedges_meet(problem.area, bearings)
+    if belief is None:
+        return Verdict(False, False, (_INCONSISTENT,))
+    if not bearings:
+        return Verdict(False, consistent, ("not yet: no bearing taken",))
+    spread = estimate(belief, problem.estimator)
+    supporting = [b for b in bearings if points_at(b, spread.x, spread.y)]
+    reasons = [
+        *_place_reasons(rule, bearings, supporting),
+        *_angle_reasons(rule, supporting, spread.x, spread.y),
+    ]
+    if not consistent:
+        reasons.append(_INCONSISTENT)
+    if not spread.expected_rmse < rule.threshold:
+        reasons.append(f"not yet: expected error {spread.expected_rmse:.0f} m, wanted below {rule.threshold:.0f} m")
+    return Verdict(not reasons, consistent, tuple(reasons))
+
+
+_INCONSISTENT = "not yet: the bearings contradict each other, at least one is an outlier"
+
+
+def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:
+    """Whether the +-4 sigma wedges of all bearings (main peaks) have a common point inside the area.
+
+    Wedges too wide to cut (half angle above 80 deg) never contradict.
+    """
+    remaining: Region = validate_region(area, "the target area")
+    for bearing in bearings:
+        half = WEDGE_SIGMAS * bearing.sigma
+        if half > WIDEST_HARD_WEDGE:
+            continue
+        clipped = (clip_wedge(ring, bearing.x, bearing.y, bearing.angle, half) for ring in remaining)
+        remaining = tuple(ring for ring in clipped if len(ring) > 0)
+        if not remaining:
+            return False
+    return True
+
+
+def points_at(bearing: Bearing, x: float, y: float) -> bool:
+    """Whether any peak of the bearing sees (x, y) within 4 sigma."""
+    direction = expected_bearing(bearing.x, bearing.y, x, y)
+    angles = np.array([bearing.angle, *(peak.angle for peak in bearing.peaks)])
+    return bool((np.abs(wrap(angles - direction)) <= WEDGE_SIGMAS * bearing.sigma).any())
+
+
+def best_crossing_angle(bearings: Sequence[Bearing], x: float, y: float) -> float:
+    """Largest angle, rad in [0, pi/2], between the lines from any two bearings' places to (x, y)."""
+    directions: FloatArray = np.array([expected_bearing(b.x, b.y, x, y) for b in bearings])
+    if len(directions) < 2:
+        return 0.0
+    between = np.abs(wrap(directions[:, None] - directions))
+    return float(np.minimum(between, np.pi - between).max())
+
+
+def distinct_places(bearings: Sequence[Bearing], distance: float) -> int:
+    """How many places at least `distance` m apart the bearings were taken from, counted in their order."""
+    places: list[tuple[float, float]] = []
+    for b in bearings:
+        if all(np.hypot(b.x - x, b.y - y) >= distance for x, y in places):
+            places.append((b.x, b.y))
+    return len(places)
+
+
+def _place_reasons(rule: LocalizationRule, bearings: Sequence[Bearing], supporting: Sequence[Bearing]) -> list[str]:
+    taken, places = (distinct_places(some, rule.min_place_distance) for some in (bearings, supporting))
+    if places >= rule.min_places:
+        return []
+    if taken > places:
+        return [f"not yet: only {_count(places, 'place')} agree on the estimate, {rule.min_places} are needed"]
+    if len(bearings) == 1:
+        return [f"not yet: one bearing from one place, {rule.min_places} places are needed"]
+    if places == 1:
+        return [f"not yet: all bearings from one place, {rule.min_places} are needed"]
+    return [f"not yet: bearings from {_count(places, 'place')}, {rule.min_places} are needed"]
+
+
+def _angle_reasons(rule: LocalizationRule, supporting: Sequence[Bearing], x: float, y: float) -> list[str]:
+    if distinct_places(supporting, rule.min_place_distance) < 2:
+        return []
+    angle = best_crossing_angle(supporting, x, y)
+    if angle >= rule.min_crossing_angle:
+        return []
+    which = "both bearings" if len(supporting) == 2 else "all bearings"
+    wanted = np.rad2deg(rule.min_crossing_angle)
+    return [f"not yet: {which} from one side, crossing at {np.rad2deg(angle):.0f} deg, {wanted:.0f} deg are needed"]
+
+
+def _count(n: int, what: str) -> str:
+    return {0: f"no {what}", 1: f"one {what}", 2: f"two {what}s"}.get(n, f"{n} {what}s")

@@ -1,0 +1,200 @@
+"""Polygons in the plane: clipping, hulls, tests, areas. Vectorised numpy, no dependency beyond it.
+
+Frame: local ENU metres. A `Ring` is (n, 2), not closed; a `Region` combines rings by the even-odd rule.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.types import FloatArray, PlannerError, Region, Ring
+
+_EMPTY = np.empty((0, 2))
+
+
+def signed_area(ring: Ring) -> float:
+    """Shoelace area in m^2, positive when counter-clockwise."""
+    if len(ring) < 3:
+        return 0.0
+    x, y = ring[:, 0] - ring[0, 0], ring[:, 1] - ring[0, 1]
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y))
+
+
+def region_area(region: Region) -> float:
+    """Area in m^2 under the even-odd rule (rings must not cross each other)."""
+    total = 0.0
+    for index, ring in enumerate(region):
+        others = tuple(other for k, other in enumerate(region) if k != index)
+        depth = sum(bool(contains((other,), ring[:1])[0]) for other in others)
+        total += (-1.0) ** depth * abs(signed_area(ring))
+    return total
+
+
+def bounds(region: Region) -> tuple[float, float, float, float]:
+    """(x_min, y_min, x_max, y_max) of all vertices, m."""
+    points = np.concatenate(region)
+    return (*map(float, points.min(axis=0)), *map(float, points.max(axis=0)))  # type: ignore[return-value]
+
+
+def edges(region: Region) -> tuple[FloatArray, FloatArray]:
+    """Start and end points (m, 2) of every edge of every ring."""
+    if not region:
+        return _EMPTY, _EMPTY
+    return np.concatenate(region), np.concatenate([np.roll(ring, -1, axis=0) for ring in region])
+
+
+def contains(region: Region, points: FloatArray) -> np.ndarray:
+    """Even-odd test. points: (n, 2). Returns (n,) bool; points on the border may fall on either side."""
+    points = np.asarray(points, dtype=float).reshape(-1, 2)
+    start, end = edges(region)
+    x, y = points[:, :1], points[:, 1:]
+    spans = (start[:, 1] > y) != (end[:, 1] > y)
+    rise = np.where(end[:, 1] == start[:, 1], 1.0, end[:, 1] - start[:, 1])
+    crossing = start[:, 0] + (y - start[:, 1]) / rise * (end[:, 0] - start[:, 0])
+    return np.count_nonzero(spans & (x < crossing), axis=1) % 2 == 1
+
+
+def clip_half_plane(ring: Ring, point: FloatArray, normal: FloatArray) -> Ring:
+    """The part of `ring` where normal . (p - point) >= 0 (Sutherland and Hodgman 1974), (0, 2) when nothing is left."""
+    if len(ring) == 0:
+        return _EMPTY
+    depth = (ring - point) @ normal
+    if (depth >= 0).all():
+        return ring
+    following, depth_following = np.roll(ring, -1, axis=0), np.roll(depth, -1)
+    kept = []
+    for p, q, dp, dq in zip(ring, following, depth, depth_following, strict=True):
+        if dp >= 0:
+            kept.append(p)
+        if (dp >= 0) != (dq >= 0):
+            kept.append(p + (dp / (dp - dq)) * (q - p))
+    return np.array(kept) if kept else _EMPTY
+
+
+def clip_convex(ring: Ring, window: Ring) -> Ring:
+    """Intersection of `ring` with the convex polygon `window` (either orientation)."""
+    if signed_area(window) < 0:
+        window = window[::-1]
+    for p, q in zip(window, np.roll(window, -1, axis=0), strict=True):
+        ring = clip_half_plane(ring, p, np.array([-(q[1] - p[1]), q[0] - p[0]]))
+    return ring
+
+
+def clip_wedge(ring: Ring, x: float, y: float, angle: float, half_angle: float) -> Ring:
+    """The part of `ring` that is seen from (x, y) within `half_angle` < pi/2 of direction `angle` (rad ccw from east)."""
+    apex = np.array([x, y])
+    right, left = angle - half_angle, angle + half_angle
+    ring = clip_half_plane(ring, apex, np.array([-np.sin(right), np.cos(right)]))
+    return clip_half_plane(ring, apex, np.array([np.sin(left), -np.cos(left)]))
+
+
+def wedge_polygon(x: float, y: float, angle: float, half_angle: float, length: float) -> Ring:
+    """Triangle from the apex (x, y) reaching `length` m along `angle`, (3, 2)."""
+    reach = length / np.cos(half_angle)
+    directions = np.array([angle - half_angle, angle + half_angle])
+    far = np.column_stack([x + reach * np.cos(directions), y + reach * np.sin(directions)])
+    return np.vstack([[x, y], far])
+
+
+def convex_hull(points: FloatArray) -> Ring:
+    """Counter-clockwise convex hull of (n, 2) points by Andrew's monotone chain; collinear points are dropped."""
+    ordered = np.unique(np.asarray(points, dtype=float).reshape(-1, 2), axis=0)
+    if len(ordered) < 3:
+        return ordered
+
+    def half(chain_points: FloatArray) -> list[FloatArray]:
+        chain: list[FloatArray] = []
+        for p in chain_points:
+            while len(chain) > 1 and _cross(chain[-2], chain[-1], p) <= 0:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return np.array(half(ordered) + half(ordered[::-1]))
+
+
+def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
+    """Distance in m from each of (n, 2) points to a convex polygon (0 inside); the hull may be a point or a segment."""
+    points = np.asarray(points, dtype=float).reshape(-1, 2)
+    start, end = hull, np.roll(hull, -1, axis=0)
+    along = end - start
+    length2 = np.maximum((along**2).sum(axis=1), 1e-300)
+    offset = points[:, None, :] - start
+    t = np.clip((offset * along).sum(axis=2) / length2, 0.0, 1.0)
+    distance = np.sqrt(((offset - t[..., None] * along) ** 2).sum(axis=2)).min(axis=1)
+    if len(hull) >= 3:
+        turn = along[:, 0] * offset[..., 1] - along[:, 1] * offset[..., 0]
+        inside = (turn >= 0).all(axis=1) | (turn <= 0).all(axis=1)
+        distance = np.where(inside, 0.0, distance)
+    return distance
+
+
+def segments_cross(start: FloatArray, end: FloatArray, region: Region) -> np.ndarray:
+    """Whether each segment start -> end, both (n, 2), properly crosses an edge of the region. (n,) bool."""
+    a, b = edges(region)
+    if len(a) == 0:
+        return np.zeros(len(start), dtype=bool)
+    p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
+    side_a, side_b = _cross(p, q, a), _cross(p, q, b)
+    side_p, side_q = _cross(a, b, p), _cross(a, b, q)
+    return ((side_a * side_b < 0) & (side_p * side_q < 0)).any(axis=1)
+
+
+def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> np.ndarray:
+    """(ny, nx) bool: the square cells of size h from the south-west corner (x0, y0) that the region touches."""
+    columns, rows = np.meshgrid(x0 + h * np.arange(nx + 1), y0 + h * np.arange(ny + 1))
+    corners = contains(region, np.column_stack([columns.ravel(), rows.ravel()])).reshape(ny + 1, nx + 1)
+    touched = corners[:-1, :-1] | corners[:-1, 1:] | corners[1:, :-1] | corners[1:, 1:]
+    for p, q in zip(*edges(region), strict=True):
+        low, high = (p, q) if p[1] <= q[1] else (q, p)
+        first = np.clip(int(np.floor((low[1] - y0) / h)), 0, ny - 1)
+        last = np.clip(int(np.ceil((high[1] - y0) / h)) - 1, first, ny - 1)
+        for row in range(first, last + 1):
+            band = np.clip([y0 + row * h, y0 + (row + 1) * h], low[1], high[1])
+            rise = high[1] - low[1]
+            ends = low[0] + (band - low[1]) / rise * (high[0] - low[0]) if rise > 0 else np.array([low[0], high[0]])
+            left = np.clip(int(np.floor((ends.min() - x0) / h + 1e-9)), 0, nx - 1)
+            right = np.clip(int(np.ceil((ends.max() - x0) / h - 1e-9)) - 1, left, nx - 1)
+            touched[row, left : right + 1] = True
+    return touched
+
+
+def validate_region(region: Region, name: str) -> Region:
+    """The region with finite float64 rings, or a PlannerError that says what is wrong with it."""
+    if len(region) == 0:
+        raise PlannerError(f"{name} has no ring: give at least one polygon of three corners")
+    return tuple(_validate_ring(np.asarray(ring, dtype=float), name) for ring in region)
+
+
+def _validate_ring(ring: Ring, name: str) -> Ring:
+    if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
+        raise PlannerError(f"{name} needs at least three corners of two coordinates, got shape {ring.shape}")
+    if not np.isfinite(ring).all():
+        raise PlannerError(f"{name} has a corner that is not a finite number")
+    if (ring[0] == ring[-1]).all():
+        ring = ring[:-1]
+    crossing = _self_crossing(ring)
+    if crossing is not None:
+        raise PlannerError(f"{name} crosses itself near x = {crossing[0]:.1f} m, y = {crossing[1]:.1f} m: untangle it")
+    extent = np.ptp(ring, axis=0).max() if len(ring) else 0.0
+    if abs(signed_area(ring)) <= 1e-12 * max(extent, 1e-150) ** 2:
+        raise PlannerError(f"{name} has no area: its corners lie on one line or in one point")
+    return np.ascontiguousarray(ring)
+
+
+def _self_crossing(ring: Ring) -> FloatArray | None:
+    following = np.roll(ring, -1, axis=0)
+    for k in range(len(ring)):
+        others = np.arange(len(ring)) != k
+        p, q = ring[k], following[k]
+        a, b = ring[others], following[others]
+        sides = _cross(p, q, a) * _cross(p, q, b) < 0
+        hit = sides & (_cross(a, b, p) * _cross(a, b, q) < 0)
+        if hit.any():
+            return 0.5 * (p + q)
+    return None
+
+
+def _cross(o: FloatArray, p: FloatArray, q: FloatArray):
+    """z of (p - o) x (q - o); positive when q lies left of o -> p. Broadcasts over leading axes."""
+    return (p[..., 0] - o[..., 0]) * (q[..., 1] - o[..., 1]) - (p[..., 1] - o[..., 1]) * (q[..., 0] - o[..., 0])

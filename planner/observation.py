@@ -1,0 +1,83 @@
+"""The bearing sensor as the filter assumes it: likelihoods, hard wedges, simulated bearings.
+
+z = atan2(y_t - y_s, x_t - x_s) + w, w ~ N(0, sigma^2) (4.2). Angles: rad ccw from east.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.types import Bearing, FloatArray, PlannerError
+
+WEDGE_SIGMAS = 4.0
+"""A target lies within so many sigma of an honest bearing (spec 2)."""
+
+WIDEST_HARD_WEDGE = np.deg2rad(80.0)
+"""Half angles above this are no usable wedge: the bearing only weighs, it does not cut."""
+
+
+def wrap(angle: FloatArray | float) -> FloatArray:
+    """Angle in [-pi, pi)."""
+    return (np.asarray(angle) + np.pi) % (2 * np.pi) - np.pi
+
+
+def expected_bearing(x: float, y: float, target_x: FloatArray | float, target_y: FloatArray | float) -> FloatArray:
+    """Direction from the sensor (x, y) to the target."""
+    return np.arctan2(np.asarray(target_y) - y, np.asarray(target_x) - x)
+
+
+def cuts(bearing: Bearing) -> bool:
+    """Whether the bearing has a hard +-4 sigma wedge: no outlier mixture, no second peak, and narrow enough."""
+    honest = bearing.outlier_probability == 0.0 and not bearing.peaks
+    return honest and WEDGE_SIGMAS * bearing.sigma <= WIDEST_HARD_WEDGE
+
+
+def gaussian_likelihood(error: FloatArray, sigma: float) -> FloatArray:
+    """exp(-e^2 / (2 sigma^2)) of the wrapped error, 1 at its peak."""
+    return np.exp(-0.5 * (wrap(error) / sigma) ** 2)
+
+
+def hard_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> FloatArray:
+    """Likelihood at cell centres (x, y), zero outside the +-4 sigma wedge widened by `margin` m.
+
+    A cell that the wedge touches although its centre lies outside keeps the likelihood of the wedge's edge.
+    """
+    half = WEDGE_SIGMAS * bearing.sigma
+    error = np.minimum(np.abs(wrap(expected_bearing(bearing.x, bearing.y, x, y) - bearing.angle)), half)
+    return np.where(inside_wedge(bearing, x, y, margin), gaussian_likelihood(error, bearing.sigma), 0.0)
+
+
+def inside_wedge(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> np.ndarray:
+    """Whether points lie in the +-4 sigma wedge widened by `margin` m to each side and behind its apex."""
+    half = WEDGE_SIGMAS * bearing.sigma
+    dx, dy = x - bearing.x, y - bearing.y
+    right, left = bearing.angle - half, bearing.angle + half
+    return (
+        (np.cos(right) * dy - np.sin(right) * dx >= -margin)
+        & (np.sin(left) * dx - np.cos(left) * dy >= -margin)
+        & (np.cos(bearing.angle) * dx + np.sin(bearing.angle) * dy >= -margin)
+    )
+
+
+def mixture_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray) -> FloatArray:
+    """(1 - eps) sum_i w_i N(z; angle_i, sigma) + eps / (2 pi), the weights w_i normalized, per rad."""
+    angles = np.array([bearing.angle, *(peak.angle for peak in bearing.peaks)])
+    weights = np.array([1.0, *(peak.weight for peak in bearing.peaks)])
+    direction = expected_bearing(bearing.x, bearing.y, x, y)
+    density = sum(
+        w * gaussian_likelihood(direction - a, bearing.sigma)
+        for a, w in zip(angles, weights / weights.sum(), strict=True)
+    ) / (bearing.sigma * np.sqrt(2 * np.pi))
+    return (1.0 - bearing.outlier_probability) * density + bearing.outlier_probability / (2 * np.pi)
+
+
+def validate_bearing(bearing: Bearing) -> None:
+    """PlannerError when a number is not usable."""
+    if not np.isfinite([bearing.x, bearing.y, bearing.angle, bearing.sigma]).all():
+        raise PlannerError("a bearing needs finite position, angle and sigma")
+    if bearing.sigma <= 0:
+        raise PlannerError(f"a bearing's sigma must be positive, got {bearing.sigma} rad")
+    if not 0.0 <= bearing.outlier_probability < 1.0:
+        raise PlannerError(f"outlier probability must be in [0, 1), got {bearing.outlier_probability}")
+    if any(not np.isfinite([peak.angle, peak.weight]).all() or peak.weight <= 0 for peak in bearing.peaks):
+        raise PlannerError("every further peak of a sweep needs a finite angle and a positive weight")
