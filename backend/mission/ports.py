@@ -32,7 +32,9 @@ class Journal(Protocol):
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]: ...
 
-    async def save_sweep(self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep) -> None: ...
+    async def save_sweep(
+        self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep
+    ) -> None: ...
 
     async def save_track(self, mission_id: str, points: Sequence[TrackPoint]) -> None: ...
 
@@ -67,7 +69,9 @@ class Publisher(Protocol):
         self, mission_id: str, place_number: int, heading_deg: list[float], power_db: list[float], turned_deg: float
     ) -> None: ...
 
-    def belief(self, mission_id: str, bearings: int, belief: GridBelief, corners_lon_lat: list[tuple[float, float]]) -> None:
+    def belief(
+        self, mission_id: str, bearings: int, belief: GridBelief, corners_lon_lat: list[tuple[float, float]]
+    ) -> None:
         """corners_lon_lat: SW, SE, NE, NW of the grid's outer edge."""
         ...
 

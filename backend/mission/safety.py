@@ -1,0 +1,194 @@
+"""Pure vetoes between the planner, the operator and the vehicle.
+
+Every rule answers with what is wrong and how to mend it. They are asked before the start, on every chosen place, and
+again right before every command that moves the vehicle. Order: the first veto is the one to show.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from shapely import LineString, Point
+from shapely.geometry.base import BaseGeometry
+
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint, Telemetry
+
+POSITION_STALE_S = 3.0
+EDGE_TOLERANCE_M = 2.0
+"""A hovering vehicle wanders about so much; fence and no-fly edges are tested with this much mercy on its own place."""
+
+FAR_M = 5_000.0
+"""Beyond this the local tangent plane is no longer true to a metre, and a place is more likely a mistake."""
+
+LANDING_S = 60.0
+NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
+"""Battery a second in the air until it has been measured: twenty minutes from full to empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class Veto:
+    rule: str
+    detail: str
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
+
+    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m.
+    """
+
+    frame: LocalFrame
+    fence: BaseGeometry
+    no_fly: tuple[BaseGeometry, ...]
+    minimum_altitude_relative_m: float
+    maximum_altitude_relative_m: float
+    home_amsl_m: float
+    reserve_percent: float
+    speed_m_s: float
+    measurement_time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """The vehicle as last heard, and how fast its battery drains (percent a second of flight)."""
+
+    telemetry: Telemetry
+    now_s: float
+    drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
+
+
+def battery_to_return_percent(limits: Limits, position: GeoPoint, drain_percent_s: float) -> float:
+    """Charge that the flight home from `position` and the landing take, reserve not included."""
+    east, north = limits.frame.to_enu(position)
+    return drain_percent_s * (math.hypot(east, north) / limits.speed_m_s + LANDING_S)
+
+
+def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
+    """Is there a vehicle that may be commanded at all?"""
+    telemetry, now = situation.telemetry, situation.now_s
+    found = []
+    if telemetry.controller == "pilot":
+        found.append(
+            Veto("pilot", "the pilot has control of the vehicle", "resume when the pilot has given control back")
+        )
+    if not telemetry.connected:
+        found.append(
+            Veto("link", "the link to the vehicle is lost", "restore the link; the autopilot's failsafe acts meanwhile")
+        )
+    age = None if telemetry.position_at_s is None else now - telemetry.position_at_s
+    if telemetry.position is None or age is None:
+        found.append(Veto("position", "the vehicle has no position", "wait for a GPS fix"))
+    elif age > POSITION_STALE_S:
+        found.append(
+            Veto("position", f"the vehicle's position is {age:.1f} s old", "wait until telemetry arrives again")
+        )
+    return tuple(found)
+
+
+def battery_vetoes(
+    limits: Limits, situation: Situation, flight_s: float = 0.0, end: GeoPoint | None = None
+) -> tuple[Veto, ...]:
+    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?"""
+    telemetry = situation.telemetry
+    end = end or telemetry.position
+    if telemetry.battery_percent is None:
+        return (Veto("battery", "the battery's charge is unknown", "wait for battery telemetry"),)
+    if end is None:
+        return ()
+    left = telemetry.battery_percent - situation.drain_percent_s * flight_s
+    needed = battery_to_return_percent(limits, end, situation.drain_percent_s)
+    if left - needed >= limits.reserve_percent:
+        return ()
+    return (
+        Veto(
+            "battery",
+            f"{telemetry.battery_percent:.0f} % battery: {left:.0f} % would be left, the way home takes {needed:.0f} %,"
+            f" the reserve is {limits.reserve_percent:.0f} %",
+            "return home and change the battery",
+        ),
+    )
+
+
+def start_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
+    """May a mission take off from where the vehicle stands?"""
+    telemetry = situation.telemetry
+    found = [*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s)]
+    if telemetry.in_air:
+        found.append(Veto("ground", "the vehicle is already in the air", "land it; a mission starts on the ground"))
+    if telemetry.position is not None:
+        found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "the vehicle stands")
+    return tuple(found)
+
+
+def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
+    """May the vehicle turn on the spot for one measurement?"""
+    return (*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s))
+
+
+def place_vetoes(limits: Limits, situation: Situation, place: GeoPoint, altitude_amsl_m: float) -> tuple[Veto, ...]:
+    """May the vehicle fly straight to `place` and measure there?"""
+    found = list(vehicle_vetoes(situation))
+    relative = altitude_amsl_m - limits.home_amsl_m
+    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
+    if not low - 0.5 <= relative <= high + 0.5:
+        found.append(
+            Veto(
+                "altitude",
+                f"{relative:.0f} m above home is outside the allowed {low:.0f} to {high:.0f} m",
+                "change the mission's altitude or its band",
+            )
+        )
+    to = limits.frame.to_enu(place)
+    if math.hypot(*to) > FAR_M:
+        return (
+            *found,
+            Veto(
+                "distance",
+                f"the place is {math.hypot(*to) / 1000:.1f} km from home, more than {FAR_M / 1000:.0f} km",
+                "choose a place nearer to home",
+            ),
+        )
+    found += _area_vetoes(limits, to, "the place is")
+    position = situation.telemetry.position
+    if position is not None:
+        at = limits.frame.to_enu(position)
+        if not found:
+            found += _path_vetoes(limits, at, to)
+        flight_s = math.dist(at, to) / limits.speed_m_s + limits.measurement_time_s
+        found += battery_vetoes(limits, situation, flight_s, place)
+    return tuple(found)
+
+
+def _area_vetoes(limits: Limits, at: tuple[float, float], what: str) -> list[Veto]:
+    point = Point(at)
+    found = []
+    beyond = limits.fence.distance(point)
+    if beyond > EDGE_TOLERANCE_M:
+        found.append(
+            Veto("fence", f"{what} {beyond:.0f} m outside the fence", "choose a place inside, or widen the fence")
+        )
+    if any(zone.contains(point) for zone in limits.no_fly):
+        found.append(Veto("no_fly", f"{what} inside a no-fly zone", "choose a place outside the zone"))
+    return found
+
+
+def _path_vetoes(limits: Limits, at: tuple[float, float], to: tuple[float, float]) -> list[Veto]:
+    path = LineString([at, to])
+    found = []
+    if not limits.fence.buffer(EDGE_TOLERANCE_M).covers(path):
+        found.append(
+            Veto(
+                "fence",
+                "the straight way there leaves the fence",
+                "fly by way of a place in between",
+            )
+        )
+    if any(path.intersection(zone).length > 0.0 for zone in limits.no_fly):
+        found.append(
+            Veto("no_fly", "the straight way there crosses a no-fly zone", "fly by way of a place beside the zone")
+        )
+    return found

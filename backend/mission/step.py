@@ -1,0 +1,154 @@
+"""One transition being built, and the moves that commands and facts share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from backend.events import (
+    AlertCleared,
+    AlertRaised,
+    Event,
+    FlightStarted,
+    MissionEnded,
+    Phase,
+    PhaseChanged,
+    SafetyVetoed,
+    SweepStarted,
+)
+from backend.mission.effects import (
+    CancelTimer,
+    CancelWork,
+    Effect,
+    FlyTo,
+    HoldVehicle,
+    Measure,
+    PlanNext,
+    Record,
+    ReturnHome,
+    TakeOff,
+    UpdateBelief,
+)
+from backend.mission.safety import Veto
+from backend.mission.state import MissionState, evolve
+
+Topic = Literal["vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety"]
+
+
+@dataclass(slots=True)
+class Step:
+    """State so far and effects so far of one transition; lives no longer than it."""
+
+    state: MissionState
+    at_s: float
+    effects: list[Effect] = field(default_factory=list)
+
+    def do(self, effect: Effect) -> None:
+        self.effects.append(effect)
+
+    def record(self, event: Event) -> None:
+        """State changes by facts only."""
+        self.state = evolve(self.state, event, self.at_s)
+        self.effects.append(Record(event))
+
+    def go(self, after: Phase, reason: str) -> None:
+        before = self.state.phase
+        if before != after:
+            self.record(PhaseChanged(before=before, after=after, reason=reason))
+
+
+def go_on(step: Step, reason: str, accepted: bool = False) -> None:
+    """What automatic control does next, from whatever is known; the one way into every automatic phase."""
+    state = step.state
+    spec = state.mission
+    if not state.took_off:
+        step.go("taking_off", reason)
+        step.do(TakeOff(spec.flight.altitude_relative_m))
+    elif not state.belief_current:
+        step.go("planning", reason)
+        step.do(UpdateBelief())
+    elif state.localized:
+        go_home(step, "localized")
+    elif state.chosen is not None and (accepted or state.accepted or state.automatic):
+        altitude = state.home_amsl_m + spec.flight.altitude_relative_m
+        step.go("flying", reason)
+        step.record(FlightStarted(place_number=state.place_number, place=state.chosen.place, altitude_amsl_m=altitude))
+        step.do(FlyTo(state.place_number, state.chosen.place, altitude, spec.flight.speed_m_s))
+    elif state.chosen is not None:
+        step.go("waiting", reason)
+    elif state.place_number >= spec.localization.maximum_bearings:
+        go_home(step, f"not localized after {state.place_number} places{why_not_yet(state)}")
+    else:
+        step.go("planning", reason)
+        step.do(PlanNext(state.place_number + 1, state.avoid))
+
+
+def measure(step: Step, reason: str) -> None:
+    step.go("measuring", reason)
+    attempt = step.state.attempt + 1
+    step.record(SweepStarted(place_number=step.state.place_number, attempt=attempt))
+    step.do(Measure(step.state.place_number, attempt))
+
+
+def go_home(step: Step, reason: str) -> None:
+    step.do(CancelWork())
+    step.go("returning", reason)
+    step.do(ReturnHome())
+
+
+def hold(step: Step, reason: str) -> None:
+    """Stop automatic flight by the mission's own decision."""
+    step.do(CancelWork())
+    step.do(HoldVehicle())
+    step.go("hold", reason)
+
+
+def end(
+    step: Step, phase: Phase, outcome: Literal["localized", "not_localized", "aborted", "failed"], reason: str
+) -> None:
+    """The mission is over. Its time runs until the belief was good enough, else until now."""
+    state = step.state
+    began = step.at_s if state.started_at_s is None else state.started_at_s
+    until = state.localized_at_s if outcome == "localized" and state.localized_at_s is not None else step.at_s
+    step.record(MissionEnded(outcome=outcome, reason=reason, mission_time_s=max(0.0, until - began)))
+    step.go(phase, reason)
+    step.do(CancelTimer("console_hold"))
+    step.do(CancelTimer("console_return"))
+    step.do(CancelTimer("landing"))
+
+
+def finish(step: Step, reason: str) -> None:
+    """The vehicle is down: say honestly what came of the search."""
+    if step.state.localized:
+        end(step, "done", "localized", "the expected error is below the threshold")
+    else:
+        end(step, "done", "not_localized", reason + why_not_yet(step.state))
+
+
+def why_not_yet(state: MissionState) -> str:
+    reasons = state.belief.not_yet if state.belief is not None else []
+    return f" ({'; '.join(reasons)})" if reasons else ""
+
+
+def alert(step: Step, topic: Topic, level: Literal["warning", "caution", "advisory"], text: str, remedy: str) -> None:
+    """Raise an alert; one that is open on the same topic gives way to it."""
+    clear_alerts(step, topic)
+    step.record(AlertRaised(alert_id=f"{topic}-{step.state.alerts_raised + 1}", level=level, text=text, remedy=remedy))
+
+
+def clear_alerts(step: Step, *topics: Topic) -> None:
+    for alert_id in step.state.open_alerts:
+        if alert_id.rsplit("-", 1)[0] in topics:
+            step.record(AlertCleared(alert_id=alert_id))
+
+
+def refuse_flight(step: Step, vetoes: tuple[Veto, ...]) -> None:
+    """Safety said no: go home when the battery says so, else hold and tell the operator."""
+    for veto in vetoes:
+        step.record(SafetyVetoed(rule=veto.rule, detail=veto.detail, remedy=veto.remedy))
+    first = vetoes[0]
+    alert(step, "battery" if first.rule == "battery" else "safety", "warning", first.detail, first.remedy)
+    if all(veto.rule == "battery" for veto in vetoes):
+        go_home(step, first.detail)
+    else:
+        hold(step, first.detail)

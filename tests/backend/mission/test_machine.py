@@ -1,0 +1,409 @@
+"""The machine in every state against every input, and the rules that must hold on any walk through it."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from missions import (
+    BATTERY_VETO,
+    CHECK,
+    FAILED_CHECK,
+    HOME,
+    PHASES,
+    SPEC,
+    START,
+    VETO,
+    WAITING_SPEC,
+    Walk,
+    bearing,
+    belief_ready,
+    commanded,
+    every_input,
+    plan,
+    rejected,
+    walk_in,
+)
+
+from backend import commands
+from backend.events import CommandRefused, MissionEnded, PlanChosen, SafetyVetoed
+from backend.mission import effects as asked
+from backend.mission import inputs
+from backend.mission.effects import Effect
+from backend.mission.machine import transition
+from backend.mission.state import AUTOMATIC, HOMEWARD, TERMINAL, MissionState, fold
+
+MOVES = (asked.TakeOff, asked.FlyTo, asked.Measure, asked.ReturnHome, asked.Land)
+VEHICLE = (*MOVES, asked.HoldVehicle)
+IN_FLIGHT = tuple(AUTOMATIC | HOMEWARD)
+
+
+def kinds(effects: tuple[Effect, ...]) -> list[type]:
+    return [type(e) for e in effects]
+
+
+def moves(effects: tuple[Effect, ...]) -> list[Effect]:
+    return [e for e in effects if isinstance(e, MOVES)]
+
+
+def answer(effects: tuple[Effect, ...]) -> asked.Reply:
+    return next(e for e in effects if isinstance(e, asked.Reply))
+
+
+def check_rules(before: MissionState, given_: inputs.Input, after: MissionState, effects: tuple[Effect, ...]) -> None:
+    """What holds for any state and input."""
+    command = given_.command if isinstance(given_, inputs.Commanded) else None
+    if before.pilot_has_control and not isinstance(command, commands.Resume):
+        assert not any(isinstance(e, VEHICLE) for e in effects), "a command went out while the pilot had control"
+    if before.phase in ("hold", "manual") and moves(effects):
+        ordered = isinstance(command, commands.Resume | commands.Return | commands.Abort)
+        timer = isinstance(given_, inputs.TimerExpired) and given_.name == "console_return"
+        assert ordered or timer, f"{given_} moved a held vehicle"
+    if before.phase in TERMINAL:
+        assert after.phase == before.phase
+        assert after.outcome == before.outcome
+    if isinstance(given_, inputs.PilotTookOver):
+        assert not any(isinstance(e, VEHICLE) for e in effects)
+        assert after.phase == "manual" or before.phase in TERMINAL or not before.started_at_s
+    if before.phase in IN_FLIGHT and answered_first(before, given_):
+        if isinstance(command, commands.Hold):
+            assert after.phase == "hold"
+            assert kinds(effects)[:2] == [asked.CancelWork, asked.HoldVehicle]
+        if isinstance(command, commands.Abort):
+            assert after.phase == "aborted"
+            assert effects[:2] == (asked.CancelWork(), asked.ReturnHome(hold_first=True))
+    if command is not None:
+        assert sum(isinstance(e, asked.Reply) for e in effects) == 1
+        assert given_.command_id in after.answered  # type: ignore[union-attr]
+    if after.outcome is not None:
+        assert after.phase in TERMINAL
+
+
+def answered_first(before: MissionState, given_: inputs.Input) -> bool:
+    return isinstance(given_, inputs.Commanded) and given_.command_id not in before.answered
+
+
+@pytest.mark.parametrize("phase", PHASES)
+def test_every_input_is_answered_in_every_phase(phase: str) -> None:
+    start = walk_in(phase).state
+    assert start.phase == phase
+    for given_ in every_input(start):
+        after, effects = transition(start, given_, 2_000.0)
+        check_rules(start, given_, after, effects)
+        for again in every_input(after):
+            twice, more = transition(after, again, 2_001.0)
+            check_rules(after, again, twice, more)
+
+
+@settings(max_examples=150, deadline=None)
+@given(automatic=st.booleans(), picks=st.lists(st.integers(0, 10_000), min_size=5, max_size=60))
+def test_on_any_walk_the_rules_hold_and_the_journal_gives_the_state_back(automatic: bool, picks: list[int]) -> None:
+    walk = Walk(SPEC if automatic else WAITING_SPEC)
+    if picks[0] % 3:
+        walk.to("planning")
+    ended = 0
+    for number, pick in enumerate(picks):
+        choices = every_input(walk.state)
+        given_ = choices[pick % len(choices)]
+        if isinstance(given_, inputs.Commanded):
+            given_ = commanded(given_.command, f"walk-{number}", objections=given_.objections)
+        before = walk.state
+        effects = walk.give(given_)
+        check_rules(before, given_, walk.state, effects)
+        ended += sum(isinstance(e, asked.Record) and isinstance(e.event, MissionEnded) for e in effects)
+        assert ended <= 1
+    assert fold(walk.recorded) == walk.state
+
+
+def test_a_localized_mission_goes_from_draft_to_done() -> None:
+    walk = Walk()
+    walk.command(commands.Start())
+    assert walk.state.phase == "taking_off"
+    assert kinds(walk.give(inputs.InTheAir(HOME, 40.0)))[-1] is asked.UpdateBelief
+    for number in (1, 2):
+        effects = walk.give(belief_ready(walk.state))
+        assert effects[-1] == asked.PlanNext(number, ())
+        effects = walk.give(inputs.Planned(plan(number)))
+        assert effects[-1] == asked.FlyTo(number, plan(number).place, 140.0, 7.0)
+        assert walk.give(inputs.Arrived(HOME, 0.3, 9.0))[-1] == asked.Measure(number, 1)
+        walk.give(inputs.SweepTaken(bearing(number)))
+    localized_at = walk.at_s + 1
+    assert walk.give(belief_ready(walk.state, localized=True))[-1] == asked.ReturnHome()
+    walk.give(inputs.HomeReached())
+    assert walk.state.phase == "landing"
+    walk.give(inputs.Landed())
+    assert (walk.state.phase, walk.state.outcome) == ("done", "localized")
+    ended = next(r.event for r in walk.recorded if isinstance(r.event, MissionEnded))
+    started = next(r for r in walk.recorded if r.event.kind == "mission_started").at_utc.timestamp()
+    assert ended.mission_time_s == localized_at - started
+
+
+def test_a_failed_preflight_refuses_the_start_and_says_why() -> None:
+    walk = Walk()
+    effects = walk.command(commands.Start(), start=inputs.StartFacts((FAILED_CHECK,), HOME, 100.0, "test"))
+    assert answer(effects) == asked.Reply("c1", False, "preflight: gps: no fix", "wait")
+    assert walk.state.phase == "draft"
+    assert "preflight_checked" in walk.kinds
+    assert "mission_started" not in walk.kinds
+
+
+def test_objections_refuse_the_start_and_an_override_and_become_facts() -> None:
+    walk = Walk()
+    assert not answer(walk.command(commands.Start(), objections=(VETO,))).accepted
+    walk.to("flying")
+    chosen = walk.state.chosen
+    effects = walk.command(commands.Override(place=HOME), objections=(VETO,))
+    assert answer(effects).reason == VETO.detail
+    assert walk.state.chosen == chosen
+    assert walk.state.phase == "flying"
+    assert not moves(effects)
+    assert [r.event for r in walk.recorded if isinstance(r.event, SafetyVetoed)][-1].rule == "fence"
+
+
+def test_a_repeated_command_gets_the_first_answer_and_does_nothing() -> None:
+    walk = Walk().to("flying")
+    first = walk.give(commanded(commands.Hold(), "same"))
+    recorded = len(walk.recorded)
+    again = walk.give(commanded(commands.Hold(), "same"))
+    assert again == (answer(first),)
+    refused = walk.give(commanded(commands.Accept(), "no"))
+    assert walk.give(commanded(commands.Accept(), "no")) == (answer(refused),)
+    assert len(walk.recorded) == recorded + 1
+    assert fold(walk.recorded).answered == walk.state.answered
+
+
+def test_rejected_sweeps_are_taken_again_and_then_another_place_is_chosen() -> None:
+    walk = Walk().to("measuring")
+    place = walk.state.chosen.place if walk.state.chosen else None
+    assert walk.give(inputs.SweepRefused(rejected(1)))[-1] == asked.Measure(1, 2)
+    effects = walk.give(inputs.SweepRefused(rejected(2)))
+    assert effects[-1] == asked.PlanNext(2, (place,))
+    assert walk.state.phase == "planning"
+
+
+def test_a_mission_that_ran_out_of_places_goes_home_honestly() -> None:
+    walk = Walk().to("planning")
+    for number in range(1, SPEC.localization.maximum_bearings + 1):
+        walk.give(belief_ready(walk.state))
+        walk.give(inputs.Planned(plan(number)))
+        walk.give(inputs.Arrived(HOME, 0.3, 9.0))
+        walk.give(inputs.SweepTaken(bearing(number)))
+    walk.give(belief_ready(walk.state))
+    assert walk.state.phase == "returning"
+    walk.give(inputs.Landed())
+    ended = walk.recorded[-2].event
+    assert isinstance(ended, MissionEnded)
+    assert ended.outcome == "not_localized"
+    assert "4 places" in ended.reason
+    assert "not yet: too few" in ended.reason
+
+
+def test_nothing_left_to_plan_goes_home_not_localized() -> None:
+    walk = Walk().to("planning")
+    walk.give(belief_ready(walk.state))
+    walk.give(inputs.NothingToPlan("every place is forbidden"))
+    walk.give(inputs.Landed())
+    assert walk.state.outcome == "not_localized"
+
+
+def test_without_automatic_acceptance_the_place_waits_for_accept_or_veto() -> None:
+    walk = Walk(WAITING_SPEC).to("waiting")
+    refused = walk.state.chosen
+    assert refused is not None
+    effects = walk.command(commands.Veto())
+    assert asked.PlanNext(2, (refused.place,)) in effects
+    walk.give(inputs.Planned(plan(2)))
+    assert walk.state.phase == "waiting"
+    assert moves(walk.command(commands.Accept()))
+    assert walk.state.phase == "flying"
+
+
+def test_arming_automatic_acceptance_releases_a_waiting_place() -> None:
+    walk = Walk(WAITING_SPEC).to("waiting")
+    walk.command(commands.SetAutomatic(automatic=True))
+    assert walk.state.phase == "flying"
+
+
+def test_an_override_replaces_the_running_flight_and_measurement() -> None:
+    for phase in ("planning", "waiting", "flying", "measuring"):
+        walk = walk_in(phase)
+        if not walk.state.belief_current:
+            walk.give(belief_ready(walk.state))
+        effects = walk.command(commands.Override(place=HOME))
+        assert effects[0] == asked.CancelWork()
+        assert [e.place for e in effects if isinstance(e, asked.FlyTo)] == [HOME]
+        assert walk.state.phase == "flying"
+        chosen = walk.state.chosen
+        assert isinstance(chosen, PlanChosen)
+        assert chosen.source == "operator"
+
+
+def test_an_override_in_hold_waits_for_resume() -> None:
+    walk = Walk().to("hold")
+    assert not moves(walk.command(commands.Override(place=HOME)))
+    effects = walk.command(commands.Resume())
+    assert [e.place for e in effects if isinstance(e, asked.FlyTo)] == [HOME]
+
+
+def test_resume_flies_to_the_interrupted_place_again() -> None:
+    for phase in ("flying", "measuring"):
+        walk = Walk().to(phase)
+        place = walk.state.chosen
+        assert place is not None
+        walk.command(commands.Hold())
+        effects = walk.command(commands.Resume())
+        assert [e.place for e in effects if isinstance(e, asked.FlyTo)] == [place.place]
+
+
+def test_resume_after_the_pilot_releases_the_latch_first() -> None:
+    walk = Walk().to("manual")
+    effects = walk.command(commands.Resume())
+    released = effects.index(asked.ReleasePilotLatch())
+    assert all(effects.index(move) > released for move in moves(effects))
+    assert not walk.state.pilot_has_control
+
+
+def test_the_pilot_in_control_is_never_commanded_not_even_by_hold_return_or_abort() -> None:
+    for command in (commands.Hold(), commands.Return(), commands.Abort(), commands.Override(place=HOME)):
+        walk = Walk().to("manual")
+        effects = walk.command(command)
+        assert not any(isinstance(e, VEHICLE) for e in effects)
+    assert Walk().to("manual").command(commands.Abort())
+    walk = Walk().to("manual")
+    walk.command(commands.Abort())
+    assert walk.state.outcome == "aborted"
+
+
+def test_a_pilot_landing_ends_the_mission() -> None:
+    walk = Walk().to("manual")
+    walk.give(inputs.Landed())
+    assert (walk.state.phase, walk.state.outcome) == ("done", "not_localized")
+
+
+def test_a_restart_in_flight_holds_and_rebuilds_the_belief() -> None:
+    for phase in IN_FLIGHT:
+        walk = walk_in(phase)
+        effects = walk.give(inputs.Restarted(pilot=False, detail="back"))
+        assert walk.state.phase == "hold"
+        assert not moves(effects)
+        assert asked.UpdateBelief() in effects
+        walk.give(belief_ready(walk.state))
+        assert walk.state.phase == "hold"
+        assert moves(walk.command(commands.Resume())) or walk.state.phase in ("planning", "waiting")
+
+
+def test_a_restart_does_not_touch_a_vehicle_that_a_pilot_flies() -> None:
+    for walk, pilot in ((Walk().to("flying"), True), (Walk().to("manual"), False)):
+        effects = walk.give(inputs.Restarted(pilot=pilot, detail="back"))
+        assert not any(isinstance(e, VEHICLE) for e in effects)
+        assert walk.state.phase == "manual"
+
+
+def test_a_lost_console_holds_and_then_returns_by_timers() -> None:
+    walk = Walk().to("flying")
+    effects = walk.give(inputs.LinkDown("console", "no browser"))
+    timers = SPEC.timers
+    assert asked.StartTimer("console_hold", timers.console_lost_hold_s) in effects
+    assert asked.StartTimer("console_return", timers.console_lost_return_s) in effects
+    walk.give(inputs.TimerExpired("console_hold"))
+    assert walk.state.phase == "hold"
+    assert moves(walk.give(inputs.TimerExpired("console_return"))) == [asked.ReturnHome()]
+    back = Walk().to("flying")
+    back.give(inputs.LinkDown("console", "no browser"))
+    effects = back.give(inputs.LinkUp("console", 4.0))
+    assert asked.CancelTimer("console_hold") in effects
+    assert asked.CancelTimer("console_return") in effects
+    assert back.state.phase == "flying"
+
+
+def test_a_lost_vehicle_link_holds_and_on_return_the_hold_is_sent() -> None:
+    walk = Walk().to("flying")
+    effects = walk.give(inputs.LinkDown("vehicle", "3 s without telemetry"))
+    assert walk.state.phase == "hold"
+    assert asked.CancelWork() in effects
+    assert not answer(walk.command(commands.Resume())).accepted
+    assert asked.HoldVehicle() in walk.give(inputs.LinkUp("vehicle", 5.0))
+    assert answer(walk.command(commands.Resume())).accepted
+
+
+def test_a_silent_receiver_holds_only_a_running_measurement() -> None:
+    flying = Walk().to("flying")
+    flying.give(inputs.LinkDown("receiver", "silent"))
+    assert flying.state.phase == "flying"
+    measuring = Walk().to("measuring")
+    measuring.give(inputs.LinkDown("receiver", "silent for 5 s"))
+    assert measuring.state.phase == "hold"
+    assert any(a.startswith("receiver") for a in measuring.state.open_alerts)
+    measuring.give(inputs.LinkUp("receiver", 9.0))
+    assert not any(a.startswith("receiver") for a in measuring.state.open_alerts)
+
+
+def test_a_low_battery_brings_the_vehicle_home() -> None:
+    for given_ in (inputs.BatteryLow("just enough"), inputs.WorkVetoed((BATTERY_VETO,))):
+        walk = Walk().to("flying")
+        assert moves(walk.give(given_)) == [asked.ReturnHome()]
+        assert walk.state.phase == "returning"
+
+
+def test_a_vetoed_flight_holds_and_says_why() -> None:
+    walk = Walk().to("flying")
+    effects = walk.give(inputs.WorkVetoed((VETO,)))
+    assert walk.state.phase == "hold"
+    assert not moves(effects)
+    assert any(a.startswith("safety") for a in walk.state.open_alerts)
+
+
+def test_a_failed_take_off_on_the_ground_ends_the_mission_and_in_the_air_holds() -> None:
+    ground, air = Walk().to("taking_off"), Walk().to("taking_off")
+    ground.give(inputs.WorkFailed("take_off", "did not arm", "look", in_air=False))
+    air.give(inputs.WorkFailed("take_off", "no altitude", "look", in_air=True))
+    assert (ground.state.phase, ground.state.outcome) == ("failed", "failed")
+    assert air.state.phase == "hold"
+
+
+def test_an_excluded_bearing_is_taken_out_of_the_belief_without_moving_the_vehicle() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    walk.command(commands.Hold())
+    walk.give(belief_ready(walk.state))
+    effects = walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    assert asked.UpdateBelief() in effects
+    assert walk.state.bearing_ids == ()
+    assert not answer(walk.command(commands.ExcludeBearing(bearing_id="b1"))).accepted
+    assert not answer(walk.command(commands.ExcludeBearing(bearing_id="b9"))).accepted
+
+
+def test_a_stale_belief_is_not_recorded() -> None:
+    walk = Walk().to("measuring")
+    old = belief_ready(walk.state, localized=True)
+    walk.give(inputs.SweepTaken(bearing(1)))
+    assert walk.give(old) == ()
+
+
+def test_an_aborted_vehicle_still_answers_hold_and_return_until_it_is_down() -> None:
+    walk = Walk().to("aborted")
+    assert asked.HoldVehicle() in walk.command(commands.Hold())
+    assert asked.ReturnHome() in walk.command(commands.Return())
+    assert not answer(walk.command(commands.Hold(), objections=(VETO,))).accepted
+    assert not answer(Walk().to("done").command(commands.Hold())).accepted
+
+
+def test_every_refusal_is_a_fact() -> None:
+    walk = Walk(SPEC)
+    walk.command(commands.Hold())
+    last = walk.recorded[-1].event
+    assert isinstance(last, CommandRefused)
+    assert last.reason == "the mission has not started"
+
+
+def test_editing_takes_readiness_back() -> None:
+    walk = Walk()
+    walk.give(inputs.PreflightDone((CHECK,)))
+    assert walk.state.phase == "ready"
+    walk.give(inputs.Edited(WAITING_SPEC))
+    assert walk.state.phase == "draft"
+    assert walk.state.spec == WAITING_SPEC
+    started = Walk().to("flying")
+    started.give(inputs.Edited(WAITING_SPEC))
+    assert started.state.spec == SPEC
+    assert START.home == HOME
