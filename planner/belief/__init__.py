@@ -1,4 +1,4 @@
-"""What is known of the emitter's place: the adaptive grid filter, its estimates, and when it may be called localized."""
+"""What is known of the emitter's place: the adaptive grid filter, its estimates, and when to say localized."""
 
 from planner.belief.estimate import confidence_region, estimate, geometric_median, mass_within
 from planner.belief.grid import GridBelief, digest, fold, prior_belief, smallest_set, update

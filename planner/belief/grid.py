@@ -166,7 +166,7 @@ def _update_soft(belief: GridBelief, bearing: Bearing) -> GridBelief:
 
 
 def smallest_set(belief: GridBelief, share: float) -> np.ndarray:
-    """(ny, nx) bool: the fewest cells that together hold `share` of the mass; ties go to the first cell in row order."""
+    """(ny, nx) bool: the fewest cells that hold `share` of the mass; ties go to the first cell in row order."""
     flat = belief.density.ravel()
     order = np.argsort(-flat, kind="stable")
     cumulative = np.cumsum(flat[order])
@@ -217,7 +217,7 @@ def _extent_of(belief: GridBelief, cells: np.ndarray) -> tuple[float, float, flo
 def _no_common_point(belief: GridBelief) -> InconsistentBearings:
     if belief.bearings == 0:
         return InconsistentBearings(
-            "the bearing points past the target area: check the area, the antenna and the place"
+            "the bearing points past the target area: check area, antenna and place"
         )
     return InconsistentBearings(
         f"the +-4 sigma wedges of {belief.bearings + 1} bearings have no common point in the area: "

@@ -31,7 +31,11 @@ def verdict(
         *_place_reasons(rule, bearings, supporting),
         *_angle_reasons(rule, supporting, spread.x, spread.y),
     ]
-    if not consistent:
+    against = len(bearings) - len(supporting)
+    if against and len(supporting) < max(3, 2 * against):
+        share = f"{against} of {len(bearings)} bearings contradict"
+        reasons.append(f"not yet: {share} the estimate, another look is needed")
+    elif not wedges_meet(problem.area, supporting):
         reasons.append(_INCONSISTENT)
     if not spread.expected_rmse < rule.threshold:
         reasons.append(f"not yet: expected error {spread.expected_rmse:.0f} m, wanted below {rule.threshold:.0f} m")
