@@ -328,6 +328,186 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/maps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Maps
+         * @description The maps on this machine.
+         */
+        get: operations["list_maps"];
+        put?: never;
+        /**
+         * Upload Map
+         * @description Store a PMTiles v3 archive: the request's body is the file itself.
+         */
+        post: operations["upload_map"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/maps/coverage": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Map Coverage
+         * @description Which part of an area the maps show, and how finely.
+         */
+        post: operations["map_coverage"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/maps/{map_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Map
+         * @description One map.
+         */
+        get: operations["get_map"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Map
+         * @description Remove a map from the disk.
+         */
+        delete: operations["delete_map"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/maps/{map_id}/layers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Layers
+         * @description How the page draws this map: a MapLibre source and its layers.
+         */
+        get: operations["map_layers"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/maps/{map_id}/tiles.pmtiles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Map Tiles
+         * @description The archive itself, by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it.
+         */
+        get: operations["map_tiles"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/overlays": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Overlays
+         * @description The overlays on this machine.
+         */
+        get: operations["list_overlays"];
+        put?: never;
+        /**
+         * Upload Overlay
+         * @description Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB.
+         */
+        post: operations["upload_overlay"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/overlays/{overlay_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Overlay
+         * @description One overlay as a GeoJSON FeatureCollection.
+         */
+        get: operations["get_overlay"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Overlay
+         * @description Remove an overlay.
+         */
+        delete: operations["delete_overlay"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/scene/views/{view_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Scene View
+         * @description What a view shows now.
+         */
+        get: operations["get_scene_view"];
+        /**
+         * Show Scene
+         * @description Say what a view shows; an open frame changes at once.
+         */
+        put: operations["show_scene"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -538,6 +718,20 @@ export interface components {
             kind: "control_taken";
             mode: string;
             detail: string;
+        };
+        /**
+         * @description `covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
+         *     `missing`: what no map covers so; `summary`: one sentence to show.
+         */
+        Coverage: {
+            covered: boolean;
+            fraction: number;
+            missing: components["schemas"]["MultiPolygon"] | null;
+            summary: string;
+            maps: components["schemas"]["MapCoverage"][];
+        };
+        CoverageRequest: {
+            area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
         /** @description `spooled`: events kept on disk until the database is back. */
         DatabaseHealth: {
@@ -879,6 +1073,76 @@ export interface components {
             maximum_bearings: number;
         };
         /**
+         * @description `full_to_zoom`: the finest zoom at which the whole area is there, None when there is none.
+         *     `missing`: the part of the area without tiles at the finest zoom looked at; None when nothing is missing.
+         */
+        MapCoverage: {
+            map_id: string;
+            name: string;
+            zooms: components["schemas"]["ZoomCoverage"][];
+            full_to_zoom: number | null;
+            metres_per_pixel: number | null;
+            missing: components["schemas"]["MultiPolygon"] | null;
+        };
+        /**
+         * @description What the page adds to its style to show one map: one source named `source_id`, and layers from bottom to top.
+         *
+         *     source: a MapLibre source of type raster or vector whose url is "pmtiles:///api/maps/{map_id}/tiles.pmtiles" (the
+         *     page puts its origin in). Labels need no glyph server: MapLibre draws them from local fonts when its style has no
+         *     `glyphs`. `notes`: what cannot be drawn, one sentence each.
+         */
+        MapLayers: {
+            source_id: string;
+            source: {
+                [key: string]: unknown;
+            };
+            layers: {
+                [key: string]: unknown;
+            }[];
+            notes: string[];
+        };
+        /**
+         * @description By name. `room_bytes`: how large an upload may be, from the free disk less the journal's reserve.
+         *     `unusable`: files in the map folder that cannot be read any more, one sentence each.
+         */
+        MapList: {
+            maps: components["schemas"]["MapPackage"][];
+            room_bytes: number;
+            unusable: string[];
+        };
+        /**
+         * @description One PMTiles archive. `map_id` is made from its content: the same file uploaded twice is one map.
+         *
+         *     `kind`: raster tiles are pictures; vector tiles are drawn by the page as `/api/maps/{map_id}/layers` says.
+         *     `attribution`: plain text, "" when the archive names none.
+         */
+        MapPackage: {
+            map_id: string;
+            name: string;
+            /** @enum {string} */
+            kind: "raster" | "vector";
+            /** @enum {string} */
+            tile_type: "mvt" | "png" | "jpeg" | "webp" | "avif";
+            bounds: [
+                number,
+                number,
+                number,
+                number
+            ];
+            centre: [
+                number,
+                number
+            ];
+            min_zoom: number;
+            max_zoom: number;
+            tiles: number;
+            size_bytes: number;
+            attribution: string;
+            vector_layers: components["schemas"]["VectorLayer"][];
+            /** Format: date-time */
+            added_at_utc: string;
+        };
+        /**
          * @description `estimate`: of the last belief, None before the first bearing or when the bearings are inconsistent.
          *     `not_yet`: why "localized" is not said. `editable`: the specification may still be replaced.
          */
@@ -998,6 +1262,54 @@ export interface components {
                 number,
                 number
             ][][][];
+        };
+        /** @description Points, lines and areas drawn over the map. `notes`: what was left out or changed while reading. */
+        Overlay: {
+            overlay_id: string;
+            name: string;
+            /** @enum {string} */
+            format: "geojson" | "kml" | "kmz";
+            features: number;
+            bounds: [
+                number,
+                number,
+                number,
+                number
+            ];
+            notes: string[];
+            /** Format: date-time */
+            added_at_utc: string;
+        };
+        /** @description A GeoJSON FeatureCollection. */
+        OverlayCollection: {
+            /**
+             * @default FeatureCollection
+             * @constant
+             */
+            type: "FeatureCollection";
+            features: components["schemas"]["OverlayFeature"][];
+        };
+        /**
+         * @description A GeoJSON feature with one plain geometry (no GeometryCollection), lon/lat, without heights.
+         *
+         *     properties: `name` and `description` when the file has them, its own attributes, and the simplestyle names `stroke`,
+         *     `stroke-width`, `stroke-opacity`, `fill`, `fill-opacity`, `marker-color` where the file says how it is drawn.
+         */
+        OverlayFeature: {
+            /**
+             * @default Feature
+             * @constant
+             */
+            type: "Feature";
+            geometry: {
+                [key: string]: unknown;
+            };
+            properties: {
+                [key: string]: unknown;
+            };
+        };
+        OverlayList: {
+            overlays: components["schemas"]["Overlay"][];
         };
         /** @description Fly to this place next instead of the planner's choice. */
         Override: {
@@ -1258,6 +1570,34 @@ export interface components {
             detail: string;
             remedy: string;
         };
+        /**
+         * @description mission_id None: the mission that flies now, and the next one after it. seq None: follow the live mission; a
+         *     number: the mission as it was after that event. `hidden`: layers left out. `belief_height_m`: height of the belief's
+         *     peak; None: chosen from the area.
+         */
+        SceneRequest: {
+            mission_id?: string | null;
+            seq?: number | null;
+            hidden?: ("area" | "terrain" | "fence" | "no_fly" | "path" | "vehicle" | "roses" | "bearings" | "belief" | "c95" | "candidates" | "estimate" | "labels")[];
+            belief_height_m?: number | null;
+            /**
+             * @default dark
+             * @enum {string}
+             */
+            theme: "dark" | "light";
+        };
+        /**
+         * @description `url`: the page to put into a frame. `mission_id`: what is shown, None while nothing flies. `shown_seq`: the last
+         *     event in the scene. `watchers`: frames connected to this view.
+         */
+        SceneView: {
+            view_id: string;
+            url: string;
+            mission_id: string | null;
+            seq: number | null;
+            shown_seq: number;
+            watchers: number;
+        };
         /** @description The bearing sensor as the planner and the localizer assume it. */
         SensorSpec: {
             /** @default 7 */
@@ -1358,9 +1698,9 @@ export interface components {
             /** Format: date-time */
             began_at_utc: string;
             place: components["schemas"]["Place"];
-            altitude_amsl_m: number;
+            altitude_amsl_m: number | null;
             frequency_hz: number;
-            drift_m: number;
+            drift_m: number | null;
             clipped_samples: number;
             noise_floor_db: number | null;
             tag: string | null;
@@ -1466,9 +1806,9 @@ export interface components {
             at_utc: string;
             lat: number;
             lon: number;
-            altitude_amsl_m: number;
-            altitude_relative_m: number;
-            heading_deg: number;
+            altitude_amsl_m: number | null;
+            altitude_relative_m: number | null;
+            heading_deg: number | null;
             battery_percent: number | null;
             mode: string | null;
         };
@@ -1478,6 +1818,14 @@ export interface components {
              * @enum {string}
              */
             kind: "uniform";
+        };
+        /** @description One layer of a vector map; `fields`: the names of its attributes. */
+        VectorLayer: {
+            id: string;
+            description: string;
+            min_zoom: number | null;
+            max_zoom: number | null;
+            fields: string[];
         };
         VehicleHealth: {
             connected: boolean;
@@ -1491,6 +1839,17 @@ export interface components {
              * @enum {string}
              */
             kind: "veto";
+        };
+        /**
+         * @description `fraction` of the area, 0..1, that lies on tiles the archive has at this zoom. `metres_per_pixel`: ground size of
+         *     a pixel of a 256-pixel tile at the area.
+         */
+        ZoomCoverage: {
+            zoom: number;
+            fraction: number;
+            tiles_needed: number;
+            tiles_present: number;
+            metres_per_pixel: number;
         };
     };
     responses: never;
@@ -2047,6 +2406,432 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AreaImport"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_maps: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MapList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_map: {
+        parameters: {
+            query?: {
+                /** @description What to call it; the file's own name when left out */
+                name?: string;
+                filename?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MapPackage"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    map_coverage: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CoverageRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Coverage"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_map: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                map_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MapPackage"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_map: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                map_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    map_layers: {
+        parameters: {
+            query?: {
+                theme?: "light" | "dark";
+            };
+            header?: never;
+            path: {
+                map_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MapLayers"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    map_tiles: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                map_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The whole archive */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.pmtiles": string;
+                };
+            };
+            /** @description The asked range of bytes */
+            206: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.pmtiles": string;
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_overlays: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OverlayList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_overlay: {
+        parameters: {
+            query?: {
+                /** @description What to call it; the file's own name when left out */
+                name?: string;
+                filename?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Overlay"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_overlay: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                overlay_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OverlayCollection"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_overlay: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                overlay_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_scene_view: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Made by the page, one a tab */
+                view_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SceneView"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    show_scene: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Made by the page, one a tab */
+                view_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SceneRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SceneView"];
                 };
             };
             /** @description What went wrong and how to mend it */
