@@ -1,0 +1,247 @@
+"""The direction finder: sparse reconstruction finds the directions, a pattern fit between the columns sharpens them.
+
+Steps: bin (sweep.py) -> reject what no method can use -> sparse non-negative reconstruction on linear power (sparse.py)
+-> components -> maximum-likelihood refinement in decibels (refine.py) -> sigma from curvature and residual -> quality.
+
+Units of the sparse problem: linear power above the noise floor. Both the columns of A and m are scaled to unit norm
+over a full turn, so lambda = 0.3 has one meaning whatever the signal level, pattern or number of empty bins: a
+component that correlates with (what is left of) the sweep by less than lambda / 2 = 0.15 is not there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.refine import Fit, PatternCurve, Spread, estimate_spread, fit_pattern
+from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
+from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep, bin_sweep
+from hardware.readings import BearingPeak, BearingReading, Sweep
+
+PENALTY = 0.3
+MINIMUM_QUALITY = 0.7
+MINIMUM_BINS = 8
+MAXIMUM_GAP_DEG = 100.0
+MAXIMUM_CLIPPED = 0.05
+MINIMUM_SNR_DB = 3.0
+MINIMUM_PEAK_WEIGHT = 0.05
+SECOND_SOURCE_WEIGHT = 0.12
+SIGMA_FLOOR_DEG = 0.5
+SIGMA_CALIBRATION = 1.0
+MAXIMUM_SIGMA_DEG = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A cluster of active columns. bearing_deg: its weighted mean direction; weight: sum of r."""
+
+    bearing_deg: float
+    weight: float
+
+
+@dataclass(slots=True)
+class SparseDirectionFinder:
+    """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices."""
+
+    minimum_quality: float = MINIMUM_QUALITY
+    penalty: float = PENALTY
+    _prepared: dict[bytes, tuple[PatternBank, PatternCurve]] = field(default_factory=dict, repr=False)
+
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
+        binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
+        refusal = unusable(sweep, binned)
+        if refusal:
+            return _refused(binned, refusal)
+        bank, curve = self._prepare(pattern)
+        noise_db = sweep.noise_floor_db
+        power = linear_power(binned, noise_db)
+        if noise_db is not None and np.nanmax(binned.power_db) < noise_db + MINIMUM_SNR_DB:
+            return _refused(binned, f"nothing was heard: no direction is {MINIMUM_SNR_DB:.0f} dB above the noise floor")
+        solution = solve_sparse(bank, power, self.penalty, binned.filled)
+        parts = components(solution.r, curve.beam_deg / 4.0)
+        if not parts:
+            return _refused(binned, "the sweep has no direction in it: the power looks the same all around")
+        fit = refine(curve, binned, parts, noise_db)
+        return self._reading(bank, curve, binned, parts, fit, noise_db)
+
+    def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve]:
+        key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes()
+        if key not in self._prepared:
+            if len(self._prepared) >= 16:
+                self._prepared.clear()
+            self._prepared[key] = (PatternBank.of(pattern), PatternCurve(pattern))
+        return self._prepared[key]
+
+    def _reading(
+        self,
+        bank: PatternBank,
+        curve: PatternCurve,
+        binned: BinnedSweep,
+        parts: list[Component],
+        fit: Fit,
+        noise_db: float | None,
+    ) -> BearingReading:
+        bearing = float(fit.bearing_deg[0]) % 360.0
+        quality = cosine_quality(curve, binned, bearing, noise_db)
+        sigma = sigma_deg(fit)
+        fitted = _fitted_db(curve, fit, noise_db)
+        peaks = tuple(
+            BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
+            for p in parts[1:]
+            if p.weight >= MINIMUM_PEAK_WEIGHT * parts[0].weight
+        )
+        reason = ""
+        beyond = (bearing - binned.gap_start_deg) % 360.0
+        if quality < self.minimum_quality:
+            reason = (
+                f"the sweep does not look like the antenna (similarity {quality:.2f}, "
+                f"needs {self.minimum_quality:.2f}): reflections, interference or no signal"
+            )
+        elif binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg:
+            reason = (
+                f"the strongest direction lies in a gap of {binned.largest_gap_deg:.0f} degrees that nobody listened to"
+            )
+        elif sigma > MAXIMUM_SIGMA_DEG:
+            reason = "the bearing is too uncertain: the power hardly changes with the heading"
+        peak_db = float(fit.level_db[0]) + curve.peak_db
+        return BearingReading(
+            bearing_deg=bearing % 360.0,
+            sigma_deg=min(sigma, 180.0),
+            quality=quality,
+            accepted=not reason,
+            reason=reason,
+            peaks=peaks,
+            binned_db=binned.power_db,
+            fitted_db=fitted,
+            snr_db=None if noise_db is None else peak_db - noise_db,
+        )
+
+
+def unusable(sweep: Sweep, binned: BinnedSweep) -> str:
+    """Why no method can use this sweep, in the operator's words; empty when it can be used."""
+    samples = sweep.power_db.size
+    finite = int(np.isfinite(sweep.power_db).sum())
+    if samples == 0:
+        return "the receiver delivered nothing during the turn; check that it is running and tuned"
+    if finite == 0:
+        return "every power value of the sweep is invalid (not a number); check the receiver"
+    if sweep.clipped_samples > MAXIMUM_CLIPPED * samples:
+        return (
+            f"the receiver was overdriven ({sweep.clipped_samples} of {samples} samples clipped); "
+            "lower its gain or measure further away"
+        )
+    filled = int(binned.filled.sum())
+    if filled < MINIMUM_BINS:
+        return f"heard in only {filled} directions; at least {MINIMUM_BINS} around the circle are needed"
+    if binned.largest_gap_deg > MAXIMUM_GAP_DEG:
+        return (
+            f"heard over only {360.0 - binned.largest_gap_deg:.0f} degrees of the turn; "
+            "the vehicle must turn once all the way round"
+        )
+    if np.ptp(binned.power_db[binned.filled]) < 1e-6:
+        return "the power is the same in every direction: the receiver shows a constant, not a signal"
+    return ""
+
+
+def linear_power(binned: BinnedSweep, noise_db: float | None) -> NDArray[np.float64]:
+    """(180,) power above the noise floor, of unit norm over a full turn; empty bins 0 (and not counted)."""
+    db = np.where(binned.filled, binned.power_db, -np.inf)
+    top = float(np.max(db))
+    power = 10.0 ** ((db - top) / 10.0)
+    if noise_db is not None:
+        power = np.maximum(power - 10.0 ** ((noise_db - top) / 10.0), 0.0)
+    norm = math.sqrt(float(np.sum(power**2)) * BINS / max(int(binned.filled.sum()), 1))
+    return power / norm if norm > 0 else power
+
+
+def components(r: NDArray[np.float64], reach_deg: float) -> list[Component]:
+    """Clusters of active columns, strongest first; columns within `reach_deg` of a stronger cluster belong to it."""
+    left = r.copy()
+    found: list[Component] = []
+    column = np.arange(COLUMNS)
+    while left.max(initial=0.0) > 0.0:
+        # the strongest neighbourhood, not the strongest column: one source may be split over close columns
+        reach = max(round(reach_deg / COLUMN_DEG), 1)
+        top = int(np.argmax(left))
+        distance = (column - top + COLUMNS // 2) % COLUMNS - COLUMNS // 2
+        near = np.abs(distance) <= reach
+        weight = float(left[near].sum())
+        centre = top + float(left[near] @ distance[near]) / weight
+        found.append(Component(centre * COLUMN_DEG % 360.0, weight))
+        left[near] = 0.0
+    return sorted(found, key=lambda part: -part.weight)
+
+
+def refine(curve: PatternCurve, binned: BinnedSweep, parts: list[Component], noise_db: float | None) -> Fit:
+    """One source, or two when the second pays for its two parameters (Bayesian information criterion)."""
+    single = _fit_from(curve, binned, [parts[0].bearing_deg], [0.0], noise_db)
+    second = next((p for p in parts[1:] if p.weight >= SECOND_SOURCE_WEIGHT * parts[0].weight), None)
+    if second is None:
+        return single
+    ratio_db = 10.0 * math.log10(second.weight / parts[0].weight)
+    double = _fit_from(curve, binned, [parts[0].bearing_deg, second.bearing_deg], [0.0, ratio_db], noise_db)
+    n = single.residual_db.size
+    effective = n / _inflation(single, binned)
+    gain = effective * math.log(max(single.cost, 1e-12) / max(double.cost, 1e-12)) - 2.0 * math.log(max(effective, 2.0))
+    apart = abs((double.bearing_deg[0] - double.bearing_deg[1] + 180.0) % 360.0 - 180.0)
+    return double if gain > 4.0 and apart > curve.beam_deg / 4.0 else single
+
+
+def _fit_from(
+    curve: PatternCurve, binned: BinnedSweep, bearing: list[float], level: list[float], noise_db: float | None
+) -> Fit:
+    """Fit with even scatter first, then with the scatter that its residuals show."""
+    heading = binned.heading_deg[binned.filled]
+    predicted = np.zeros(heading.size)
+    for a, b in zip(bearing, level, strict=True):
+        predicted += 10.0 ** ((b + curve.gain_db(a - heading)) / 10.0)
+    shift = float(np.median(binned.power_db[binned.filled] - 10.0 * np.log10(predicted)))
+    first = fit_pattern(curve, binned, np.array(bearing), np.array(level) + shift, noise_db, Spread())
+    spread = estimate_spread(first.residual_db, first.predicted_db)
+    return fit_pattern(curve, binned, first.bearing_deg, first.level_db, noise_db, spread)
+
+
+def _inflation(fit: Fit, binned: BinnedSweep) -> float:
+    """How many neighbouring residuals say the same: (1 + rho) / (1 - rho) of a first-order process, in [1, 8]."""
+    scaled = np.full(BINS, np.nan)
+    scaled[binned.filled] = fit.residual_db * np.sqrt(fit.weight)
+    pair = scaled * np.roll(scaled, 1)
+    known = np.isfinite(pair)
+    variance = float(np.nanmean(scaled**2))
+    if known.sum() < 20 or variance <= 0:
+        return 1.0
+    rho = min(max(float(pair[known].mean()) / variance, 0.0), 0.78)
+    return (1.0 + rho) / (1.0 - rho)
+
+
+def sigma_deg(fit: Fit) -> float:
+    """Standard deviation of the strongest source's bearing from the fit's curvature and the residual's variance."""
+    freedom = max(fit.residual_db.size - 2 * fit.bearing_deg.size, 1)
+    variance = max(fit.cost / freedom, 0.05)
+    return SIGMA_CALIBRATION * math.sqrt(variance * max(float(fit.covariance[0, 0]), 0.0)) + SIGMA_FLOOR_DEG
+
+
+def cosine_quality(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
+    """Cosine similarity of the sweep and the pattern shifted to the bearing, linear power, over the filled bins."""
+    measured = linear_power(binned, noise_db)[binned.filled]
+    shifted = 10.0 ** ((curve.gain_db(bearing_deg - binned.heading_deg[binned.filled]) - curve.peak_db) / 10.0)
+    norm = float(np.linalg.norm(measured) * np.linalg.norm(shifted))
+    return min(max(float(measured @ shifted) / norm, 0.0), 1.0) if norm > 0 else 0.0
+
+
+def _fitted_db(curve: PatternCurve, fit: Fit, noise_db: float | None) -> NDArray[np.float64]:
+    centre = (np.arange(BINS) + 0.5) * BIN_DEG
+    total = np.full(BINS, 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0))
+    for bearing, level in zip(fit.bearing_deg, fit.level_db, strict=True):
+        total += 10.0 ** ((level + curve.gain_db(bearing - centre)) / 10.0)
+    return 10.0 * np.log10(total)
+
+
+def _refused(binned: BinnedSweep, reason: str) -> BearingReading:
+    """Not accepted and without a bearing: 0 degrees with sigma 180 says "anywhere"."""
+    return BearingReading(0.0, 180.0, 0.0, False, reason, (), binned.power_db, np.full(BINS, np.nan))

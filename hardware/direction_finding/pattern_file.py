@@ -1,0 +1,165 @@
+"""Antenna patterns as files: JSON, and the import of a turntable table.
+
+The JSON format (one object):
+    {"format": "crossfix antenna pattern", "name": "...", "unit": "dB" | "dBi" | "linear power",
+     "frequency_hz": 868300000 | null, "polarization": "vertical" | null, "measured_on": "2026-05-01" | null,
+     "offset_to_nose_deg": 0, "relative_bearing_deg": [0, 10, ...], "gain": [9.4, 9.3, ...]}
+Angles: degrees clockwise from the antenna's front seen from above. The absolute level does not matter.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.direction_finding.antenna import AntennaPattern
+
+FORMAT = "crossfix antenna pattern"
+SMALL_YAGI = Path(__file__).parent / "patterns" / "small_yagi.json"
+MINIMUM_POINTS = 8
+MAXIMUM_GAP_DEG = 60.0
+MINIMUM_DIRECTIVITY_DB = 3.0
+
+
+class PatternError(ValueError):
+    """A pattern that cannot be used; the message names the file, what is wrong and how to mend it."""
+
+
+def make_pattern(
+    name: str,
+    relative_bearing_deg: NDArray[np.float64],
+    gain_db: NDArray[np.float64],
+    offset_to_nose_deg: float = 0.0,
+    frequency_hz: float | None = None,
+    polarization: str | None = None,
+    measured_on: str | None = None,
+) -> AntennaPattern:
+    """A checked pattern: angles taken modulo 360 and sorted. Raises PatternError."""
+    angle = np.asarray(relative_bearing_deg, dtype=np.float64) % 360.0
+    gain = np.asarray(gain_db, dtype=np.float64)
+    if angle.ndim != 1 or angle.shape != gain.shape:
+        raise PatternError(f"{name}: {angle.size} angles but {gain.size} gains; each angle needs one gain")
+    if angle.size < MINIMUM_POINTS:
+        raise PatternError(
+            f"{name}: only {angle.size} points; a pattern needs at least {MINIMUM_POINTS} around the circle"
+        )
+    if not (np.isfinite(angle).all() and np.isfinite(gain).all() and np.isfinite(offset_to_nose_deg)):
+        raise PatternError(f"{name}: an angle, gain or offset is not a finite number; remove or repair that row")
+    order = np.argsort(angle, kind="stable")
+    angle, gain = angle[order], gain[order]
+    step = np.diff(angle, append=angle[0] + 360.0)
+    if (step < 1e-9).any():
+        raise PatternError(f"{name}: the angle {angle[np.argmin(step)]:g} occurs twice; keep one row for each angle")
+    if step.max() > MAXIMUM_GAP_DEG:
+        start = angle[np.argmax(step)]
+        raise PatternError(
+            f"{name}: nothing measured for {step.max():.0f} degrees after {start:g}; "
+            f"measure at least every {MAXIMUM_GAP_DEG:.0f} degrees around the whole circle"
+        )
+    if np.ptp(gain) < MINIMUM_DIRECTIVITY_DB:
+        raise PatternError(
+            f"{name}: the gain varies by only {np.ptp(gain):.1f} dB around the circle; an antenna with less than "
+            f"{MINIMUM_DIRECTIVITY_DB:.0f} dB gives no bearing (is its element broken, or the table in another unit?)"
+        )
+    return AntennaPattern(name, angle, gain, float(offset_to_nose_deg), frequency_hz, polarization, measured_on)
+
+
+def load_pattern(path: Path | str) -> AntennaPattern:
+    """Read a JSON pattern, or a turntable table (.csv, see `read_turntable`). Raises PatternError."""
+    path = Path(path)
+    if path.suffix.lower() in {".csv", ".txt", ".tsv"}:
+        return read_turntable(path)
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise PatternError(f"{path}: cannot be read ({error.strerror}); check the path") from error
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise PatternError(f"{path}: is not JSON ({error}); a turntable table must end in .csv") from error
+    return _from_json(path, data)
+
+
+def _from_json(path: Path, data: Any) -> AntennaPattern:
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise PatternError(f'{path}: is no antenna pattern; the file must hold an object with "format": "{FORMAT}"')
+    for key in ("relative_bearing_deg", "gain", "unit"):
+        if key not in data:
+            raise PatternError(f'{path}: "{key}" is missing; add it')
+    try:
+        angle = np.array(data["relative_bearing_deg"], dtype=np.float64)
+        gain = np.array(data["gain"], dtype=np.float64)
+        offset = float(data.get("offset_to_nose_deg", 0.0))
+        frequency = None if data.get("frequency_hz") is None else float(data["frequency_hz"])
+    except (TypeError, ValueError) as error:
+        raise PatternError(f"{path}: angles, gains, offset and frequency must be numbers ({error})") from error
+    return make_pattern(
+        str(data.get("name") or path.stem),
+        angle,
+        _to_db(str(path), gain, str(data["unit"])),
+        offset,
+        frequency,
+        data.get("polarization"),
+        data.get("measured_on"),
+    )
+
+
+def _to_db(where: str, gain: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+    if unit in {"dB", "dBi", "dBd", "dBm"}:
+        return gain
+    if unit == "linear power":
+        if not (gain > 0).all():
+            raise PatternError(f"{where}: linear gains must be greater than zero")
+        return 10.0 * np.log10(gain)
+    raise PatternError(f'{where}: unit "{unit}" is not known; use "dB" or "linear power"')
+
+
+def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
+    """Write the JSON format above, unit dB."""
+    data = {
+        "format": FORMAT,
+        "name": pattern.name,
+        "unit": "dB",
+        "frequency_hz": pattern.frequency_hz,
+        "polarization": pattern.polarization,
+        "measured_on": pattern.measured_on,
+        "offset_to_nose_deg": pattern.offset_to_nose_deg,
+        "relative_bearing_deg": [round(float(a), 3) for a in pattern.relative_bearing_deg],
+        "gain": [round(float(g), 3) for g in pattern.gain_db],
+    }
+    rows = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items())
+    Path(path).write_text("{\n" + rows + "\n}\n", encoding="utf-8")
+
+
+def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float = 0.0) -> AntennaPattern:
+    """A turntable's table: rows `angle_deg, gain`, comma, semicolon or blank separated, `#` comments, optional header.
+
+    Several rows at one angle (more than one turn) are averaged. Raises PatternError naming file and line.
+    """
+    path = Path(path)
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise PatternError(f"{path}: cannot be read as text ({error}); check the path") from error
+    rows: list[tuple[float, float]] = []
+    for number, line in enumerate(lines, start=1):
+        text = line.split("#")[0].strip()
+        if not text:
+            continue
+        cells = next(csv.reader([text.replace(";", ",").replace("\t", ",")]))
+        cells = cells if len(cells) > 1 else text.split()
+        try:
+            rows.append((float(cells[0]) % 360.0, float(cells[1])))
+        except (ValueError, IndexError):
+            if rows:
+                raise PatternError(f'{path}:{number}: "{line.strip()}" is not "angle_deg, gain"; mend it') from None
+    if not rows:
+        raise PatternError(f'{path}: holds no rows of "angle_deg, gain"')
+    table = np.array(rows)
+    gain = _to_db(str(path), table[:, 1], unit)
+    angle, member = np.unique(np.round(table[:, 0], 6), return_inverse=True)
+    mean = np.bincount(member, gain) / np.bincount(member)
+    return make_pattern(path.stem, angle, mean, offset_to_nose_deg)

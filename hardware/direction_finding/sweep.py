@@ -1,0 +1,145 @@
+"""From power samples and headings, each at its own time, to a sweep; from a sweep to 180 bins of 2 degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pymap3d
+from numpy.typing import NDArray
+
+from hardware.readings import GeoPoint, HeadingSample, PowerSample, Sweep
+
+BINS = 180
+BIN_DEG = 360.0 / BINS
+MAXIMUM_HEADING_GAP_S = 1.0
+"""Between headings further apart than this the nose's direction is not known, so power heard there is left out."""
+
+
+class SweepError(ValueError):
+    """No sweep can be made of this; the message says why and what to do."""
+
+
+def assemble_sweep(
+    samples: Sequence[PowerSample],
+    headings: Sequence[HeadingSample],
+    *,
+    frequency_hz: float,
+    altitude_amsl_m: float,
+    position: GeoPoint | None = None,
+    tag: str | None = None,
+    clock_offset_s: float = 0.0,
+) -> Sweep:
+    """A sweep in which every power sample carries the heading of its own time.
+
+    samples, headings: any order; headings are interpolated linearly the short way round (headings further than
+    MAXIMUM_HEADING_GAP_S apart are not bridged, samples outside the headings' time span are left out).
+    position: where the sweep was taken; None: the mean of the headings' positions. clock_offset_s: the receiver's clock
+    minus the vehicle's, subtracted from the samples' times. Raises SweepError when nothing is left.
+    """
+    if not samples:
+        raise SweepError("the receiver delivered no sample during the turn; check that it is running and tuned")
+    if len(headings) < 2:
+        raise SweepError("the vehicle reported no heading during the turn; check its telemetry rates")
+    track = sorted(headings, key=lambda h: h.at_s)
+    heading_s = np.array([h.at_s for h in track])
+    turned = np.unwrap(np.array([h.heading_deg for h in track]), period=360.0)
+    known = np.isfinite(turned) & np.isfinite(heading_s)
+    heard = sorted(samples, key=lambda s: s.at_s)
+    heard_s = np.array([s.at_s for s in heard]) - clock_offset_s
+    power_db = np.array([s.power_db for s in heard])
+    clipped = np.array([s.clipped for s in heard])
+    if not known.all():
+        heading_s, turned = heading_s[known], np.unwrap(turned[known], period=360.0)
+    if heading_s.size < 2:
+        raise SweepError("the vehicle's headings are not numbers; check its compass and telemetry")
+
+    after = np.clip(np.searchsorted(heading_s, heard_s), 1, heading_s.size - 1)
+    usable = (heard_s >= heading_s[0]) & (heard_s <= heading_s[-1])
+    usable &= heading_s[after] - heading_s[after - 1] <= MAXIMUM_HEADING_GAP_S
+    if not usable.any():
+        raise SweepError(
+            "no power sample fell between two headings; the clocks of receiver and vehicle disagree "
+            f"(samples {heard_s[0]:.1f}..{heard_s[-1]:.1f} s, headings {heading_s[0]:.1f}..{heading_s[-1]:.1f} s)"
+        )
+    nose = np.interp(heard_s[usable], heading_s, turned) % 360.0
+    floors = [s.noise_floor_db for s in heard if s.noise_floor_db is not None]
+    place, drift_m = _place_and_drift(track, position)
+    return Sweep(
+        at_s=heard_s[usable],
+        heading_deg=nose,
+        power_db=power_db[usable],
+        frequency_hz=frequency_hz,
+        position=place,
+        altitude_amsl_m=altitude_amsl_m,
+        drift_m=drift_m,
+        clipped_samples=int(clipped[usable].sum()),
+        noise_floor_db=float(np.median(floors)) if floors else None,
+        tag=tag,
+    )
+
+
+def _place_and_drift(track: list[HeadingSample], position: GeoPoint | None) -> tuple[GeoPoint, float]:
+    """(mean place, largest distance from it in metres) while turning."""
+    places = [h.position for h in track if h.position is not None]
+    if not places:
+        if position is None:
+            raise SweepError("the place of the sweep is not known: the vehicle reported no position")
+        return position, 0.0
+    lat, lon = np.array([p.lat_deg for p in places]), np.array([p.lon_deg for p in places])
+    mean = position or GeoPoint(float(lat.mean()), float(lon.mean()))
+    east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, mean.lat_deg, mean.lon_deg, 0.0)
+    return mean, float(np.hypot(east, north).max())
+
+
+def turned_deg(heading_deg: NDArray[np.float64]) -> float:
+    """How far the nose has turned in all, in degrees, counted either way, from headings in time order."""
+    if heading_deg.size < 2:
+        return 0.0
+    return float(np.ptp(np.unwrap(heading_deg, period=360.0)))
+
+
+@dataclass(frozen=True, slots=True)
+class BinnedSweep:
+    """A sweep in 180 bins of antenna heading; bin i is [2 i, 2 i + 2) degrees from true north.
+
+    power_db: (180,) mean of the samples' dB, NaN where nothing was heard. count: (180,) samples.
+    heading_deg: (180,) mean antenna heading of the samples in the bin (its centre where it is empty).
+    largest_gap_deg: the widest arc without a sample, and gap_start_deg where it begins.
+    """
+
+    power_db: NDArray[np.float64]
+    count: NDArray[np.int64]
+    heading_deg: NDArray[np.float64]
+    largest_gap_deg: float
+    gap_start_deg: float
+
+    @property
+    def filled(self) -> NDArray[np.bool_]:
+        """(180,) bins that heard something."""
+        return self.count > 0
+
+
+def bin_sweep(
+    heading_deg: NDArray[np.float64], power_db: NDArray[np.float64], offset_to_nose_deg: float
+) -> BinnedSweep:
+    """Average samples into bins of antenna heading = nose heading + offset. Samples not finite are left out."""
+    good = np.isfinite(heading_deg) & np.isfinite(power_db)
+    front = (heading_deg[good] + offset_to_nose_deg) % 360.0 % 360.0
+    index = np.minimum((front / BIN_DEG).astype(np.int64), BINS - 1)
+    count = np.bincount(index, minlength=BINS)
+    with np.errstate(invalid="ignore"):
+        mean_db = np.bincount(index, power_db[good], BINS) / count
+        mean_heading = np.bincount(index, front, BINS) / count
+    centre = (np.arange(BINS) + 0.5) * BIN_DEG
+    gap, start = _largest_gap(np.sort(front))
+    return BinnedSweep(mean_db, count, np.where(count > 0, mean_heading, centre), gap, start)
+
+
+def _largest_gap(ascending_deg: NDArray[np.float64]) -> tuple[float, float]:
+    if ascending_deg.size == 0:
+        return 360.0, 0.0
+    gaps = np.diff(ascending_deg, append=ascending_deg[0] + 360.0)
+    widest = int(np.argmax(gaps))
+    return float(gaps[widest]), float(ascending_deg[widest])

@@ -1,0 +1,121 @@
+"""The simulated receiver: the Receiver port on top of the simulated world and the vehicle's real telemetry."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+
+from hardware.ports import Clock, ReceiverError
+from hardware.readings import GeoPoint, PowerSample, Telemetry
+from hardware.sim.world import Pose, RadioLink, World
+
+HEADING_HELD_S = 0.5
+"""Telemetry older than this is no longer waited for: the vehicle is taken to stand as last heard."""
+
+
+class SimulatedReceiver:
+    """Power samples `rate_hz` times a second of the clock's time, each made at the vehicle's pose of that moment.
+
+    Telemetry comes in steps: a sample waits until a heading at or after its own time was heard, and place and heading
+    are interpolated between the two snapshots around it. Nothing is received before the vehicle knows its position.
+    `silence(True)` makes the receiver go mute and `unplug()` makes it vanish, for rehearsing faults.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        pose: Callable[[], Telemetry],
+        clock: Clock,
+        rate_hz: float = 20.0,
+        ground_amsl_m: float = 0.0,
+    ) -> None:
+        if not rate_hz > 0:
+            raise ReceiverError(f"the sample rate is {rate_hz} Hz; it must be greater than zero")
+        self._world = world
+        self._telemetry = pose
+        self._clock = clock
+        self._period_s = 1.0 / rate_hz
+        self._ground_amsl_m = ground_amsl_m
+        self._link: RadioLink | None = None
+        self._silent = False
+        self._gone = False
+
+    async def open(self, frequency_hz: float) -> None:
+        """Tune. Raises ReceiverError when the frequency is not positive or the device was unplugged."""
+        if self._gone:
+            raise ReceiverError("the simulated receiver was unplugged; plug it in again (restart the simulation)")
+        if not frequency_hz > 0:
+            raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
+        if self._link is None or self._link.frequency_hz != frequency_hz:
+            self._link = RadioLink(self._world, frequency_hz)
+
+    async def close(self) -> None:
+        self._link = None
+
+    def silence(self, silent: bool) -> None:
+        """Stop or resume delivering samples, as a hung driver would."""
+        self._silent = silent
+
+    def unplug(self) -> None:
+        """The device is gone: samples() raises ReceiverError."""
+        self._gone = True
+
+    async def samples(self) -> AsyncIterator[PowerSample]:
+        """See the Receiver port."""
+        if self._link is None:
+            raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
+        link = self._link
+        before: _Fix | None = None
+        next_s = self._clock.now()
+        while self._link is link:
+            if self._gone:
+                raise ReceiverError("the simulated receiver was unplugged")
+            now = self._clock.now()
+            after = _fix(self._telemetry(), self._ground_amsl_m)
+            if after is None or self._silent:
+                next_s = now
+            else:
+                known_until = max(after.at_s, now - HEADING_HELD_S)
+                while next_s <= known_until and self._link is link:
+                    yield self._sample(link, next_s, before or after, after)
+                    next_s += self._period_s
+                if before is None or after.at_s > before.at_s:
+                    before = after
+            await self._clock.sleep(self._period_s)
+            await asyncio.sleep(0)
+
+    def _sample(self, link: RadioLink, at_s: float, before: _Fix, after: _Fix) -> PowerSample:
+        power_dbm, clipped = link.power_dbm(at_s, _between(at_s, before, after))
+        return PowerSample(at_s, link.frequency_hz, power_dbm, self._world.front_end.noise_dbm, clipped)
+
+
+class _Fix:
+    """A pose with the time at which its heading was heard."""
+
+    __slots__ = ("at_s", "pose")
+
+    def __init__(self, at_s: float, pose: Pose) -> None:
+        self.at_s = at_s
+        self.pose = pose
+
+
+def _fix(telemetry: Telemetry, ground_amsl_m: float) -> _Fix | None:
+    if telemetry.position is None or telemetry.heading_deg is None or telemetry.heading_at_s is None:
+        return None
+    height = telemetry.altitude_relative_m
+    if height is None:
+        height = (telemetry.altitude_amsl_m or ground_amsl_m) - ground_amsl_m
+    return _Fix(telemetry.heading_at_s, Pose(telemetry.position, max(height, 0.3), telemetry.heading_deg))
+
+
+def _between(at_s: float, before: _Fix, after: _Fix) -> Pose:
+    """The pose at `at_s`: linear between the two, headings the short way round, held outside."""
+    span = after.at_s - before.at_s
+    part = 1.0 if span <= 0 else min(max((at_s - before.at_s) / span, 0.0), 1.0)
+    a, b = before.pose, after.pose
+    turn = (b.heading_deg - a.heading_deg + 180.0) % 360.0 - 180.0
+    place = GeoPoint(
+        a.place.lat_deg + part * (b.place.lat_deg - a.place.lat_deg),
+        a.place.lon_deg + part * (b.place.lon_deg - a.place.lon_deg),
+    )
+    return Pose(place, a.height_m + part * (b.height_m - a.height_m), (a.heading_deg + part * turn) % 360.0)

@@ -1,0 +1,135 @@
+"""A simulated sweep, from the world through the receiver to the direction finder."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+
+import pytest
+
+from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.direction_finding.sweep import assemble_sweep
+from hardware.frame import LocalFrame
+from hardware.ports import ReceiverError
+from hardware.readings import GeoPoint, HeadingSample, PowerSample, Sweep, Telemetry
+from hardware.sim.receiver import SimulatedReceiver
+from hardware.sim.world import Emitter, World
+
+HOME = GeoPoint(50.6, 7.2)
+FREQUENCY_HZ = 868_300_000.0
+
+
+class SteppedClock:
+    """Simulated time: sleeping advances it at once."""
+
+    def __init__(self) -> None:
+        self.time_s = 1_000_000.0
+
+    def now(self) -> float:
+        return self.time_s
+
+    async def sleep(self, seconds: float) -> None:
+        self.time_s += seconds
+        await asyncio.sleep(0)
+
+
+class TurningVehicle:
+    """Hovers at HOME and turns; telemetry comes in steps of `period_s`."""
+
+    def __init__(self, clock: SteppedClock, rate_deg_s: float = 30.0, period_s: float = 0.05) -> None:
+        self.clock, self.rate_deg_s, self.period_s = clock, rate_deg_s, period_s
+        self.start_s = clock.now()
+
+    def telemetry(self) -> Telemetry:
+        stamp = self.clock.now() - (self.clock.now() - self.start_s) % self.period_s
+        heading = (stamp - self.start_s) * self.rate_deg_s % 360.0
+        return Telemetry(True, stamp, HOME, stamp, 100.0, 40.0, heading, stamp)
+
+    def headings(self, until_s: float) -> list[HeadingSample]:
+        count = int((until_s - self.start_s) / self.period_s) + 1
+        times = [self.start_s + k * self.period_s for k in range(count)]
+        return [HeadingSample(t, (t - self.start_s) * self.rate_deg_s % 360.0, HOME) for t in times]
+
+
+def world_with_emitter_at(bearing_deg: float, distance_m: float, **changes: object) -> World:
+    import math
+
+    east = distance_m * math.sin(math.radians(bearing_deg))
+    north = distance_m * math.cos(math.radians(bearing_deg))
+    emitter = Emitter(LocalFrame(HOME).to_geo(east, north), FREQUENCY_HZ)
+    return dataclasses.replace(World((emitter,)), **changes)
+
+
+async def listen(receiver: SimulatedReceiver, seconds: float) -> list[PowerSample]:
+    await receiver.open(FREQUENCY_HZ)
+    heard: list[PowerSample] = []
+    async for sample in receiver.samples():
+        heard.append(sample)
+        if sample.at_s >= heard[0].at_s + seconds:
+            break
+    return heard
+
+
+async def turn_once(world: World, rate_deg_s: float = 30.0, period_s: float = 0.05) -> Sweep:
+    clock = SteppedClock()
+    vehicle = TurningVehicle(clock, rate_deg_s, period_s)
+    receiver = SimulatedReceiver(world, vehicle.telemetry, clock)
+    heard = await listen(receiver, 360.0 / rate_deg_s)
+    headings = vehicle.headings(clock.now())
+    return assemble_sweep(heard, headings, frequency_hz=FREQUENCY_HZ, altitude_amsl_m=100.0)
+
+
+@pytest.mark.parametrize("bearing_deg", [3.0, 77.0, 181.0, 359.0])
+@pytest.mark.parametrize("period_s", [0.05, 0.25])
+async def test_sweep_points_at_the_emitter_whatever_the_telemetry_rate(bearing_deg: float, period_s: float) -> None:
+    sweep = await turn_once(world_with_emitter_at(bearing_deg, 200.0), period_s=period_s)
+    reading = SparseDirectionFinder().estimate(sweep, load_pattern(SMALL_YAGI))
+    assert reading.accepted, reading.reason
+    assert abs((reading.bearing_deg - bearing_deg + 180.0) % 360.0 - 180.0) < 12.0
+
+
+async def test_heading_error_of_the_world_shifts_the_bearing() -> None:
+    sweep = await turn_once(world_with_emitter_at(100.0, 200.0, heading_error_deg=25.0))
+    reading = SparseDirectionFinder().estimate(sweep, load_pattern(SMALL_YAGI))
+    assert abs(reading.bearing_deg - 75.0) < 12.0
+
+
+async def test_same_seed_same_samples_other_seed_other_samples() -> None:
+    world = world_with_emitter_at(10.0, 150.0)
+    first, again = await turn_once(world), await turn_once(world)
+    other = await turn_once(dataclasses.replace(world, seed=2))
+    assert first.power_db.tolist() == again.power_db.tolist()
+    assert first.power_db.tolist() != other.power_db.tolist()
+
+
+async def test_samples_come_at_the_stated_rate_and_in_order() -> None:
+    clock = SteppedClock()
+    receiver = SimulatedReceiver(world_with_emitter_at(0.0, 100.0), TurningVehicle(clock).telemetry, clock, 20.0)
+    times = [sample.at_s for sample in await listen(receiver, 5.0)]
+    assert len(times) == pytest.approx(100, abs=2)
+    assert times == sorted(times)
+
+
+async def test_unplugged_receiver_raises_and_unopened_receiver_says_so() -> None:
+    clock = SteppedClock()
+    receiver = SimulatedReceiver(world_with_emitter_at(0.0, 100.0), TurningVehicle(clock).telemetry, clock)
+    with pytest.raises(ReceiverError, match="not open"):
+        await anext(receiver.samples())
+    await receiver.open(FREQUENCY_HZ)
+    stream = receiver.samples()
+    await anext(stream)
+    receiver.unplug()
+    with pytest.raises(ReceiverError, match="unplugged"):
+        async for _ in stream:
+            pass
+
+
+async def test_without_an_emitter_in_band_only_noise_is_heard() -> None:
+    world = world_with_emitter_at(0.0, 100.0)
+    clock = SteppedClock()
+    receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock)
+    await receiver.open(FREQUENCY_HZ + 1e6)
+    stream = receiver.samples()
+    heard = [await anext(stream) for _ in range(50)]
+    assert all(abs(s.power_db - world.front_end.noise_dbm) < 3.0 for s in heard)
