@@ -108,9 +108,9 @@ class SweepRecord(Model):
     attempt: int
     began_at_utc: datetime
     place: Place
-    altitude_amsl_m: float
+    altitude_amsl_m: float | None
     frequency_hz: float
-    drift_m: float
+    drift_m: float | None
     clipped_samples: int
     noise_floor_db: float | None
     tag: str | None
@@ -123,9 +123,9 @@ class TrackFact(Model):
     at_utc: datetime
     lat: float
     lon: float
-    altitude_amsl_m: float
-    altitude_relative_m: float
-    heading_deg: float
+    altitude_amsl_m: float | None
+    altitude_relative_m: float | None
+    heading_deg: float | None
     battery_percent: float | None
     mode: str | None
 

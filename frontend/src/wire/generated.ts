@@ -774,6 +774,7 @@ export interface components {
             /** @default emitter */
             label: string;
         };
+        /** @description Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180). */
         EstimateFact: {
             lat: number;
             lon: number;

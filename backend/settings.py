@@ -1,0 +1,68 @@
+"""Settings of one server: environment variables CROSSFIX_*, or what the command line passes. Units in the names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, field_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+
+
+class Settings(BaseSettings):
+    """`vehicle_url` None: a simulated vehicle of flavour `simulate`. `database_url` None: SQLite in `data_dir`."""
+
+    model_config = SettingsConfigDict(env_prefix="CROSSFIX_", frozen=True, extra="forbid")
+
+    host: str = "127.0.0.1"
+    port: int = Field(default=8600, ge=0, le=65535)
+    allowed_hosts: tuple[str, ...] = ()
+    """Host names besides loopback under which a browser may reach the server."""
+    data_dir: Path = Path("data")
+    page_dir: Path = REPOSITORY / "frontend" / "dist"
+
+    database_url: str | None = None
+    database_timeout_s: Annotated[float, Field(gt=0, le=60)] = 2.0
+    """An append that takes longer goes to the spool."""
+    database_slow_s: Annotated[float, Field(gt=0, le=60)] = 0.5
+    spool_reserve_bytes: int = Field(default=16 * 2**20, ge=64 * 2**10, le=2**32 - 1)
+    """Disk blocks taken in advance, so that a full disk does not stop the journal."""
+    disk_low_bytes: int = Field(default=200 * 2**20, ge=0)
+
+    vehicle_url: str | None = None
+    simulate: Literal["px4", "ardupilot"] = "px4"
+    time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)
+    seed: int = Field(default=1, ge=0, le=2**31 - 1)
+    home_lat_deg: float = Field(default=50.6234, ge=-80, le=80, allow_inf_nan=False)
+    home_lon_deg: float = Field(default=7.2046, ge=-180, le=180, allow_inf_nan=False)
+    """Home of the simulated vehicle, and where a suggested area lies while no vehicle was heard."""
+
+    live_ping_interval_s: float = Field(default=3.0, gt=0, le=60)
+    live_ping_timeout_s: float = Field(default=6.0, gt=0, le=60)
+    live_clients_max: int = Field(default=500, ge=1, le=10_000)
+    """More browsers are refused; each costs at most its socket's buffer."""
+
+    @field_validator("database_url")
+    @classmethod
+    def known_database(cls, url: str | None) -> str | None:
+        if url is None or url.startswith(("sqlite:", "postgresql:", "postgres:", "sqlite+", "postgresql+")):
+            return url
+        raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
+
+    @property
+    def simulated(self) -> bool:
+        return self.vehicle_url is None
+
+    @property
+    def async_database_url(self) -> str:
+        """With the driver that is used: aiosqlite or asyncpg."""
+        url = self.database_url or f"sqlite:///{(self.data_dir / 'crossfix.sqlite').resolve()}"
+        scheme, rest = url.split(":", 1)
+        driver = "sqlite+aiosqlite" if scheme.startswith("sqlite") else "postgresql+asyncpg"
+        return f"{driver}:{rest}"
+
+    @property
+    def spool_path(self) -> Path:
+        return self.data_dir / "journal.spool"

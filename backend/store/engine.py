@@ -1,0 +1,87 @@
+"""The database connection: SQLite that keeps what it acknowledged, or PostgreSQL; and the migrations."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Any
+
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Connection, event, make_url
+from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
+from sqlalchemy.pool import NullPool
+
+MIGRATIONS = Path(__file__).resolve().parent.parent.parent / "migrations"
+
+
+def make_engine(url: str, timeout_s: float) -> AsyncEngine:
+    """`url` with its async driver. On SQLite a locked file is waited for less long than `timeout_s`, so that SQLite
+    answers before the caller gives up."""
+    sqlite = make_url(url).get_backend_name() == "sqlite"
+    if sqlite:
+        _make_folder(url)
+        engine = create_async_engine(url, connect_args={"timeout": 0.6 * timeout_s})
+        _configure_sqlite(engine)
+        return engine
+    return create_async_engine(
+        url,
+        pool_pre_ping=True,
+        pool_size=5,
+        pool_timeout=timeout_s,
+        connect_args={"timeout": timeout_s, "server_settings": {"application_name": "crossfix"}},
+    )
+
+
+def _make_folder(url: str) -> None:
+    database = make_url(url).database
+    if database and database != ":memory:":
+        Path(database).parent.mkdir(parents=True, exist_ok=True)
+
+
+def _configure_sqlite(engine: AsyncEngine) -> None:
+    """WAL and synchronous=FULL: a commit that returned survives a power cut. A transaction that will write says so at
+    its beginning (execution option `write`), else two of them could deadlock on the upgrade of their lock."""
+
+    @event.listens_for(engine.sync_engine, "connect")
+    def set_pragmas(connection: Any, _record: Any) -> None:
+        connection.isolation_level = None
+        cursor = connection.cursor()
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+            cursor.execute(f"PRAGMA {pragma}")
+        cursor.close()
+
+    @event.listens_for(engine.sync_engine, "begin")
+    def begin(connection: Connection) -> None:
+        write = connection.get_execution_options().get("write", False)
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
+
+
+async def migrate(url: str, timeout_s: float = 30.0) -> None:
+    """Bring the database to the current schema. In a thread of its own: Alembic is synchronous."""
+    await asyncio.to_thread(_migrate_in_thread, url, timeout_s)
+
+
+def _migrate_in_thread(url: str, timeout_s: float) -> None:
+    asyncio.run(_upgrade(url, timeout_s))
+
+
+async def _upgrade(url: str, timeout_s: float) -> None:
+    if make_url(url).get_backend_name() == "sqlite":
+        _make_folder(url)
+        engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
+        _configure_sqlite(engine)
+    else:
+        engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
+    try:
+        async with engine.execution_options(write=True).begin() as connection:
+            await connection.run_sync(_run_alembic)
+    finally:
+        await engine.dispose()
+
+
+def _run_alembic(connection: Connection) -> None:
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+    config.attributes["connection"] = connection
+    command.upgrade(config, "head")

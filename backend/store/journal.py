@@ -1,0 +1,334 @@
+"""The journal in a database: facts are durable before anybody hears of them, and a database that is away stops nothing.
+
+An append goes to the database; when that fails or takes too long it goes to the spool on disk, in order, and a
+background task drains the spool once the database answers again. `append` returns only when one of the two is durable.
+Missions that are written to are kept in memory, so their events can be read while the database is away.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import shutil
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine, Iterable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Any, Literal, TypeVar
+
+from sqlalchemy import exc, select, text
+from sqlalchemy.ext.asyncio import AsyncEngine
+
+from backend.events import Event, MissionEnded, Recorded
+from backend.mission.ports import TrackPoint
+from backend.store.digest import MissionDigest, fold
+from backend.store.entries import (
+    Entry,
+    EventRow,
+    EventsEntry,
+    JournalConflict,
+    SweepEntry,
+    TrackEntry,
+    decode,
+    sweep_columns,
+    sweep_entry,
+    to_record,
+    to_row,
+)
+from backend.store.spool import Spool, SpoolFull
+from backend.store.tables import events, missions, sweeps, track
+from hardware.readings import Sweep
+
+log = logging.getLogger("crossfix.store")
+
+T = TypeVar("T")
+
+RETRY_FIRST_S, RETRY_LAST_S = 0.25, 5.0
+PROBE_S = 1.0
+
+
+class JournalUnavailable(RuntimeError):
+    """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
+
+
+class DatabaseAway(RuntimeError):
+    """The database did not answer; nothing is known about the last transaction."""
+
+
+@dataclass(frozen=True, slots=True)
+class DatabaseReport:
+    """`spooled`: entries on disk that wait for the database; `refused`: entries it will never take (kept in a file)."""
+
+    state: Literal["ok", "slow", "lost"]
+    detail: str
+    spooled: int
+    refused: int
+
+
+class SqlJournal:
+    """backend.mission.ports.Journal on SQLAlchemy, and what the API reads. Use `run` as a background task."""
+
+    def __init__(
+        self,
+        engine: AsyncEngine,
+        spool: Spool,
+        now: Callable[[], float],
+        *,
+        timeout_s: float = 2.0,
+        slow_s: float = 0.5,
+        disk_low_bytes: int = 0,
+    ) -> None:
+        self._engine = engine
+        self._writer = engine.execution_options(write=True)
+        self._spool = spool
+        self._now = now
+        self._timeout_s = timeout_s
+        self._slow_s = slow_s
+        self._disk_low_bytes = disk_low_bytes
+        self._lock = asyncio.Lock()
+        self._pending = deque(decode(payload) for payload in spool.entries())
+        self._written: dict[str, list[Recorded]] = {}
+        self._wake = asyncio.Event()
+        self._fault: str | None = None
+        self._took_s = 0.0
+        self._refused = 0
+        self._disk_free_bytes: int | None = None
+        self._tasks: set[asyncio.Task[Any]] = set()
+
+    # Writing
+
+    async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        """Durable when it returns, and done whole even when the caller is cancelled meanwhile.
+
+        What is returned is what will be read back: NaN in a field that may be empty is None. Raises ValueError for NaN
+        elsewhere, JournalUnavailable when neither database nor spool takes it, JournalConflict when another process
+        writes to the same mission.
+        """
+        return await self._whole(self._append(mission_id, events))
+
+    async def _whole(self, work: Coroutine[Any, Any, T]) -> T:
+        """Run to the end even when the caller is cancelled: a half-known write would leave a gap or a double."""
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        return await asyncio.shield(task)
+
+    async def _append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        if not events:
+            return []
+        async with self._lock:
+            before = await self._known(mission_id)
+            at_utc = datetime.fromtimestamp(self._now(), UTC)
+            rows = tuple(to_row(seq, at_utc, event) for seq, event in enumerate(events, start=len(before) + 1))
+            recorded = [to_record(mission_id, row) for row in rows]
+            if not before:
+                fold(None, recorded)
+            await self._store(EventsEntry(mission_id, rows))
+            before.extend(recorded)
+            self._written[mission_id] = before
+            self._forget_ended()
+        return recorded
+
+    async def save_sweep(self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep) -> None:
+        await self._whole(self._save(sweep_entry(mission_id, sweep_id, place_number, attempt, sweep)))
+
+    async def save_track(self, mission_id: str, points: Sequence[TrackPoint]) -> None:
+        if points:
+            await self._whole(self._save(TrackEntry(mission_id, tuple(points))))
+
+    async def _save(self, entry: Entry) -> None:
+        async with self._lock:
+            await self._store(entry)
+
+    async def _known(self, mission_id: str) -> list[Recorded]:
+        """The mission's events so far: the next sequence number is one more than there are."""
+        if mission_id not in self._written:
+            return await self._read(mission_id)
+        return self._written[mission_id]
+
+    async def _store(self, entry: Entry) -> None:
+        """To the database, or behind what already waits in the spool."""
+        if not self._pending and self._fault is None:
+            try:
+                await self._write(entry)
+            except DatabaseAway as error:
+                self._lost(error)
+            else:
+                return
+        try:
+            await asyncio.to_thread(self._spool.append, entry.encode())
+        except SpoolFull as error:
+            raise JournalUnavailable(f"The database is away ({self._fault}) and {error}.") from error
+        self._pending.append(entry)
+        self._wake.set()
+
+    async def _write(self, entry: Entry) -> None:
+        began = time.monotonic()
+        try:
+            async with asyncio.timeout(self._timeout_s), self._writer.begin() as connection:
+                await entry.write(connection)
+        except (exc.IntegrityError, exc.DataError, exc.ProgrammingError):
+            raise
+        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
+            raise DatabaseAway(_why(error)) from error
+        finally:
+            self._took_s = time.monotonic() - began
+
+    # Being away and coming back
+
+    def _lost(self, error: DatabaseAway) -> None:
+        if self._fault is None:
+            log.error("database away: %s; events are spooled", error)
+        self._fault = str(error)
+        self._wake.set()
+
+    async def run(self) -> None:
+        """Watch the database, and drain the spool when it is back. Runs until cancelled."""
+        retry_s = RETRY_FIRST_S
+        while True:
+            if self._pending or self._fault is not None:
+                try:
+                    await self._drain()
+                    retry_s = RETRY_FIRST_S
+                except DatabaseAway as error:
+                    self._lost(error)
+                    await asyncio.sleep(retry_s)
+                    retry_s = min(2 * retry_s, RETRY_LAST_S)
+                continue
+            self._disk_free_bytes = shutil.disk_usage(self._spool.path).free
+            self._wake.clear()
+            try:
+                await asyncio.wait_for(self._wake.wait(), PROBE_S)
+            except TimeoutError:
+                try:
+                    await self._probe()
+                except DatabaseAway as error:
+                    self._lost(error)
+
+    async def _probe(self) -> None:
+        began = time.monotonic()
+        try:
+            async with asyncio.timeout(self._timeout_s), self._engine.connect() as connection:
+                await connection.execute(text("SELECT 1"))
+        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
+            raise DatabaseAway(_why(error)) from error
+        self._took_s = time.monotonic() - began
+
+    async def _drain(self) -> None:
+        """Everything that waits, in order; appends meanwhile queue up behind it."""
+        await self._probe()
+        drained = 0
+        while self._pending:
+            entry = self._pending[0]
+            try:
+                await self._write(entry)
+                drained += 1
+            except (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingError) as error:
+                log.error("the database refuses a spooled entry, it is kept aside: %s", error)
+                await asyncio.to_thread(self._spool.keep_aside, entry.encode())
+                self._refused += 1
+            self._pending.popleft()
+        async with self._lock:
+            if not self._pending:
+                await asyncio.to_thread(self._spool.clear)
+                if self._fault is not None:
+                    log.warning("database back, %d spooled entries stored", drained)
+                self._fault = None
+                self._forget_ended()
+
+    def _forget_ended(self) -> None:
+        """Memory holds missions in flight only; an ended one is read from the database again."""
+        if self._pending:
+            return
+        for mission_id, recorded in list(self._written.items()):
+            if any(isinstance(record.event, MissionEnded) for record in recorded):
+                del self._written[mission_id]
+
+    def report(self) -> DatabaseReport:
+        waiting = len(self._pending)
+        if self._fault is not None:
+            return DatabaseReport("lost", self._fault, waiting, self._refused)
+        if waiting or self._took_s > self._slow_s:
+            detail = f"the last answer took {self._took_s:.1f} s"
+            return DatabaseReport("slow", detail, waiting, self._refused)
+        if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:
+            detail = f"only {self._disk_free_bytes // 2**20} MB are left on the disk"
+            return DatabaseReport("slow", detail, 0, self._refused)
+        return DatabaseReport("ok", "", 0, self._refused)
+
+    async def close(self) -> None:
+        """Wait for appends that run; what is spooled stays on disk for the next start."""
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._spool.close()
+        await self._engine.dispose()
+
+    # Reading
+
+    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
+        """Events with seq > after, in order; none for an unknown mission. Raises JournalUnavailable."""
+        if mission_id in self._written:
+            return self._written[mission_id][after:]
+        return await self._read(mission_id, after)
+
+    async def _read(self, mission_id: str, after: int = 0, kinds: Iterable[str] | None = None) -> list[Recorded]:
+        query = (
+            select(events.c.seq, events.c.at_us, events.c.kind, events.c.body)
+            .where(events.c.mission_id == mission_id, events.c.seq > after)
+            .order_by(events.c.seq)
+        )
+        if kinds is not None:
+            query = query.where(events.c.kind.in_(list(kinds)))
+        rows = await self._fetch(query)
+        return [to_record(mission_id, EventRow(*row)) for row in rows]
+
+    async def read_kinds(self, mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
+        """The events of some kinds only."""
+        wanted = set(kinds)
+        if mission_id in self._written:
+            return [record for record in self._written[mission_id] if record.event.kind in wanted]
+        return await self._read(mission_id, kinds=wanted)
+
+    async def unfinished(self) -> list[str]:
+        started = missions.c.started_at_us.is_not(None) & missions.c.ended_at_us.is_(None)
+        return [row[0] for row in await self._fetch(select(missions.c.mission_id).where(started))]
+
+    async def missions(self) -> list[MissionDigest]:
+        """All missions, newest first."""
+        rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
+        return [MissionDigest(**row._mapping) for row in rows]
+
+    async def mission(self, mission_id: str) -> MissionDigest | None:
+        if self._written.get(mission_id):
+            return fold(None, self._written[mission_id])
+        rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
+        return MissionDigest(**rows[0]._mapping) if rows else None
+
+    async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
+        columns = [sweeps.c[name] for name in sweep_columns()]
+        rows = await self._fetch(
+            select(*columns).where(sweeps.c.mission_id == mission_id, sweeps.c.sweep_id == sweep_id)
+        )
+        return SweepEntry(**rows[0]._mapping) if rows else None
+
+    async def track(self, mission_id: str) -> list[TrackPoint]:
+        rows = await self._fetch(
+            select(*[column for column in track.c if column.name != "mission_id"])
+            .where(track.c.mission_id == mission_id)
+            .order_by(track.c.at_us)
+        )
+        return [TrackPoint(row[0] / 1e6, *row[1:]) for row in rows]
+
+    async def _fetch(self, query) -> list:
+        try:
+            async with asyncio.timeout(2 * self._timeout_s), self._engine.connect() as connection:
+                return list(await connection.execute(query))
+        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
+            raise JournalUnavailable(f"The database does not answer: {_why(error)}.") from error
+
+
+def _why(error: BaseException) -> str:
+    if isinstance(error, TimeoutError | exc.TimeoutError):
+        return "no answer in time"
+    cause = error.orig if isinstance(error, exc.DBAPIError) and error.orig else error
+    return str(cause).splitlines()[0] if str(cause) else type(cause).__name__

@@ -1,0 +1,103 @@
+"""A file that keeps journal entries while the database is away.
+
+Layout: magic, generation (u64), then records of length (u32), CRC-32 of generation and payload (u32), payload. All
+little-endian. A record of an older generation fails its CRC and ends the scan, so clearing is one durable write of the
+header and a torn last record is never read. The file's blocks are taken in advance: a full disk does not stop it.
+Synchronous; call it off the event loop.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from pathlib import Path
+
+MAGIC = b"CFSPOOL1"
+HEADER = struct.Struct("<8sQ")
+RECORD = struct.Struct("<II")
+
+
+class SpoolFull(RuntimeError):
+    """Neither the reserve nor the disk has room for another entry."""
+
+
+class Spool:
+    """One process owns the file."""
+
+    def __init__(self, path: Path, reserve_bytes: int) -> None:
+        self.path = path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._fd = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            self._reserve(reserve_bytes)
+            magic, self._generation = HEADER.unpack(os.pread(self._fd, HEADER.size, 0))
+            if magic != MAGIC:
+                raise ValueError(f"{path} is not a journal spool: move it away and start again")
+        except BaseException:
+            os.close(self._fd)
+            raise
+        self._end = HEADER.size
+        self._entries = self._scan()
+
+    def _reserve(self, reserve_bytes: int) -> None:
+        """Write zeros, not holes: only written blocks are sure to be there on a full disk."""
+        size = os.fstat(self._fd).st_size
+        if size < HEADER.size:
+            os.pwrite(self._fd, HEADER.pack(MAGIC, 1), 0)
+            size = HEADER.size
+        chunk = bytes(2**20)
+        while size < reserve_bytes:
+            size += os.pwrite(self._fd, chunk[: reserve_bytes - size], size)
+        os.fsync(self._fd)
+
+    def _scan(self) -> list[bytes]:
+        found = []
+        while True:
+            head = os.pread(self._fd, RECORD.size, self._end)
+            if len(head) < RECORD.size:
+                return found
+            length, crc = RECORD.unpack(head)
+            payload = os.pread(self._fd, length, self._end + RECORD.size)
+            if length == 0 or len(payload) < length or crc != self._crc(payload):
+                return found
+            found.append(payload)
+            self._end += RECORD.size + length
+
+    def _crc(self, payload: bytes) -> int:
+        return zlib.crc32(payload, zlib.crc32(self._generation.to_bytes(8, "little")))
+
+    def entries(self) -> list[bytes]:
+        """What is kept, oldest first."""
+        return list(self._entries)
+
+    def append(self, payload: bytes) -> None:
+        """Durable when it returns. Raises SpoolFull; what was kept before stays intact."""
+        record = RECORD.pack(len(payload), self._crc(payload)) + payload
+        try:
+            written = os.pwrite(self._fd, record, self._end)
+            if written < len(record):
+                raise SpoolFull("the disk is full: an event could not be kept")
+            os.fdatasync(self._fd)
+        except OSError as error:
+            raise SpoolFull(f"the spool could not be written: {error.strerror}") from error
+        self._end += len(record)
+        self._entries.append(payload)
+
+    def clear(self) -> None:
+        """Forget everything, durably."""
+        os.pwrite(self._fd, HEADER.pack(MAGIC, self._generation + 1), 0)
+        os.fdatasync(self._fd)
+        self._generation += 1
+        self._end = HEADER.size
+        self._entries.clear()
+
+    def keep_aside(self, payload: bytes) -> None:
+        """An entry that the database will never take: one line of a file beside the spool, for a person to look at."""
+        with self.path.with_suffix(".refused").open("ab") as file:
+            file.write(payload + b"\n")
+            file.flush()
+            os.fsync(file.fileno())
+
+    def close(self) -> None:
+        os.close(self._fd)

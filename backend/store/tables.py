@@ -1,0 +1,87 @@
+"""The database: missions, their events, raw sweeps and the thinned track. The same on SQLite and PostgreSQL.
+
+Times are UTC microseconds since the epoch, exact on both. An event's body is the JSON text that the wire sends, kept
+as text so that it is read back byte for byte.
+"""
+
+from __future__ import annotations
+
+from sqlalchemy import (
+    BigInteger,
+    Column,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    PrimaryKeyConstraint,
+    String,
+    Table,
+    Text,
+)
+
+metadata = MetaData()
+
+missions = Table(
+    "missions",
+    metadata,
+    Column("mission_id", String(64), primary_key=True),
+    Column("name", Text, nullable=False),
+    Column("phase", String(20), nullable=False),
+    Column("outcome", String(20)),
+    Column("drafted_at_us", BigInteger, nullable=False),
+    Column("started_at_us", BigInteger),
+    Column("ended_at_us", BigInteger),
+    Column("mission_time_s", Double),
+    Column("bearings", Integer, nullable=False),
+    Column("rejected_sweeps", Integer, nullable=False),
+    Column("last_seq", Integer, nullable=False),
+)
+
+events = Table(
+    "events",
+    metadata,
+    Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
+    Column("seq", Integer, nullable=False),
+    Column("at_us", BigInteger, nullable=False),
+    Column("kind", String(40), nullable=False),
+    Column("body", Text, nullable=False),
+    PrimaryKeyConstraint("mission_id", "seq"),
+    Index("events_by_kind", "mission_id", "kind"),
+)
+
+sweeps = Table(
+    "sweeps",
+    metadata,
+    Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
+    Column("sweep_id", String(64), nullable=False),
+    Column("place_number", Integer, nullable=False),
+    Column("attempt", Integer, nullable=False),
+    Column("frequency_hz", Double, nullable=False),
+    Column("lat_deg", Double, nullable=False),
+    Column("lon_deg", Double, nullable=False),
+    Column("altitude_amsl_m", Double),
+    Column("drift_m", Double),
+    Column("clipped_samples", Integer, nullable=False),
+    Column("noise_floor_db", Double),
+    Column("tag", Text),
+    Column("samples", LargeBinary, nullable=False),
+    PrimaryKeyConstraint("mission_id", "sweep_id"),
+)
+"""samples: (3, n) float64 little-endian in C order, zlib: at_s, heading_deg, power_db."""
+
+track = Table(
+    "track",
+    metadata,
+    Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
+    Column("at_us", BigInteger, nullable=False),
+    Column("lat_deg", Double, nullable=False),
+    Column("lon_deg", Double, nullable=False),
+    Column("altitude_amsl_m", Double),
+    Column("altitude_relative_m", Double),
+    Column("heading_deg", Double),
+    Column("battery_percent", Double),
+    Column("mode", Text),
+    PrimaryKeyConstraint("mission_id", "at_us"),
+)

@@ -1,0 +1,172 @@
+"""What was acknowledged is there, in order, without gaps and byte for byte, on both databases."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+
+import numpy as np
+import pytest
+
+from backend.events import (
+    BearingExcluded,
+    BearingMeasured,
+    HoldOrdered,
+    MissionDrafted,
+    MissionEnded,
+    MissionStarted,
+    PhaseChanged,
+)
+from backend.mission.ports import TrackPoint
+from backend.spec import MissionSpec, Place, Polygon
+from backend.store.entries import JournalConflict
+from hardware.readings import GeoPoint, Sweep
+
+SPEC = MissionSpec(name="Æ search", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
+DRAFT = MissionDrafted(spec=SPEC)
+STARTED = MissionStarted(by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0.1.0")
+ENDED = MissionEnded(outcome="localized", reason="within 10 m", mission_time_s=200.0)
+
+
+def hold(reason: str = "wind") -> HoldOrdered:
+    return HoldOrdered(by="operator", reason=reason)
+
+
+def bearing(snr_db: float | None = 20.0, bearing_deg: float = 1 / 3) -> BearingMeasured:
+    return BearingMeasured(
+        bearing_id="b1",
+        sweep_id="s1",
+        place_number=1,
+        place=Place(lat=50.6, lon=7.2),
+        altitude_amsl_m=140.0,
+        bearing_deg=bearing_deg,
+        sigma_deg=7.0,
+        quality=0.9,
+        peaks=[],
+        snr_db=snr_db,
+        drift_m=0.1,
+        binned_db=[None, 0.1],
+        fitted_db=[0.0, 0.1],
+    )
+
+
+async def test_sequence_counts_from_one_without_gaps(journal):
+    first = await journal.append("m", [DRAFT, hold()])
+    second = await journal.append("m", [hold("rain")])
+    assert [record.seq for record in first + second] == [1, 2, 3]
+    assert await journal.read("m") == first + second
+    assert await journal.read("m", after=2) == second
+
+
+async def test_concurrent_appends_get_distinct_numbers(journal):
+    await journal.append("m", [DRAFT])
+    await asyncio.gather(*(journal.append("m", [hold(str(n))]) for n in range(30)))
+    read = await journal.read("m")
+    assert [record.seq for record in read] == list(range(1, 32))
+    assert {record.event.reason for record in read[1:]} == {str(n) for n in range(30)}
+
+
+async def test_another_process_reads_back_the_same_facts(bench):
+    first = await bench.open()
+    written = await first.append("m", [DRAFT, STARTED, bearing()])
+    bench.now_s += 0.123457
+    written += await first.append("m", [hold()])
+    await bench.close()
+    again = await bench.open()
+    assert await again.read("m") == written
+    assert await again.append("m", [hold("later")]) == await again.read("m", after=4)
+
+
+async def test_numbers_that_are_not_finite_are_unknown_or_refused(journal):
+    await journal.append("m", [DRAFT])
+    (record,) = await journal.append("m", [bearing(snr_db=math.nan)])
+    assert record.event.snr_db is None
+    with pytest.raises(ValueError, match="bearing_deg"):
+        await journal.append("m", [bearing(bearing_deg=math.nan)])
+    (after,) = await journal.append("m", [hold()])
+    assert after.seq == 3
+
+
+async def test_a_mission_begins_with_its_draft(journal):
+    with pytest.raises(ValueError, match="no draft"):
+        await journal.append("m", [hold()])
+    assert await journal.read("m") == []
+
+
+async def test_a_cancelled_caller_leaves_no_gap_and_no_double(journal):
+    await journal.append("m", [DRAFT])
+    for n in range(10):
+        task = asyncio.create_task(journal.append("m", [hold(str(n))]))
+        await asyncio.sleep(0)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+    await journal.append("m", [hold("end")])
+    read = await journal.read("m")
+    assert [record.seq for record in read] == list(range(1, len(read) + 1))
+    assert [record.event.reason for record in read[1:]] == [*map(str, range(10)), "end"]
+
+
+async def test_a_second_writer_is_found_out(bench):
+    one, other = await bench.open(), await bench.open("other.spool")
+    await one.append("m", [DRAFT])
+    await other.read("m")
+    await other.append("m", [hold("theirs")])
+    with pytest.raises(JournalConflict):
+        await one.append("m", [hold("ours")])
+
+
+async def test_unfinished_are_those_started_and_not_ended(journal):
+    await journal.append("draft", [DRAFT])
+    await journal.append("flying", [DRAFT, STARTED])
+    await journal.append("over", [DRAFT, STARTED, ENDED])
+    assert await journal.unfinished() == ["flying"]
+
+
+async def test_the_list_tells_phase_outcome_and_counts(bench):
+    journal = await bench.open()
+    await journal.append("old", [DRAFT])
+    bench.now_s += 10
+    moved = PhaseChanged(before="draft", after="measuring", reason="")
+    excluded = BearingExcluded(bearing_id="b1", by="operator", reason="")
+    await journal.append("new", [DRAFT, STARTED, moved, bearing(), bearing(), excluded, ENDED])
+    new, old = await journal.missions()
+    assert (new.mission_id, old.mission_id) == ("new", "old")
+    assert (new.phase, new.outcome, new.bearings, new.mission_time_s) == ("measuring", "localized", 1, 200.0)
+    assert new == await journal.mission("new")
+    assert (old.phase, old.started_at_us, old.name) == ("draft", None, "Æ search")
+    assert await journal.mission("none") is None
+
+
+async def test_kinds_can_be_picked(journal):
+    await journal.append("m", [DRAFT, STARTED, hold(), bearing(), hold(), ENDED])
+    assert [record.seq for record in await journal.read_kinds("m", ["hold_ordered", "mission_ended"])] == [3, 5, 6]
+
+
+async def test_a_raw_sweep_comes_back_bit_for_bit(journal):
+    await journal.append("m", [DRAFT])
+    at_s = np.array([1.0, 2.0, 3.0])
+    power_db = np.array([-80.0, math.nan, -70.000000001])
+    sweep = Sweep(at_s, at_s * 30, power_db, 868.3e6, GeoPoint(50.6, 7.2), math.nan, 0.4, 2, None, "7")
+    await journal.save_sweep("m", "s1", 1, 2, sweep)
+    await journal.save_sweep("m", "s1", 1, 2, sweep)
+    stored = await journal.sweep("m", "s1")
+    assert (stored.place_number, stored.attempt, stored.altitude_amsl_m, stored.tag) == (1, 2, None, "7")
+    np.testing.assert_array_equal(stored.sweep().power_db, power_db)
+    np.testing.assert_array_equal(stored.sweep().heading_deg, at_s * 30)
+    assert await journal.sweep("m", "s2") is None
+
+
+async def test_the_track_is_in_time_order_and_without_doubles(journal):
+    await journal.append("m", [DRAFT])
+    points = [TrackPoint(1.7e9 + n / 2, 50.6, 7.2, 140.0, 40.0, 90.0, None, "HOLD") for n in range(5)]
+    await journal.save_track("m", points[2:])
+    await journal.save_track("m", [*points[:3], TrackPoint(1.7e9, math.nan, 7.2, 1, 1, 1, None, None)])
+    assert await journal.track("m") == points
+
+
+async def test_an_ended_mission_is_still_read_and_written(journal):
+    written = await journal.append("m", [DRAFT, STARTED, ENDED])
+    assert await journal.read("m") == written
+    (late,) = await journal.append("m", [hold()])
+    assert late.seq == 4
