@@ -56,6 +56,8 @@ class CheckFact(Model):
 
 
 class EstimateFact(Model):
+    """Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180)."""
+
     lat: float
     lon: float
     expected_rmse_m: float
@@ -226,7 +228,7 @@ class AbortOrdered(Model):
 
 
 class AutomaticChanged(Model):
-    """"Accept the next location automatically" was armed or disarmed."""
+    """ "Accept the next location automatically" was armed or disarmed."""
 
     kind: Literal["automatic_changed"] = "automatic_changed"
     automatic: bool

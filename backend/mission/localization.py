@@ -1,0 +1,200 @@
+"""From a mission's specification and facts to the planner's words, and back.
+
+The belief is the fold of the counted bearings in the order they were taken, so a stored mission rebuilds it bit by bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from shapely import Polygon as ShapelyPolygon
+from shapely import unary_union
+
+from backend import spec
+from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
+from backend.mission import area
+from backend.mission.safety import Limits
+from backend.spec import MissionSpec, Place
+from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
+from hardware.readings import GeoPoint
+from planner.belief.estimate import confidence_region, estimate
+from planner.belief.grid import GridBelief, digest, fold
+from planner.belief.verdict import verdict
+from planner.types import (
+    Bearing,
+    FullMotion,
+    GaussianPrior,
+    InconsistentBearings,
+    LinearConstantMotion,
+    LinearMotion,
+    LocalizationRule,
+    Motion,
+    Peak,
+    Prior,
+    Problem,
+    Ring,
+    RingPrior,
+    UniformPrior,
+)
+
+DOUBT = 0.05
+"""Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Localization:
+    """One mission's task in the planner's words. The frame's origin is the vehicle's home at the start."""
+
+    mission: MissionSpec
+    frame: LocalFrame
+    problem: Problem
+    rule: LocalizationRule
+    limits: Limits
+
+    def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
+        """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
+        return tuple(self._bearing(fact) for fact in measured)
+
+    def _bearing(self, fact: BearingMeasured) -> Bearing:
+        east, north = self.frame.to_enu(GeoPoint(fact.place.lat, fact.place.lon))
+        return Bearing(
+            x=east,
+            y=north,
+            angle=compass_to_angle(fact.bearing_deg),
+            sigma=math.radians(fact.sigma_deg),
+            outlier_probability=self.mission.sensor.outlier_probability,
+            peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
+        )
+
+    def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
+        """None when the bearings have no common point and none may be an outlier."""
+        try:
+            return fold(self.problem, bearings)
+        except InconsistentBearings:
+            return None
+
+    def planning_belief(self, bearings: Sequence[Bearing]) -> GridBelief:
+        """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart."""
+        found = self.belief(bearings)
+        if found is not None:
+            return found
+        return fold(self.problem, [replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings])
+
+    def belief_fact(self, measured: Sequence[BearingMeasured]) -> tuple[BeliefUpdated, GridBelief]:
+        """The fact to record, and the belief to show and to plan with."""
+        bearings = self.planner_bearings(measured)
+        folded = self.belief(bearings)
+        said = verdict(self.problem, self.rule, bearings, folded)
+        shown = self.planning_belief(bearings) if folded is None else folded
+        fact = BeliefUpdated(
+            bearings=len(bearings),
+            estimate=None if folded is None else self.estimate_fact(folded),
+            consistent=said.consistent,
+            localized=said.localized,
+            not_yet=list(said.reasons),
+            digest=digest(shown),
+        )
+        return fact, shown
+
+    def estimate_fact(self, belief: GridBelief) -> EstimateFact:
+        spread = estimate(belief, self.problem.estimator)
+        place = self.frame.to_geo(spread.x, spread.y)
+        region = confidence_region(belief)
+        variances, directions = np.linalg.eigh(spread.covariance)
+        minor, major = np.sqrt(np.maximum(variances, 0.0))
+        axis = math.atan2(directions[1, 1], directions[0, 1])
+        return EstimateFact(
+            lat=place.lat_deg,
+            lon=place.lon_deg,
+            expected_rmse_m=spread.expected_rmse,
+            c95=self.polygon(region),
+            c95_area_m2=ShapelyPolygon(region).area,
+            major_axis_m=float(major),
+            minor_axis_m=float(minor),
+            major_axis_deg=angle_to_compass(axis) % 180.0,
+        )
+
+    def polygon(self, ring: Ring) -> spec.Polygon:
+        """Ring in ENU to GeoJSON, closed."""
+        corners = [self.frame.to_geo(float(x), float(y)) for x, y in (*ring, ring[0])]
+        return spec.Polygon(coordinates=[[(c.lon_deg, c.lat_deg) for c in corners]])
+
+    def corners_lon_lat(self, belief: GridBelief) -> list[tuple[float, float]]:
+        """SW, SE, NE, NW of the grid's outer edge."""
+        west, south, east, north = belief.bounds
+        places = [self.frame.to_geo(x, y) for x, y in ((west, south), (east, south), (east, north), (west, north))]
+        return [(p.lon_deg, p.lat_deg) for p in places]
+
+    def place(self, x: float, y: float) -> Place:
+        point = self.frame.to_geo(x, y)
+        return Place(lat=point.lat_deg, lon=point.lon_deg)
+
+
+def localization(mission: MissionSpec, home: Place, home_amsl_m: float) -> Localization:
+    """The task as seen from `home`. Raises MissionInputError when the specification makes no sense there."""
+    frame = LocalFrame(GeoPoint(home.lat, home.lon))
+    target = area.target_area(mission, frame)
+    area.check_reach(target)
+    fence, zones = area.fence(mission, target, frame), area.no_fly(mission, frame)
+    planner, sensor, wanted = mission.planner, mission.sensor, mission.localization
+    problem = Problem(
+        area=area.region(target),
+        sigma=math.radians(sensor.sigma_deg),
+        threshold=wanted.expected_rmse_m,
+        measurement_time=sensor.measurement_time_s,
+        motion=_motion(planner.motion),
+        flight_area=area.region(fence),
+        no_fly=area.region(unary_union(zones)) if zones else (),
+        standoff=planner.standoff_m,
+        action_spacing=planner.action_spacing_m,
+        estimator=planner.estimator,
+        prior=_prior(mission.prior, frame),
+    )
+    rule = LocalizationRule(
+        threshold=wanted.expected_rmse_m,
+        min_places=wanted.minimum_places,
+        min_place_distance=wanted.minimum_place_distance_m,
+        min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
+    )
+    flight = mission.flight
+    limits = Limits(
+        frame=frame,
+        fence=fence,
+        no_fly=zones,
+        minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
+        maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
+        home_amsl_m=home_amsl_m,
+        reserve_percent=flight.reserve_battery_percent,
+        speed_m_s=flight.speed_m_s,
+        measurement_time_s=sensor.measurement_time_s,
+    )
+    return Localization(mission, frame, problem, rule, limits)
+
+
+def _motion(motion: spec.MotionSpec) -> Motion:
+    match motion:
+        case spec.LinearMotionSpec():
+            return LinearMotion(motion.speed_m_s)
+        case spec.LinearConstantMotionSpec():
+            return LinearConstantMotion(motion.speed_m_s, motion.constant_s)
+        case spec.FullMotionSpec():
+            rate = math.radians(motion.turn_rate_deg_s)
+            return FullMotion(rate, motion.acceleration_m_s2, motion.speed_m_s, motion.constant_s)
+
+
+def _prior(prior: spec.PriorSpec, frame: LocalFrame) -> Prior:
+    match prior:
+        case spec.UniformPriorSpec():
+            return UniformPrior()
+        case spec.GaussianPriorSpec():
+            x, y = frame.to_enu(GeoPoint(prior.centre.lat, prior.centre.lon))
+            angle = compass_to_angle(prior.major_axis_deg)
+            turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+            variances = np.diag([prior.sigma_major_m**2, prior.sigma_minor_m**2])
+            return GaussianPrior(x, y, turn @ variances @ turn.T)
+        case spec.RingPriorSpec():
+            x, y = frame.to_enu(GeoPoint(prior.centre.lat, prior.centre.lon))
+            return RingPrior(x, y, prior.inner_m, prior.outer_m)

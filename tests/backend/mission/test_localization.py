@@ -1,0 +1,154 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from backend.events import BearingMeasured, Peak
+from backend.mission.localization import Localization, localization
+from backend.spec import (
+    FlightSpec,
+    GaussianPriorSpec,
+    MissionSpec,
+    Place,
+    Polygon,
+    RingPriorSpec,
+    SensorSpec,
+)
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint
+from planner.belief.grid import digest
+from planner.types import GaussianPrior, RingPrior
+
+HOME = Place(lat=50.0, lon=7.0)
+FRAME = LocalFrame(GeoPoint(50.0, 7.0))
+CORNERS = [FRAME.to_geo(x, y) for x, y in ((0, 0), (300, 0), (300, 120), (0, 120), (0, 0))]
+AREA = Polygon(coordinates=[[(c.lon_deg, c.lat_deg) for c in CORNERS]])
+
+
+def task(outlier_probability: float = 0.0, **more: object) -> Localization:
+    sensor = SensorSpec(outlier_probability=outlier_probability)
+    return localization(MissionSpec(name="m", area=AREA, sensor=sensor, **more), HOME, 100.0)  # type: ignore[arg-type]
+
+
+def bearing(x: float, y: float, compass: float, sigma: float = 4.0, peaks: tuple[Peak, ...] = ()) -> BearingMeasured:
+    place = FRAME.to_geo(x, y)
+    return BearingMeasured(
+        bearing_id=f"{x}-{y}-{compass}",
+        sweep_id="s",
+        place_number=1,
+        place=Place(lat=place.lat_deg, lon=place.lon_deg),
+        altitude_amsl_m=140.0,
+        bearing_deg=compass,
+        sigma_deg=sigma,
+        quality=0.9,
+        peaks=list(peaks),
+        snr_db=None,
+        drift_m=0.0,
+        binned_db=[],
+        fitted_db=[],
+    )
+
+
+def towards(x: float, y: float, target: tuple[float, float], **more: object) -> BearingMeasured:
+    compass = math.degrees(math.atan2(target[0] - x, target[1] - y)) % 360
+    return bearing(x, y, compass, **more)  # type: ignore[arg-type]
+
+
+def test_north_is_up_and_east_is_right() -> None:
+    (north,) = task().planner_bearings([bearing(10, 20, 0.0, peaks=(Peak(bearing_deg=90.0, weight=0.5),))])
+    assert (north.x, north.y) == pytest.approx((10, 20), abs=1e-3)
+    assert north.angle == pytest.approx(math.pi / 2)
+    assert north.sigma == pytest.approx(math.radians(4))
+    assert north.peaks[0].angle == pytest.approx(0.0)
+    assert north.peaks[0].weight == 0.5
+
+
+def test_crossing_bearings_localize_where_they_cross() -> None:
+    target = (150.0, 60.0)
+    seen = [towards(x, y, target, sigma=2.0) for x, y in ((90, -40), (210, -40), (150, -45), (60, 60))]
+    fact, belief = task().belief_fact(seen)
+    assert fact.localized
+    assert fact.not_yet == []
+    assert fact.estimate is not None
+    x, y = FRAME.to_enu(GeoPoint(fact.estimate.lat, fact.estimate.lon))
+    assert math.dist((x, y), target) < 5.0
+    assert fact.digest == digest(belief)
+    assert fact.estimate.c95_area_m2 < math.pi * (3 * fact.estimate.major_axis_m) ** 2
+    assert fact.estimate.minor_axis_m <= fact.estimate.major_axis_m
+
+
+def test_one_bearing_is_never_a_fix_however_narrow() -> None:
+    fact, _ = task().belief_fact([towards(0, 0, (5.0, 5.0), sigma=0.5)])
+    assert not fact.localized
+    assert fact.not_yet
+
+
+def test_contradicting_bearings_give_no_estimate_but_a_belief_to_plan_with() -> None:
+    seen = [bearing(50, -30, 0.0, 2.0), bearing(250, -30, 0.0, 2.0), bearing(150, 200, 180.0, 2.0)]
+    fact, belief = task().belief_fact(seen)
+    assert fact.estimate is None
+    assert not fact.consistent
+    assert not fact.localized
+    assert belief.density.sum() == pytest.approx(1.0)
+    tolerant, _ = task(outlier_probability=0.05).belief_fact(seen)
+    assert tolerant.estimate is not None
+    assert not tolerant.consistent
+
+
+def test_without_bearings_the_belief_is_the_prior_over_the_area() -> None:
+    fact, belief = task().belief_fact([])
+    assert fact.bearings == 0
+    assert not fact.localized
+    corners = task().corners_lon_lat(belief)
+    ground = [FRAME.to_enu(GeoPoint(lat, lon)) for lon, lat in corners]
+    assert np.allclose(ground, [(0, 0), (300, 0), (300, 120), (0, 120)], atol=4.0)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(st.tuples(st.floats(-50, 350), st.floats(-50, 170), st.floats(0, 359)), max_size=4))
+def test_the_same_facts_give_the_same_belief_bit_for_bit(places: list[tuple[float, float, float]]) -> None:
+    seen = [bearing(*place) for place in places]
+    again = [BearingMeasured.model_validate_json(fact.model_dump_json()) for fact in seen]
+    first, _ = task(0.05).belief_fact(seen)
+    second, _ = task(0.05).belief_fact(again)
+    assert first == second
+
+
+def test_the_ellipse_is_told_by_its_compass_direction() -> None:
+    prior = GaussianPriorSpec(centre=_at(150, 60), sigma_major_m=20.0, sigma_minor_m=5.0, major_axis_deg=90.0)
+    fact, _ = task(prior=prior).belief_fact([])
+    assert fact.estimate is not None
+    assert fact.estimate.major_axis_m == pytest.approx(20.0, rel=0.1)
+    assert fact.estimate.minor_axis_m == pytest.approx(5.0, rel=0.1)
+    assert fact.estimate.major_axis_deg == pytest.approx(90.0, abs=1.0)
+
+
+def test_priors_become_the_planners() -> None:
+    gaussian = task(
+        prior=GaussianPriorSpec(centre=_at(10, 20), sigma_major_m=40.0, sigma_minor_m=10.0, major_axis_deg=0.0)
+    ).problem.prior
+    assert isinstance(gaussian, GaussianPrior)
+    assert (gaussian.x, gaussian.y) == pytest.approx((10, 20), abs=1e-3)
+    assert np.allclose(gaussian.covariance, np.diag([100.0, 1600.0]))
+    ring = task(prior=RingPriorSpec(centre=_at(0, 0), inner_m=10.0, outer_m=100.0)).problem.prior
+    assert ring == RingPrior(pytest.approx(0, abs=1e-6), pytest.approx(0, abs=1e-6), 10.0, 100.0)  # type: ignore[arg-type]
+
+
+def test_flight_area_and_zones_reach_the_planner_and_the_vetoes() -> None:
+    zone = Polygon(
+        coordinates=[[(c.lon_deg, c.lat_deg) for c in (FRAME.to_geo(x, y) for x, y in ((10, 10), (40, 10), (40, 40)))]]
+    )
+    made = task(flight=FlightSpec(no_fly=[zone], fence_margin_m=10.0))
+    assert len(made.problem.no_fly) == 1
+    assert made.limits.no_fly[0].area == pytest.approx(450, rel=1e-2)
+    assert made.problem.flight_area is not None
+    assert made.limits.home_amsl_m == 100.0
+
+
+def _at(x: float, y: float) -> Place:
+    point = FRAME.to_geo(x, y)
+    return Place(lat=point.lat_deg, lon=point.lon_deg)
