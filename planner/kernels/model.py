@@ -1,0 +1,131 @@
+"""What a rollout kernel is given: flat tuples of numbers and arrays, the same for the reference and the compiled one.
+
+Frame: local ENU metres; angles rad ccw from east; times s.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from planner.observation import WEDGE_SIGMAS
+from planner.types import FloatArray
+
+MAP, EXPECTED_VALUE, GEOMETRIC_MEDIAN = 0, 1, 2
+ELLIPSE, FISHER = 0, 1
+LINEAR, FULL = 0, 1
+
+LIKELIHOOD_DEGREE = 6
+WIDEST_SIGMA = np.deg2rad(15.0)
+"""Rollouts assume at most this noise: the likelihood's polynomial is good to 2e-4 there, to 3e-9 below 7 deg."""
+
+CLOSED_FEATURES = 10
+"""A rollout's end: platform x, y, estimate x, y, covariance xx, xy, yy, expected RMSE, bearings, localized (0 or 1)."""
+
+
+class Start(NamedTuple):
+    """The belief a rollout begins with.
+
+    density: (ny, nx) mass a cell. low, high: (ny,) first and past-last live column of each row. x0, y0: south-west
+    corner, m. h: cell size, m. hull: (m, 2) convex, counter-clockwise. bearings: already folded in. flat: prior known
+    as an area only (the expected value is used until the second bearing).
+    """
+
+    density: FloatArray
+    low: NDArray[np.int64]
+    high: NDArray[np.int64]
+    x0: float
+    y0: float
+    h: float
+    hull: FloatArray
+    bearings: int
+    flat: bool
+
+
+class Rules(NamedTuple):
+    """The problem as numbers.
+
+    likelihood: (7,) coefficients of p in L = p(sin^2 e)^16, lowest first. edge: sin^2 of 4 sigma. threshold: m.
+    motion: LINEAR or FULL. standoff: m, of a Fisher action to C95. places: (l, 2) m, the fixed lattice; with none the
+    grid_x x grid_y cells of the tripled belief rectangle are used, cut with window (x_min, y_min, x_max, y_max).
+    travel: (l, l) m between places, or (0, 0) for straight lines. ratios, distances: (n,) the ellipse policy's table.
+    horizon: bearings after which a rollout is cut.
+    """
+
+    sigma: float
+    likelihood: FloatArray
+    edge: float
+    threshold: float
+    measurement_time: float
+    motion: int
+    speed: float
+    constant: float
+    turn_rate: float
+    acceleration: float
+    estimator: int
+    policy: int
+    standoff: float
+    places: FloatArray
+    travel: FloatArray
+    grid_x: int
+    grid_y: int
+    window: FloatArray
+    ratios: FloatArray
+    distances: FloatArray
+    horizon: int
+
+
+class Actions(NamedTuple):
+    """First actions. places: (a, 2) m. costs: (a,) s, flight and measurement. headings: (a,) rad on arrival.
+
+    lattice: (a,) index in Rules.places, -1 where it is none of them.
+    """
+
+    places: FloatArray
+    costs: FloatArray
+    headings: FloatArray
+    lattice: NDArray[np.int64]
+
+
+class Paths(NamedTuple):
+    """Sample paths. targets: (p, 2) m. noise: (p, n) rad, n >= horizon bearings' errors, at most 3 sigma."""
+
+    targets: FloatArray
+    noise: FloatArray
+
+
+class Tasks(NamedTuple):
+    """Which rollouts to run. action, path: (t,) indices."""
+
+    action: NDArray[np.int64]
+    path: NDArray[np.int64]
+
+
+class Outcomes(NamedTuple):
+    """Where results go. costs: (t,) s. bearings: (t,) taken in the rollout. ends: (t, 10) see CLOSED_FEATURES."""
+
+    costs: FloatArray
+    bearings: NDArray[np.int64]
+    ends: FloatArray
+
+
+def outcomes(tasks: int) -> Outcomes:
+    """Room for the results of so many rollouts."""
+    return Outcomes(np.zeros(tasks), np.zeros(tasks, dtype=np.int64), np.zeros((tasks, CLOSED_FEATURES)))
+
+
+def likelihood_polynomial(sigma: float) -> tuple[FloatArray, float]:
+    """Coefficients (7,) of p with exp(-e^2 / (2 sigma^2)) = p(sin^2 e)^16 for |e| <= 4 sigma, and sin^2 of 4 sigma.
+
+    The sixteenth root is nearly straight, so that a low degree fits it; four squarings bring the likelihood back.
+    """
+    edge = float(np.sin(WEDGE_SIGMAS * sigma) ** 2)
+    nodes = np.cos(np.pi * (np.arange(64) + 0.5) / 64)
+    error = np.arcsin(np.sqrt(0.5 * (nodes + 1.0) * edge))
+    fitted = chebyshev.chebfit(nodes, np.exp(-(error**2) / (32.0 * sigma**2)), LIKELIHOOD_DEGREE)
+    in_nodes = np.polynomial.Polynomial(chebyshev.cheb2poly(fitted))
+    coefficients = in_nodes(np.polynomial.Polynomial([-1.0, 2.0 / edge])).coef
+    return np.resize(coefficients, LIKELIHOOD_DEGREE + 1), edge

@@ -1,0 +1,291 @@
+"""A whole rollout in readable numpy: the specification of compiled.py, and its oracle in the tests.
+
+A rollout takes a first action, then follows the base policy until the expected RMSE of its own belief falls below the
+threshold (4.11) or the horizon is reached. Each step: measure with the sample path's noise, clip the possible
+positions to the bearing's wedge, crop the grid, multiply the likelihood in, look at the estimate.
+
+Where rounding could decide, both kernels leave it no say: cells are compared by the leading 44 bits of their weight
+(the first of equal ones wins), of actions that are equal to 1e-9 the first wins, and edges are met 1e-9 of a
+cell early. Doubling the grid is put off to the next bearing, when children and parents still have the same mass.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from planner.belief.estimate import TIE_BITS
+from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS, aligned_range
+from planner.geometry import clip_half_plane, convex_hull, distance_to_convex
+from planner.kernels.model import (
+    ELLIPSE,
+    EXPECTED_VALUE,
+    FULL,
+    GEOMETRIC_MEDIAN,
+    Actions,
+    Outcomes,
+    Paths,
+    Rules,
+    Start,
+    Tasks,
+)
+from planner.observation import WEDGE_SIGMAS
+from planner.types import FloatArray
+
+NEARLY = 1e-9
+CONFIDENCE = 0.95
+HISTOGRAM_SHIFT = 46
+"""Weights are counted in bins of 1/64 octave, the leading 18 bits of a double, to find the 95 % cells."""
+HISTOGRAM_BINS = 2048
+MEDIAN_STEPS = 20
+DEEPEST_DOUBLING = 12
+
+
+class Belief(NamedTuple):
+    """weight: (ny, nx) unnormalized. doubled: the next bearing starts on half the cell size."""
+
+    weight: FloatArray
+    x0: float
+    y0: float
+    h: float
+    hull: FloatArray
+    bearings: int
+    doubled: bool
+
+
+class Look(NamedTuple):
+    """The estimate of a belief and its spread (m, m^2)."""
+
+    x: float
+    y: float
+    xx: float
+    xy: float
+    yy: float
+    expected_rmse: float
+
+
+def rollouts(start: Start, rules: Rules, actions: Actions, paths: Paths, tasks: Tasks, out: Outcomes) -> None:
+    """Run every task and fill `out`."""
+    for t in range(len(tasks.action)):
+        a, p = tasks.action[t], tasks.path[t]
+        cost, bearings, end = rollout(start, rules, actions, int(a), paths.targets[p], paths.noise[p])
+        out.costs[t], out.bearings[t], out.ends[t] = cost, bearings, end
+
+
+def rollout(
+    start: Start, rules: Rules, actions: Actions, action: int, target: FloatArray, noise: FloatArray
+) -> tuple[float, int, FloatArray]:
+    """Cost (s), bearings taken, and the end (see CLOSED_FEATURES) of one sample path."""
+    columns = np.arange(start.density.shape[1])
+    live = (columns >= start.low[:, None]) & (columns < start.high[:, None])
+    weight = np.where(live, start.density, 0.0)
+    belief = Belief(weight, start.x0, start.y0, start.h, start.hull, start.bearings, doubled=False)
+    place, heading = actions.places[action], float(actions.headings[action])
+    lattice, cost = int(actions.lattice[action]), float(actions.costs[action])
+    for step in range(rules.horizon):
+        belief = measure(belief, rules, place, target, noise[step])
+        look = estimate(belief, rules.estimator, start.flat)
+        localized = look.expected_rmse < rules.threshold  # (4.11)
+        if localized or step + 1 == rules.horizon:
+            break
+        following, next_lattice = base_policy(belief, look, rules, place)
+        flight = following - place
+        distance = float(np.hypot(*flight))
+        if lattice >= 0 and next_lattice >= 0 and len(rules.travel):
+            distance = float(rules.travel[lattice, next_lattice])
+        direction = float(np.arctan2(flight[1], flight[0])) if distance > 0 else heading
+        cost += flight_time(rules, distance, direction - heading) + rules.measurement_time  # (4.5)
+        place, heading, lattice = following, direction, next_lattice
+    end = [*place, look.x, look.y, look.xx, look.xy, look.yy, look.expected_rmse, belief.bearings, localized]
+    return cost, step + 1, np.array(end, dtype=float)
+
+
+def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray, noise: float) -> Belief:
+    """The belief after the bearing z = atan2(y_t - y_s, x_t - x_s) + w from `place` (4.2).
+
+    A bearing that leaves no mass (the target lay on the border of its cell) changes nothing but the count.
+    """
+    angle = np.arctan2(target[1] - place[1], target[0] - place[0]) + noise
+    half = WEDGE_SIGMAS * rules.sigma
+    to_left_of_right = np.array([-np.sin(angle - half), np.cos(angle - half)])
+    to_right_of_left = np.array([np.sin(angle + half), -np.cos(angle + half)])
+    hull = clip_half_plane(clip_half_plane(belief.hull, place, to_left_of_right), place, to_right_of_left)
+    unchanged = belief._replace(bearings=belief.bearings + 1)
+    if len(hull) == 0:
+        return unchanged
+    weight, x0, y0, h = _cropped(belief, hull)
+    ny, nx = weight.shape
+    dy = y0 + (np.arange(ny) + 0.5) * h - place[1]
+    low = np.zeros(ny)
+    high = np.full(ny, float(nx))
+    for normal in (to_left_of_right, to_right_of_left, np.array([np.cos(angle), np.sin(angle)])):
+        low, high = _narrowed(low, high, normal, dy, x0 - place[0], h)
+    columns = np.arange(nx)
+    touched = (columns >= low[:, None]) & (columns < high[:, None])
+    dx = x0 + (columns + 0.5) * h - place[0]
+    weight = np.where(touched, weight * likelihood(rules, dx[None, :], dy[:, None], angle), 0.0)
+    if not weight.sum() > 0:
+        return unchanged
+    return Belief(weight, x0, y0, h, hull, belief.bearings + 1, doubled=max(nx, ny) < COARSE_CELLS)
+
+
+def _cropped(belief: Belief, hull: FloatArray) -> tuple[FloatArray, float, float, float]:
+    """The cells that touch the hull's rectangle, doubled when that is due or they are too few: weight, x0, y0, h."""
+    extent = hull.max(axis=0) - hull.min(axis=0)
+    doublings = int(belief.doubled)
+    while True:
+        h = belief.h / 2.0**doublings
+        ny, nx = belief.weight.shape[0] << doublings, belief.weight.shape[1] << doublings
+        (x_min, y_min), (x_max, y_max) = hull.min(axis=0), hull.max(axis=0)
+        i0, i1 = aligned_range(x_min - belief.x0, x_max - belief.x0, h, nx)
+        j0, j1 = aligned_range(y_min - belief.y0, y_max - belief.y0, h, ny)
+        enough = max(i1 - i0, j1 - j0) >= FEWEST_CELLS or extent.max() <= 0
+        if enough or doublings >= DEEPEST_DOUBLING:
+            break
+        doublings += 1
+    rows, columns = np.arange(j0, j1) >> doublings, np.arange(i0, i1) >> doublings
+    return belief.weight[np.ix_(rows, columns)], belief.x0 + i0 * h, belief.y0 + j0 * h, h
+
+
+def _narrowed(
+    low: FloatArray, high: FloatArray, normal: FloatArray, dy: FloatArray, left: float, h: float
+) -> tuple[FloatArray, FloatArray]:
+    """Columns of each row whose centre has normal . (dx, dy) >= -h / sqrt(2), dx = left + (i + 0.5) h."""
+    reach = -h / np.sqrt(2.0) - normal[1] * dy
+    if normal[0] > NEARLY:
+        return np.maximum(low, np.ceil((reach / normal[0] - left) / h - 0.5 - NEARLY)), high
+    if normal[0] < -NEARLY:
+        return low, np.minimum(high, np.floor((reach / normal[0] - left) / h - 0.5 + NEARLY) + 1.0)
+    return low, np.where(reach <= NEARLY * h, high, 0.0)
+
+
+def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float) -> FloatArray:
+    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing; beyond 4 sigma that of the edge."""
+    along = np.cos(angle) * dx + np.sin(angle) * dy
+    across = np.cos(angle) * dy - np.sin(angle) * dx
+    length2 = along**2 + across**2
+    sin2 = np.where(along > 0, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
+    return np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood) ** 16
+
+
+def estimate(belief: Belief, estimator: int, flat: bool) -> Look:
+    """Point estimate, covariance about it (3.34), expected RMSE (3.58)."""
+    rows, columns = np.nonzero(belief.weight)
+    weight = belief.weight[rows, columns]
+    mass = weight / weight.sum()
+    x, y = belief.x0 + (columns + 0.5) * belief.h, belief.y0 + (rows + 0.5) * belief.h
+    px, py = float(mass @ x), float(mass @ y)
+    if estimator == GEOMETRIC_MEDIAN:
+        px, py = _median(mass, x, y, px, py, 1e-3 * belief.h)
+    elif estimator != EXPECTED_VALUE and not (flat and belief.bearings <= 1):
+        best = int(np.argmax(weight.view(np.int64) >> TIE_BITS))
+        px, py = float(x[best]), float(y[best])
+    dx, dy = x - px, y - py
+    expected_rmse = float(mass @ np.sqrt(dx**2 + dy**2))
+    return Look(px, py, float(mass @ dx**2), float(mass @ (dx * dy)), float(mass @ dy**2), expected_rmse)
+
+
+def _median(
+    mass: FloatArray, x: FloatArray, y: FloatArray, px: float, py: float, tolerance: float
+) -> tuple[float, float]:
+    for _ in range(MEDIAN_STEPS):
+        pull = mass / np.maximum(np.sqrt((x - px) ** 2 + (y - py) ** 2), tolerance)
+        px, py = float(pull @ x / pull.sum()), float(pull @ y / pull.sum())
+    return px, py
+
+
+def base_policy(belief: Belief, look: Look, rules: Rules, place: FloatArray) -> tuple[FloatArray, int]:
+    """The next place (2,) and its index in the fixed lattice (-1: none)."""
+    if rules.policy == ELLIPSE:
+        return ellipse_action(look, place, rules.ratios, rules.distances), -1
+    places = rules.places if len(rules.places) else grid_places(belief, rules)
+    return fisher_action(belief, look, rules, places)
+
+
+def ellipse_action(look: Look, place: FloatArray, ratios: FloatArray, distances: FloatArray) -> FloatArray:
+    """r = s2 PLI(s1 / s2) from the estimate, perpendicular to the major axis, on the platform's side (4.3.2)."""
+    mean, difference = 0.5 * (look.xx + look.yy), 0.5 * (look.xx - look.yy)
+    spread = np.hypot(difference, look.xy)
+    round_ = spread <= NEARLY * mean
+    minor = np.pi / 2 if round_ else 0.5 * np.arctan2(look.xy, difference) + np.pi / 2
+    s1 = np.sqrt(mean + spread)
+    s2 = max(np.sqrt(max(mean - spread, 0.0)), 1e-6 * s1)
+    step = s2 * extrapolated(s1 / s2, ratios, distances) * np.array([np.cos(minor), np.sin(minor)])
+    side = (place[0] - look.x) * step[0] + (place[1] - look.y) * step[1]
+    sign = -1.0 if side < -NEARLY * (step @ step) else 1.0
+    return np.array([look.x, look.y]) + sign * step
+
+
+def extrapolated(ratio: float, ratios: FloatArray, distances: FloatArray) -> float:
+    """The table's distance at a ratio, linear between and past its entries."""
+    k = min(max(int(np.searchsorted(ratios, ratio)) - 1, 0), len(ratios) - 2)
+    slope = (distances[k + 1] - distances[k]) / (ratios[k + 1] - ratios[k])
+    return float(distances[k] + slope * (ratio - ratios[k]))
+
+
+def grid_places(belief: Belief, rules: Rules) -> FloatArray:
+    """Centres of the X x Y cells over the tripled belief rectangle, cut with the window (4.24-4.28), west to east.
+
+    When nothing is left the window's own rectangle is divided.
+    """
+    ny, nx = belief.weight.shape
+    width, height = nx * belief.h, ny * belief.h
+    x_min, x_max = max(belief.x0 - width, rules.window[0]), min(belief.x0 + 2 * width, rules.window[2])
+    y_min, y_max = max(belief.y0 - height, rules.window[1]), min(belief.y0 + 2 * height, rules.window[3])
+    if x_min >= x_max or y_min >= y_max:
+        x_min, y_min, x_max, y_max = rules.window
+    x = x_min + (np.arange(rules.grid_x) + 0.5) * (x_max - x_min) / rules.grid_x
+    y = y_min + (np.arange(rules.grid_y) + 0.5) * (y_max - y_min) / rules.grid_y
+    return np.column_stack([np.tile(x, rules.grid_y), np.repeat(y, rules.grid_x)])
+
+
+def fisher_action(belief: Belief, look: Look, rules: Rules, places: FloatArray) -> tuple[FloatArray, int]:
+    """argmax_a det(P^-1 + J(x~, a)) over the places far enough from C95 (6.2.2).
+
+    J = g g^T / sigma^2 with g = (y, -x) / r^2 has rank one: the determinant grows with g^T P g, P^-1 is not needed.
+    """
+    allowed = np.ones(len(places), dtype=bool)
+    if rules.standoff > 0:
+        clearance = distance_to_convex(places, confidence_hull(belief))
+        allowed = clearance >= min(rules.standoff, second_largest(clearance)) - NEARLY * rules.standoff
+    x, y = look.x - places[:, 0], look.y - places[:, 1]
+    r2 = np.maximum(x**2 + y**2, belief.h**2)
+    gain = (look.xx * y**2 - 2.0 * look.xy * x * y + look.yy * x**2) / r2**2
+    candidates = np.flatnonzero(allowed)
+    best = int(candidates[np.argmax(gain[candidates] >= gain[candidates].max() * (1.0 - NEARLY))])
+    return places[best], best if len(rules.places) else -1
+
+
+def second_largest(values: FloatArray) -> float:
+    """The second largest of (n,) values: r_min shrinks to it when fewer than two places are left (6.1)."""
+    return float(np.sort(values)[-min(2, len(values))])
+
+
+def confidence_hull(belief: Belief) -> FloatArray:
+    """Convex hull of the heaviest cells that hold 95 % of the mass; whole bins of equal weight (1/64 octave) enter."""
+    weight = np.ascontiguousarray(belief.weight)
+    bins = weight.view(np.int64) >> HISTOGRAM_SHIFT
+    below_top = bins.max() - bins
+    counted = below_top < HISTOGRAM_BINS
+    share = np.bincount(below_top[counted], weights=weight[counted])
+    last = int(np.searchsorted(np.cumsum(share), CONFIDENCE * weight.sum() * (1.0 - NEARLY)))
+    heavy = below_top <= last
+    rows = np.flatnonzero(heavy.any(axis=1))
+    first, past = heavy[rows].argmax(axis=1), belief.weight.shape[1] - heavy[rows, ::-1].argmax(axis=1)
+    corners = [
+        np.column_stack([belief.x0 + columns * belief.h, belief.y0 + (rows + j) * belief.h])
+        for columns in (first, past)
+        for j in (0, 1)
+    ]
+    return convex_hull(np.concatenate(corners))
+
+
+def flight_time(rules: Rules, distance: float, turn: float) -> float:
+    """Seconds to fly so far after turning (spec 7); see planner.motion, whose models these numbers are."""
+    if rules.motion != FULL:
+        return distance / rules.speed + rules.constant
+    turned = abs((turn + np.pi) % (2 * np.pi) - np.pi) / rules.turn_rate
+    if distance >= rules.speed**2 / rules.acceleration:
+        return turned + distance / rules.speed + rules.speed / rules.acceleration + rules.constant
+    return turned + 2.0 * np.sqrt(distance / rules.acceleration) + rules.constant

@@ -1,0 +1,88 @@
+"""Where the platform may measure next: the action space and its constraints (4.24-4.28, 6.1).
+
+Either the X x Y cells of the tripled belief rectangle, or a fixed lattice over the flight area (the field system).
+No-fly areas, the flight area, and a minimum distance to C95 remove actions.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.belief.estimate import confidence_region
+from planner.belief.grid import GridBelief
+from planner.geometry import bounds, contains, distance_to_convex
+from planner.types import FloatArray, PlannerError, Problem
+
+
+def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
+    """(n, 2) m: every place where the platform may measure, before the distance to C95 is looked at."""
+    places = lattice(problem) if problem.action_spacing is not None else belief_grid(problem, belief)
+    allowed = may_fly(problem, places)
+    if not allowed.any():
+        raise PlannerError("no place may be flown to: flight area and no-fly areas leave none, enlarge the fence")
+    return places[allowed]
+
+
+def constrained_actions(problem: Problem, belief: GridBelief) -> FloatArray:
+    """(n, 2) m: the action space without the places nearer than r_min to C95.
+
+    When fewer than two would be left, r_min shrinks until two are (6.1).
+    """
+    places = action_space(problem, belief)
+    if problem.standoff <= 0:
+        return places
+    clearance = distance_to_convex(places, confidence_region(belief))
+    return places[clearance >= min(problem.standoff, np.sort(clearance)[-min(2, len(clearance))])]
+
+
+def lattice(problem: Problem) -> FloatArray:
+    """(n, 2) m: places `action_spacing` apart over the flight area's rectangle, centred in it; west to east first."""
+    spacing = problem.action_spacing
+    if spacing is None or not (np.isfinite(spacing) and spacing > 0):
+        raise PlannerError(f"the action lattice needs a positive spacing, got {spacing}")
+    x_min, y_min, x_max, y_max = bounds(problem.area if problem.flight_area is None else problem.flight_area)
+    x, y = _centred(x_min, x_max, spacing), _centred(y_min, y_max, spacing)
+    return _product(x, y)
+
+
+def belief_grid(problem: Problem, belief: GridBelief) -> FloatArray:
+    """(X Y, 2) m: cell centres of the tripled belief rectangle cut with the flight area's; west to east first."""
+    nx, ny = problem.action_grid
+    if nx < 1 or ny < 1:
+        raise PlannerError(f"the action grid needs at least one cell each way, got {nx} x {ny}")
+    x_min, y_min, x_max, y_max = belief.bounds
+    width, height = x_max - x_min, y_max - y_min
+    window = flight_window(problem)
+    left, right = max(x_min - width, window[0]), min(x_max + width, window[2])
+    bottom, top = max(y_min - height, window[1]), min(y_max + height, window[3])
+    if left >= right or bottom >= top:
+        left, bottom, right, top = window
+    x = left + (np.arange(nx) + 0.5) * (right - left) / nx
+    y = bottom + (np.arange(ny) + 0.5) * (top - bottom) / ny
+    return _product(x, y)
+
+
+def flight_window(problem: Problem) -> FloatArray:
+    """(x_min, y_min, x_max, y_max) of the flight area, infinite when there is none."""
+    if problem.flight_area is None:
+        return np.array([-np.inf, -np.inf, np.inf, np.inf])
+    return np.array(bounds(problem.flight_area))
+
+
+def may_fly(problem: Problem, places: FloatArray) -> np.ndarray:
+    """(n,) bool: inside the flight area and outside every no-fly area."""
+    allowed = np.ones(len(places), dtype=bool)
+    if problem.flight_area is not None:
+        allowed &= contains(problem.flight_area, places)
+    for ring in problem.no_fly:
+        allowed &= ~contains((ring,), places)
+    return allowed
+
+
+def _centred(low: float, high: float, spacing: float) -> FloatArray:
+    count = int((high - low) / spacing) + 1
+    return 0.5 * (low + high) + (np.arange(count) - 0.5 * (count - 1)) * spacing
+
+
+def _product(x: FloatArray, y: FloatArray) -> FloatArray:
+    return np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x))])

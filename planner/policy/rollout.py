@@ -1,0 +1,182 @@
+"""Policy rollout: compare first actions by simulating what the base policy would make of each (spec 4, thesis 4.3.3).
+
+Value of a first action = its cost + the cost of following the base policy until localized, averaged over sample paths.
+Which action is sampled on which path is the selection's business (planner.selection).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from planner.belief.grid import GridBelief
+from planner.kernels.model import Actions, Paths, Tasks
+from planner.policy.actions import constrained_actions
+from planner.policy.simulation import HORIZON, BasePolicy, KernelName, Simulation, TerminalValue, simulate
+from planner.sampling import Sampling, deterministic_paths, random_paths
+from planner.selection.sequential_halving import sequential_halving
+from planner.selection.types import IntArray, Selection, SelectionResult
+from planner.types import Candidate, Decision, FloatArray, PlannerError, Problem
+
+PATH_BLOCK = 64
+"""Common random paths are drawn in blocks of so many, so that path j does not depend on who asked for it first."""
+
+
+@dataclass(slots=True)
+class RolloutSampler:
+    """Costs of first actions on sample paths: the `sample` that selections call, remembering what it was asked.
+
+    `paths` deterministic: how many equal-mass paths there are (a power of two).
+    """
+
+    simulation: Simulation
+    belief: GridBelief
+    sampling: Sampling
+    rng: np.random.Generator
+    places: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    paths: int = 8
+    used: int = 0
+    seen: dict[int, list[FloatArray]] = field(default_factory=dict)
+    _actions: Actions | None = None
+    _pool: Paths | None = None
+
+    def actions(self, chosen: IntArray, path_from: int, path_to: int) -> FloatArray:
+        """(k, path_to - path_from) s: the `Sample` over `places`."""
+        if self._actions is None:
+            self._actions = self.simulation.first_actions(self.places)
+        costs = self._costs(self._actions, np.asarray(chosen, dtype=np.int64), path_from, path_to)
+        for index, row in zip(chosen, costs, strict=True):
+            self.seen.setdefault(int(index), []).append(row)
+        return costs
+
+    def anywhere(self, places: FloatArray, path_from: int, path_to: int) -> FloatArray:
+        """(k, path_to - path_from) s: the `SamplePlaces` of continuous selections."""
+        actions = self.simulation.first_actions(places)
+        return self._costs(actions, np.arange(len(places)), path_from, path_to)
+
+    def _costs(self, actions: Actions, chosen: IntArray, path_from: int, path_to: int) -> FloatArray:
+        count = path_to - path_from
+        if self.sampling == "pmc":
+            pool = self._draw(len(chosen) * count)
+            path = np.arange(len(chosen) * count)
+        else:
+            pool = self._common(path_to)
+            path = np.tile(np.arange(path_from, path_to), len(chosen))
+        tasks = Tasks(np.repeat(chosen, count), path)
+        self.used += len(path)
+        return self.simulation.run(actions, pool, tasks).costs.reshape(len(chosen), count)
+
+    def _common(self, count: int) -> Paths:
+        if self.sampling == "deterministic":
+            if self._pool is None:
+                self._pool = deterministic_paths(self.belief, self.paths, self.simulation.rules.horizon)
+            if count > self.paths:
+                raise PlannerError(f"there are {self.paths} deterministic paths, {count} were asked for")
+            return self._pool
+        have = 0 if self._pool is None else len(self._pool.targets)
+        while have < count:
+            block = self._draw(PATH_BLOCK)
+            joined = () if self._pool is None else (self._pool,)
+            self._pool = Paths(*(np.concatenate(arrays) for arrays in zip(*joined, block, strict=True)))
+            have += PATH_BLOCK
+        assert self._pool is not None
+        return self._pool
+
+    def _draw(self, count: int) -> Paths:
+        rules = self.simulation.rules
+        return random_paths(self.belief, rules.sigma, count, rules.horizon, self.rng)
+
+
+@dataclass(frozen=True, slots=True)
+class Rollout:
+    """The rollout policy over a finite action space, as a `Policy`.
+
+    budget: N rollouts a decision. With deterministic sampling every action gets the largest power of two of paths
+    that the budget affords. terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
+    """
+
+    selection: Selection = sequential_halving
+    sampling: Sampling = "crn"
+    base_policy: BasePolicy = "ellipse"
+    budget: int = 3600
+    threads: int = 1
+    horizon: int = HORIZON
+    kernel: KernelName = "reference"
+    terminal: TerminalValue | None = None
+    heading: float | None = None
+    without: Sequence[tuple[float, float]] = ()
+
+    def __call__(
+        self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
+    ) -> Decision:
+        simulation = simulate(
+            problem,
+            belief,
+            platform,
+            base_policy=self.base_policy,
+            heading=self.heading,
+            horizon=self.horizon,
+            threads=self.threads,
+            kernel=self.kernel,
+            terminal=self.terminal,
+        )
+        places = self._places(problem, belief, simulation)
+        budget, paths = self.budget, 8
+        if self.sampling == "deterministic":
+            if budget < len(places):
+                raise PlannerError(f"{len(places)} actions need a budget of at least as many rollouts, got {budget}")
+            paths = 2 ** int(np.log2(budget // len(places)))
+            budget = paths * len(places)
+        sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
+        result = self.selection(sampler.actions, len(places), budget, rng)
+        return _decision(places, result, sampler)
+
+    def _places(self, problem: Problem, belief: GridBelief, simulation: Simulation) -> FloatArray:
+        places = constrained_actions(problem, belief)
+        near = problem.action_spacing or belief.h
+        for refused in self.without:
+            places = places[np.hypot(*(places - np.array(refused)).T) >= 0.5 * near]
+        if len(places) == 0:
+            raise PlannerError("every place has been refused: hold, or choose the next place by hand")
+        reachable = np.isfinite(simulation.first_actions(places).costs)
+        if not reachable.any():
+            raise PlannerError("no place can be reached from here without crossing a no-fly area or the fence")
+        return places[reachable]
+
+
+def _decision(places: FloatArray, result: SelectionResult, sampler: RolloutSampler) -> Decision:
+    best = result.best
+    candidates = tuple(
+        Candidate(float(x), float(y), float(mean), float(error), int(count), int(dropped) or None)
+        for (x, y), mean, error, count, dropped in zip(
+            places, result.means, result.std_errors, result.counts, result.dropped_in_round, strict=True
+        )
+    )
+    return Decision(
+        x=float(places[best, 0]),
+        y=float(places[best, 1]),
+        reason=_reason(result),
+        candidates=candidates,
+        times=np.concatenate(sampler.seen[best]),
+        rollouts=sampler.used,
+    )
+
+
+def _reason(result: SelectionResult) -> str:
+    n = len(result.means)
+    about = f"localized in about {clock(result.means[result.best])} by way of this place"
+    others = np.delete(result.means, result.best)
+    if n == 1 or not np.isfinite(others).any():
+        return f"{about}, the only one allowed"
+    gain = float(np.nanmin(others) - result.means[result.best])
+    if gain >= 0.5:
+        return f"{about}, {gain:.0f} s sooner than by any other of {n} places"
+    return f"{about}; of {n} places it held its lead over the most simulated flights"
+
+
+def clock(seconds: float) -> str:
+    """m:ss"""
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"

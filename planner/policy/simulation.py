@@ -1,0 +1,210 @@
+"""Runs rollouts for one decision: turns a problem and a belief into kernel arrays and kernel arrays into costs.
+
+The arrays and the arithmetic are the kernels' (planner.kernels); here is who flies from where, and two threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from planner.belief.grid import GridBelief
+from planner.kernels import reference
+from planner.kernels.model import (
+    ELLIPSE,
+    EXPECTED_VALUE,
+    FISHER,
+    FULL,
+    GEOMETRIC_MEDIAN,
+    LINEAR,
+    MAP,
+    WIDEST_SIGMA,
+    Actions,
+    Outcomes,
+    Paths,
+    Rules,
+    Start,
+    Tasks,
+    likelihood_polynomial,
+    outcomes,
+)
+from planner.motion import flight_time, turn_between
+from planner.policy.actions import flight_window, lattice, may_fly
+from planner.policy.ellipse import table
+from planner.travel import RoadMap, road_map, travel_distances
+from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, PlannerError, Problem
+
+BasePolicy = Literal["ellipse", "fisher"]
+KernelName = Literal["compiled", "reference"]
+TerminalValue = Callable[[FloatArray], FloatArray]
+"""Time still needed, (t,) s, from the ends (t, 10) of rollouts that were cut; columns as CLOSED_FEATURES."""
+
+HORIZON = 24
+"""Bearings after which a rollout is given up."""
+
+NEGLIGIBLE_WEIGHT = 1e-13
+"""Cells lighter than this share of the heaviest are left out of rollouts."""
+
+UNKNOWN_TURN = np.pi / 2
+"""Turn before the first flight when the heading is not known: the mean of all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """Shared by the rollouts of one decision. platform: (2,) m. heading: rad or None. terminal: closes cut ones."""
+
+    problem: Problem
+    start: Start
+    rules: Rules
+    platform: FloatArray
+    heading: float | None
+    roads: RoadMap | None
+    threads: int = 1
+    kernel: KernelName = "reference"
+    terminal: TerminalValue | None = None
+
+    def first_actions(self, places: FloatArray) -> Actions:
+        """(a, 2) m places as first actions: cost of flying there and measuring once (4.5); infinite without a way."""
+        places = np.ascontiguousarray(places, dtype=float).reshape(-1, 2)
+        flights = places - self.platform
+        if self.roads is None:
+            distances = np.hypot(*flights.T)
+        else:
+            distances = travel_distances(self.problem, self.roads, self.platform, places)
+        directions = np.arctan2(flights[:, 1], flights[:, 0])
+        turns = UNKNOWN_TURN if self.heading is None else turn_between(self.heading, directions)
+        costs = flight_time(self.problem.motion, distances, turns) + self.problem.measurement_time
+        return Actions(places, costs, directions, np.full(len(places), -1, dtype=np.int64))
+
+    def run(self, actions: Actions, paths: Paths, tasks: Tasks) -> Outcomes:
+        """Outcomes of all tasks, cut rollouts closed by the terminal value; tasks are shared out to the threads."""
+        out = outcomes(len(tasks.action))
+        kernel = reference.rollouts
+        parts = max(1, min(self.threads, len(tasks.action) // 8))
+        if parts == 1:
+            kernel(self.start, self.rules, actions, paths, tasks, out)
+        else:
+            cuts = np.linspace(0, len(tasks.action), parts + 1).astype(int)
+            slices = [slice(a, b) for a, b in pairwise(cuts)]
+            with ThreadPoolExecutor(parts) as pool:
+                jobs = [
+                    pool.submit(kernel, self.start, self.rules, actions, paths, _part(tasks, s), _part(out, s))
+                    for s in slices
+                ]
+                for job in jobs:
+                    job.result()
+        if self.terminal is not None:
+            cut = out.ends[:, 9] == 0.0
+            out.costs[cut] += self.terminal(out.ends[cut])
+        return out
+
+
+def simulate(
+    problem: Problem,
+    belief: GridBelief,
+    platform: tuple[float, float],
+    *,
+    base_policy: BasePolicy,
+    heading: float | None = None,
+    horizon: int = HORIZON,
+    threads: int = 1,
+    kernel: KernelName = "reference",
+    terminal: TerminalValue | None = None,
+) -> Simulation:
+    """Prepare rollouts from this belief. PlannerError for numbers that cannot be flown or measured with."""
+    here = np.array(platform, dtype=float)
+    if here.shape != (2,) or not np.isfinite(here).all():
+        raise PlannerError("the platform's position must be two finite numbers")
+    if horizon < 1 or threads < 1:
+        raise PlannerError(f"horizon and threads must be at least 1, got {horizon} and {threads}")
+    roads = road_map(problem) if problem.no_fly or problem.flight_area is not None else None
+    return Simulation(
+        problem,
+        start_of(belief),
+        rules_of(problem, base_policy, horizon),
+        here,
+        heading,
+        roads,
+        threads,
+        kernel,
+        terminal,
+    )
+
+
+def start_of(belief: GridBelief) -> Start:
+    """The belief as kernel arrays, each row cut to the columns that carry weight."""
+    live = belief.density > NEGLIGIBLE_WEIGHT * belief.density.max()
+    low = np.where(live.any(axis=1), live.argmax(axis=1), 0)
+    high = np.where(live.any(axis=1), belief.nx - live[:, ::-1].argmax(axis=1), 0)
+    return Start(
+        np.ascontiguousarray(belief.density),
+        low.astype(np.int64),
+        high.astype(np.int64),
+        float(belief.x0),
+        float(belief.y0),
+        float(belief.h),
+        np.ascontiguousarray(belief.hull()),
+        int(belief.bearings),
+        bool(belief.flat_prior),
+    )
+
+
+def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int) -> Rules:
+    """The problem as kernel numbers."""
+    for name in ("sigma", "threshold"):
+        if not (np.isfinite(getattr(problem, name)) and getattr(problem, name) > 0):
+            raise PlannerError(f"{name} must be a positive number, got {getattr(problem, name)}")
+    if not (np.isfinite(problem.measurement_time) and problem.measurement_time >= 0):
+        raise PlannerError(f"the measurement time must be a number >= 0, got {problem.measurement_time}")
+    sigma = float(min(problem.sigma, WIDEST_SIGMA))
+    coefficients, edge = likelihood_polynomial(sigma)
+    places = np.empty((0, 2))
+    if problem.action_spacing is not None:
+        places = lattice(problem)
+        places = np.ascontiguousarray(places[may_fly(problem, places)])
+    ratios, distances = table(problem.sigma)
+    motion, speed, constant, turn_rate, acceleration = _motion_numbers(problem)
+    return Rules(
+        sigma=sigma,
+        likelihood=coefficients,
+        edge=edge,
+        threshold=float(problem.threshold),
+        measurement_time=float(problem.measurement_time),
+        motion=motion,
+        speed=speed,
+        constant=constant,
+        turn_rate=turn_rate,
+        acceleration=acceleration,
+        estimator={"map": MAP, "expected_value": EXPECTED_VALUE, "geometric_median": GEOMETRIC_MEDIAN}[
+            problem.estimator
+        ],
+        policy={"ellipse": ELLIPSE, "fisher": FISHER}[base_policy],
+        standoff=float(problem.standoff),
+        places=places,
+        travel=np.empty((0, 0)),
+        grid_x=int(problem.action_grid[0]),
+        grid_y=int(problem.action_grid[1]),
+        window=flight_window(problem),
+        ratios=ratios,
+        distances=distances,
+        horizon=int(horizon),
+    )
+
+
+def _motion_numbers(problem: Problem) -> tuple[int, float, float, float, float]:
+    match problem.motion:
+        case LinearMotion(speed):
+            return LINEAR, float(speed), 0.0, 1.0, 1.0
+        case LinearConstantMotion(speed, constant):
+            return LINEAR, float(speed), float(constant), 1.0, 1.0
+        case FullMotion(turn_rate, acceleration, speed, constant):
+            return FULL, float(speed), float(constant), float(turn_rate), float(acceleration)
+
+
+def _part(arrays, where: slice):
+    return type(arrays)(*(array[where] for array in arrays))
