@@ -37,12 +37,12 @@ class Peak(Model):
 
 
 class CandidateFact(Model):
-    """One candidate next place. `dropped_in_round` None: survived."""
+    """One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none."""
 
     lat: float
     lon: float
     value_s: float
-    std_error_s: float
+    std_error_s: float | None
     rollouts: int
     dropped_in_round: int | None
 
