@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.sweep import BinnedSweep
 
-LEAKAGES = (0.0, 0.001, 0.003, 0.01, 0.03)
+LEAKAGES = (0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 """Stray power, of the strongest bin's, that no pattern explains; with it, decibels near a null say little."""
 LEAKAGE_EVIDENCE = 4.0
 """Leakage is believed when it lowers -2 log likelihood by more than this."""
@@ -98,7 +98,7 @@ def estimate_spread(residual_db: NDArray[np.float64], predicted_db: NDArray[np.f
     best, best_score = Spread(near_db), np.inf
     for leakage in LEAKAGES:
         stray = (_DB * leakage / strength) ** 2
-        for sd_db in (0.5 * near_db, 0.7 * near_db, near_db, 1.4 * near_db):
+        for sd_db in (0.25 * near_db, 0.5 * near_db, 0.7 * near_db, near_db, 1.4 * near_db):
             variance = sd_db**2 + stray
             # -2 log likelihood, residuals cut at HUBER standard deviations
             score = float(np.sum(np.log(variance) + np.minimum(residual_db**2 / variance, HUBER**2)))

@@ -1,0 +1,184 @@
+"""`crossfix localize`: where the emitter is, from a file of bearings."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from backend.cli.edge import print_json, remark, stop
+from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
+from hardware.direction_finding.table_file import RecordingError
+from hardware.frame import LocalFrame, compass_to_angle
+from hardware.readings import GeoPoint
+from planner.belief.estimate import confidence_region, estimate
+from planner.belief.grid import GridBelief, fold
+from planner.belief.verdict import verdict
+from planner.geometry import convex_hull
+from planner.types import Bearing, InconsistentBearings, LinearMotion, LocalizationRule, PlannerError, Problem, Region
+
+SHORTEST_RANGE_M = 1000.0
+RANGE_BY_SPREAD = 3.0
+_DISC_CORNERS = 48
+
+
+def localize(
+    file: Annotated[
+        Path, typer.Argument(help="UAV-RT bearing file, or CSV with columns lat, lon, bearing_deg[, sigma_deg].")
+    ],
+    area: Annotated[
+        Path | None,
+        typer.Option(
+            help="GeoJSON polygon in which the emitter must be. Default: within --range of a bearing's place."
+        ),
+    ] = None,
+    range_: Annotated[
+        float | None,
+        typer.Option(
+            "--range",
+            min=10.0,
+            max=100_000.0,
+            help="Metres from which the emitter can be heard. Default: 1000, or three times the spread of the places.",
+        ),
+    ] = None,
+    sigma: Annotated[
+        float, typer.Option(min=0.1, max=60.0, help="Standard deviation in degrees of bearings without their own.")
+    ] = DEFAULT_SIGMA_DEG,
+    outliers: Annotated[
+        float, typer.Option(min=0.0, max=0.5, help="Probability that a bearing is wrong altogether (0: none may be).")
+    ] = 0.0,
+    threshold: Annotated[
+        float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
+    ] = 10.0,
+    tag: Annotated[str | None, typer.Option(help="Use this tag's bearings when the file holds several tags.")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Cross bearings: estimate, expected error and 95 % region of a stationary emitter, or that the bearings disagree.
+
+    Example: crossfix localize bearings.csv --range 800 --json
+    """
+    try:
+        recorded = read_bearings(file, sigma)
+        for line in recorded.remarks:
+            remark(line)
+        chosen = _of_tag(file, recorded.bearings, tag)
+        frame = LocalFrame(_middle(chosen))
+        region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
+        answer = _localize(chosen, frame, region, outliers, threshold)
+    except (RecordingError, PlannerError, ValueError) as error:
+        stop(error)
+    if json_:
+        print_json(answer)
+    else:
+        typer.echo(_text(answer))
+
+
+def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) -> list[RecordedBearing]:
+    tags = sorted({b.tag for b in bearings if b.tag is not None})
+    if tag is None and len(tags) > 1:
+        raise RecordingError(f"{file}: holds bearings of several tags ({', '.join(tags)}); choose one with --tag")
+    chosen = [b for b in bearings if tag is None or b.tag == tag]
+    if not chosen:
+        raise RecordingError(f"{file}: holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
+    return chosen
+
+
+def _middle(bearings: list[RecordedBearing]) -> GeoPoint:
+    return GeoPoint(
+        float(np.mean([b.place.lat_deg for b in bearings])), float(np.mean([b.place.lon_deg for b in bearings]))
+    )
+
+
+def _audible(bearings: list[RecordedBearing], frame: LocalFrame, range_m: float | None) -> Region:
+    """Hull of the discs of `range_m` around the places where bearings were taken."""
+    places = np.array([frame.to_enu(b.place) for b in bearings])
+    spread = float(np.max(np.hypot(*(places - places.mean(axis=0)).T)))
+    reach = range_m or max(SHORTEST_RANGE_M, RANGE_BY_SPREAD * 2.0 * spread)
+    turn = 2.0 * math.pi * np.arange(_DISC_CORNERS) / _DISC_CORNERS
+    disc = reach * np.column_stack([np.cos(turn), np.sin(turn)])
+    return (convex_hull((places[:, None, :] + disc[None, :, :]).reshape(-1, 2)),)
+
+
+def _read_area(path: Path, frame: LocalFrame) -> Region:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error.strerror}); check the path") from error
+    except ValueError as error:
+        raise RecordingError(f"{path}: is not GeoJSON ({error})") from error
+    try:
+        rings = _rings(data)
+        region = tuple(
+            np.array([frame.to_enu(GeoPoint(float(p[1]), float(p[0]))) for p in ring[:-1]], dtype=np.float64)
+            for ring in rings
+        )
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise RecordingError(f"{path}: holds no usable GeoJSON polygon ({error})") from error
+    if not region:
+        raise RecordingError(f"{path}: holds no GeoJSON polygon; draw the area as Polygon or MultiPolygon")
+    return region
+
+
+def _rings(data: dict[str, Any]) -> list[list[list[float]]]:
+    kind = data["type"]
+    if kind == "FeatureCollection":
+        return [ring for feature in data["features"] for ring in _rings(feature)]
+    if kind == "Feature":
+        return _rings(data["geometry"])
+    if kind == "Polygon":
+        return list(data["coordinates"])
+    if kind == "MultiPolygon":
+        return [ring for polygon in data["coordinates"] for ring in polygon]
+    return []
+
+
+def _localize(
+    recorded: list[RecordedBearing], frame: LocalFrame, region: Region, outliers: float, threshold: float
+) -> dict[str, Any]:
+    bearings = []
+    for b in recorded:
+        x, y = frame.to_enu(b.place)
+        bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
+    problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0))
+    try:
+        belief: GridBelief | None = fold(problem, bearings)
+    except InconsistentBearings:
+        belief = None
+    judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
+    answer: dict[str, Any] = {
+        "estimate": None,
+        "expected_rmse_m": None,
+        "c95": None,
+        "consistent": judged.consistent,
+        "localized": judged.localized,
+        "not_yet": list(judged.reasons),
+        "bearings": len(bearings),
+    }
+    if belief is not None:
+        spread = estimate(belief, problem.estimator)
+        place = frame.to_geo(spread.x, spread.y)
+        outline = [frame.to_geo(x, y) for x, y in confidence_region(belief)]
+        ring = [[round(p.lon_deg, 8), round(p.lat_deg, 8)] for p in (*outline, outline[0])]
+        answer["estimate"] = {"lat": round(place.lat_deg, 8), "lon": round(place.lon_deg, 8)}
+        answer["expected_rmse_m"] = round(spread.expected_rmse, 3)
+        answer["c95"] = {"type": "Polygon", "coordinates": [ring]}
+    return answer
+
+
+def _text(answer: dict[str, Any]) -> str:
+    if answer["estimate"] is None:
+        return (
+            f"no estimate from {answer['bearings']} bearings: they contradict each other "
+            "(or cross outside the area: try a larger --range)"
+        )
+    place = answer["estimate"]
+    lines = [
+        f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.0f} m, "
+        f"from {answer['bearings']} bearings"
+    ]
+    lines.append("localized" if answer["localized"] else "\n".join(answer["not_yet"]))
+    return "\n".join(lines)

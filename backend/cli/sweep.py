@@ -1,0 +1,100 @@
+"""`crossfix sweep`: bearing of each rotation in a recorded file."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from backend.cli.edge import parse_place, print_json, remark, stop
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirectionFinder
+from hardware.direction_finding.pattern_file import SMALL_YAGI, PatternError, load_pattern
+from hardware.direction_finding.recordings import RecordedSweep, read_recording
+from hardware.direction_finding.table_file import RecordingError
+from hardware.readings import BearingReading
+
+
+def sweep(
+    file: Annotated[Path, typer.Argument(help="UAV-RT rotation file, or CSV with columns heading_deg, power_db.")],
+    pattern: Annotated[
+        Path | None,
+        typer.Option(
+            help="Antenna pattern: JSON, or a turntable table (angle_deg, gain_db) as CSV. "
+            "Default: the small Yagi on a multicopter that ships with crossfix; your own antenna's pattern is better."
+        ),
+    ] = None,
+    offset: Annotated[
+        float | None,
+        typer.Option(
+            help="Degrees the antenna's front points clockwise of the nose. Default: the file's, else the pattern's."
+        ),
+    ] = None,
+    tag: Annotated[str | None, typer.Option(help="Use this tag's pulses. Default: the tag heard most.")] = None,
+    at: Annotated[str | None, typer.Option(help="LAT,LON of the sweep when the file does not tell.")] = None,
+    minimum_quality: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Sweeps less similar to the antenna pattern are rejected.")
+    ] = MINIMUM_QUALITY,
+    json_: Annotated[
+        bool, typer.Option("--json", help="Print one JSON value: an object, or an array for several.")
+    ] = False,
+) -> None:
+    """Turn recorded sweeps (power against heading) into bearings in degrees clockwise from true north.
+
+    Example: crossfix sweep rotation.csv --pattern my_yagi.json --json
+    """
+    try:
+        antenna = load_pattern(pattern or SMALL_YAGI)
+        recording = read_recording(file, tag)
+        place = parse_place(at) if at is not None else None
+    except (RecordingError, PatternError, ValueError) as error:
+        stop(error)
+    for line in recording.remarks:
+        remark(line)
+    finder = SparseDirectionFinder(minimum_quality=minimum_quality)
+    answers: list[dict[str, Any]] = []
+    for recorded in recording.sweeps:
+        reading = finder.estimate(recorded.sweep, mounted(antenna, recorded, offset))
+        answers.append(_answer(recorded, reading, place))
+    if json_:
+        print_json(answers[0] if len(answers) == 1 else answers)
+    else:
+        for answer in answers:
+            typer.echo(_sentence(answer))
+
+
+def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset: float | None) -> AntennaPattern:
+    """The pattern with the offset that holds for this sweep: the user's, else the file's, else the pattern's."""
+    stated = offset if offset is not None else (recorded.antenna_offset_deg or None)
+    return antenna if stated is None else dataclasses.replace(antenna, offset_to_nose_deg=stated)
+
+
+def _answer(recorded: RecordedSweep, reading: BearingReading, place: tuple[float, float] | None) -> dict[str, Any]:
+    position = recorded.sweep.position
+    here = place or ((position.lat_deg, position.lon_deg) if recorded.place_known else (None, None))
+    known = reading.sigma_deg < 180.0
+    return {
+        "bearing_deg": round(reading.bearing_deg, 3) % 360.0 if known else None,
+        "sigma_deg": round(reading.sigma_deg, 3) if known else None,
+        "quality": round(reading.quality, 4),
+        "accepted": reading.accepted,
+        "reason": reading.reason,
+        "tag": recorded.sweep.tag,
+        "lat": here[0],
+        "lon": here[1],
+        "frequency_hz": recorded.sweep.frequency_hz or None,
+        "samples": int(recorded.sweep.power_db.size),
+        "peaks": [{"bearing_deg": round(p.bearing_deg, 2), "weight": round(p.weight, 3)} for p in reading.peaks],
+    }
+
+
+def _sentence(answer: dict[str, Any]) -> str:
+    what = f"tag {answer['tag']}" if answer["tag"] else "sweep"
+    if answer["bearing_deg"] is None:
+        return f"{what}: no bearing: {answer['reason']}"
+    place = "" if answer["lat"] is None else f" from {answer['lat']:.6f}, {answer['lon']:.6f}"
+    text = f"{what}: bearing {answer['bearing_deg']:.1f} +- {answer['sigma_deg']:.1f} degrees{place}"
+    text += f", quality {answer['quality']:.2f}, {answer['samples']} samples"
+    return text if answer["accepted"] else f"{text}; rejected: {answer['reason']}"

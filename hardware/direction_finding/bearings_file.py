@@ -1,0 +1,122 @@
+"""Bearings as files: UAV-RT bearing files (10 columns, no header), plain CSV (lat, lon, bearing_deg[, sigma_deg])."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
+from hardware.readings import GeoPoint
+
+DEFAULT_SIGMA_DEG = 7.0
+"""The field system's (spec section 8), for bearings whose file states none."""
+_LAT = ("lat", "lat_deg", "latitude", "latitude_deg")
+_LON = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
+_BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
+_SIGMA = ("sigma_deg", "sigma", "std_deg")
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedBearing:
+    """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file."""
+
+    line: int
+    place: GeoPoint
+    bearing_deg: float
+    sigma_deg: float
+    tag: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedBearings:
+    """bearings: in file order. remarks: what was left out and why, each naming file and line."""
+
+    bearings: tuple[RecordedBearing, ...]
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Columns:
+    lat: int
+    lon: int
+    bearing: int
+    sigma: int | None
+    tag: int | None
+
+
+def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
+    """Read a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
+    table = read_table(path)
+    columns, rows = _columns(table)
+    bearings: list[RecordedBearing] = []
+    remarks: list[str] = []
+    for row in rows:
+        bearing = _bearing(row, columns, sigma_deg)
+        if isinstance(bearing, str):
+            remarks.append(f"{table.where(row)}: {bearing}; line left out")
+        else:
+            bearings.append(bearing)
+    if not bearings:
+        raise RecordingError(
+            f"{table.path}: no usable bearing; expected columns lat, lon, bearing_deg[, sigma_deg]. First: {remarks[0]}"
+        )
+    return RecordedBearings(tuple(bearings), tuple(remarks))
+
+
+def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
+    first = table.rows[0]
+    named = [row for row in (first, *table.comments) if column_of(row.cells, *_BEARING) is not None]
+    if named:
+        header = named[0]
+        places = [column_of(header.cells, *names) for names in (_LAT, _LON, _BEARING)]
+        if places[0] is None or places[1] is None or places[2] is None:
+            raise RecordingError(
+                f"{table.where(header)}: the header names no lat and lon; name them lat, lon, bearing_deg"
+            )
+        columns = _Columns(
+            places[0],
+            places[1],
+            places[2],
+            column_of(header.cells, *_SIGMA),
+            column_of(header.cells, "tag", "tag_id", "tagid"),
+        )
+        return columns, table.rows[1:] if header is first else table.rows
+    if len(first.cells) == 10:
+        return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0), table.rows
+    if len(first.cells) in (3, 4):
+        if first.number(0) is None:
+            raise RecordingError(
+                f'{table.where(first)}: the header "{", ".join(first.cells)}" is not understood; '
+                "name the columns lat, lon, bearing_deg[, sigma_deg]"
+            )
+        return _Columns(lat=0, lon=1, bearing=2, sigma=3, tag=None), table.rows
+    raise RecordingError(
+        f"{table.where(first)}: {len(first.cells)} columns without a header; "
+        "expected lat, lon, bearing_deg[, sigma_deg] or the 10 columns of a UAV-RT bearing file"
+    )
+
+
+def _bearing(row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | str:
+    values: list[float] = []
+    for name, column in (("latitude", columns.lat), ("longitude", columns.lon), ("bearing", columns.bearing)):
+        value = row.number(column)
+        if value is None or not math.isfinite(value):
+            cell = row.cells[column] if column < len(row.cells) else ""
+            return f'the {name} is "{cell}", not a number'
+        values.append(value)
+    lat, lon, bearing = values
+    if not -90.0 <= lat <= 90.0:
+        return f"the latitude {lat:g} is outside -90..90"
+    if not -180.0 <= lon <= 180.0:
+        return f"the longitude {lon:g} is outside -180..180"
+    if not -360.0 <= bearing <= 360.0:
+        return f"the bearing {bearing:g} is outside 0..360"
+    sigma = default_sigma_deg
+    if columns.sigma is not None and columns.sigma < len(row.cells) and row.cells[columns.sigma]:
+        stated = row.number(columns.sigma)
+        if stated is None or not 0.0 < stated <= 180.0:
+            return f'the sigma is "{row.cells[columns.sigma]}"; it must be a number between 0 and 180 degrees'
+        sigma = stated
+    tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
+    return RecordedBearing(row.line, GeoPoint(lat, lon), bearing % 360.0, sigma, tag or None)
