@@ -1,0 +1,70 @@
+"""Who has control: a latch that any mode we did not command closes, and only an operator opens. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hardware.readings import Controller
+
+
+class ControlLatch:
+    """Knows the modes that follow from our last command; whatever else the vehicle shows while flying is not ours.
+
+    Between a command and the first sight of its mode the mode before it is tolerated. `calm`: the modes in which an
+    airborne vehicle we never commanded (after a restart) waits for orders.
+    """
+
+    def __init__(self, calm: frozenset[int], mode_name: Callable[[int], str]) -> None:
+        self._calm = calm
+        self._mode_name = mode_name
+        self._expected: frozenset[int] | None = None
+        self._tolerated: int | None = None
+        self._mode: int | None = None
+        self._reason: str | None = None
+
+    @property
+    def reason(self) -> str | None:
+        """Why commands are refused, None when they pass. One attribute read: safe from the sending thread."""
+        return self._reason
+
+    @property
+    def controller(self) -> Controller:
+        if self._reason is not None:
+            return "pilot"
+        return "nobody" if self._expected is None else "crossfix"
+
+    def command(self, modes: frozenset[int]) -> None:
+        """We are about to send a command after which these modes are ours."""
+        self._expected = modes
+        self._tolerated = self._mode
+
+    def observe(self, mode: int, armed: bool, in_air: bool) -> str | None:
+        """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
+        self._mode = mode
+        if not armed:
+            self._expected = None  # on the ground nobody flies; a new flight starts with a command
+            return None
+        if self._reason is not None:
+            return None
+        if not in_air and mode in self._calm:
+            ours = True  # an autopilot goes to its waiting mode by itself once it has landed
+        elif self._expected is None:
+            ours = mode in self._calm or not in_air
+        elif mode in self._expected:
+            self._tolerated, ours = None, True
+        else:
+            ours = mode == self._tolerated
+        return (
+            None if ours else self.latch(f"the vehicle is in {self._mode_name(mode)}, which Crossfix did not command")
+        )
+
+    def latch(self, reason: str) -> str:
+        """Close it for a reason other than the mode (the autopilot's own word that the pilot moved the sticks)."""
+        self._reason = reason
+        return reason
+
+    def release(self) -> None:
+        """The operator's deed: the mode of this moment is accepted, commands pass again."""
+        self._reason = None
+        self._expected = None if self._mode is None else frozenset({self._mode})
+        self._tolerated = None

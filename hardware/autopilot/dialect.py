@@ -1,0 +1,70 @@
+"""What differs between autopilots, as data and small functions; the vehicle itself asks and never branches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from hardware.autopilot.messages import Outgoing
+
+
+@dataclass(frozen=True, slots=True)
+class FailsafeRule:
+    """One parameter that must make the autopilot act by itself. `safe`: the values that do; `set_to`: the remedy."""
+
+    parameter: str
+    what: str
+    safe: frozenset[int]
+    set_to: int
+    remedy: str
+    blocking: bool = True
+    bit: int | None = None
+    """When given, this bit must be set and `safe` is not looked at."""
+
+    def holds(self, value: float) -> bool:
+        return bool(int(value) & self.bit) if self.bit is not None else int(value) in self.safe
+
+
+@dataclass(frozen=True, slots=True)
+class ModeOrder:
+    """A mode to select: how to ask for it, and the raw custom modes that say the vehicle obeys."""
+
+    name: str
+    custom: tuple[float, float]
+    modes: frozenset[int]
+
+
+TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "condition_yaw_absolute"]
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """One autopilot's way of speaking.
+
+    calm: raw modes in which an airborne vehicle waits for orders. hold: commands that stop it, in the order to try
+    them; hold_modes: the raw modes it then shows. reposition_modes: raw modes after DO_REPOSITION.
+    before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
+    command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
+    reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
+    turn_methods: ways to turn a full circle, in the order in which to try them.
+    """
+
+    name: Literal["px4", "ardupilot"]
+    mode_names: Mapping[int, str]
+    calm: frozenset[int]
+    hold: tuple[Outgoing, ...]
+    hold_modes: frozenset[int]
+    return_home: ModeOrder
+    land: ModeOrder
+    before_take_off: ModeOrder
+    take_off: Callable[[float, float], Outgoing]
+    take_off_modes: frozenset[int]
+    settled_modes: frozenset[int]
+    reposition_modes: frozenset[int]
+    reposition_sets_speed: bool
+    turn_methods: tuple[TurnMethod, ...]
+    failsafes: tuple[FailsafeRule, ...]
+
+    def mode_name(self, custom_mode: int) -> str:
+        return self.mode_names.get(custom_mode, f"mode {custom_mode}")

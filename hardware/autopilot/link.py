@@ -1,0 +1,168 @@
+"""MAVLink through MAVSDK: one autopilot's messages in the order they came, and messages to it. No policy here.
+
+The raw messages are used rather than MAVSDK's actions because an action retransmits by itself (a command could then
+reach the autopilot after a pilot took over) and because they carry the autopilot's own time and its raw mode.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
+from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
+from mavsdk.plugins.param import Param, ParamError, ParamResult
+
+from hardware.ports import VehicleUnreachable
+
+log = logging.getLogger(__name__)
+_LEVELS = {LogLevel.WARN: logging.INFO, LogLevel.ERROR: logging.WARNING}
+_SCHEMES = ("udpin://", "udpout://", "tcpin://", "tcpout://", "tcp://", "serial://")
+AUTOPILOT_COMPONENT = 1
+
+Fields = dict[str, Any]
+
+
+def _keep_log(level: LogLevel, message: str, file: str | None, line: int) -> bool:
+    """MAVSDK prints to stdout by itself, where `--json` promises one JSON value: take its log over."""
+    log.log(_LEVELS.get(level, logging.DEBUG), "mavsdk: %s", message)
+    return True
+
+
+def check_url(url: str) -> str:
+    """A connection URL that MAVSDK takes. Raises ValueError with the forms there are."""
+    if not url.startswith(_SCHEMES) or url.endswith("//"):
+        raise ValueError(
+            f"{url!r} is no vehicle address. Use udpin://0.0.0.0:14540 (the vehicle sends to this port), "
+            "udpout://HOST:PORT, tcpout://HOST:PORT, tcpin://0.0.0.0:PORT or serial:///dev/ttyUSB0:57600."
+        )
+    return "tcpout://" + url.removeprefix("tcp://") if url.startswith("tcp://") else url
+
+
+class MavlinkLink:
+    """One connection, one autopilot. `on_message(name, fields)` is called on the event loop, in order of arrival."""
+
+    def __init__(self, url: str, names: tuple[str, ...], on_message: Callable[[str, Fields], None]) -> None:
+        self.url = check_url(url)
+        self._names = names
+        self._on_message = on_message
+        self._mavsdk: Mavsdk | None = None
+        self._direct: MavlinkDirect | None = None
+        self._param: Param | None = None
+        self._sender = ThreadPoolExecutor(1, "mavlink-send")
+        self._blocking = ThreadPoolExecutor(2, "mavlink-param")
+        self._closed = False
+        self.system_id = 0
+
+    async def open(self, timeout_s: float) -> None:
+        """Raises VehicleUnreachable when no autopilot answers within so many wall seconds."""
+        loop = asyncio.get_running_loop()
+        log_subscribe(_keep_log)
+        mavsdk = self._mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        try:
+            await loop.run_in_executor(self._blocking, mavsdk.add_any_connection_with_handle, self.url)
+        except Exception as error:
+            await self.close()
+            raise VehicleUnreachable(
+                f"Cannot open {self.url}: {error}. Is the port free and the device there?"
+            ) from error
+        system = await self._first_autopilot(mavsdk, timeout_s)
+        if system is None:
+            await self.close()
+            raise VehicleUnreachable(
+                f"No autopilot answers on {self.url} within {timeout_s:g} s. "
+                "Is it switched on, and does it send to this address?"
+            )
+        self.system_id = system.get_system_id()
+        self._direct = direct = MavlinkDirect(system)
+        self._param = Param(system)
+
+        def heard(message: MavlinkMessage, _: Any) -> None:
+            if message.component_id == AUTOPILOT_COMPONENT:
+                with contextlib.suppress(RuntimeError):  # the loop has ended
+                    loop.call_soon_threadsafe(self._dispatch, message)
+
+        for name in self._names:
+            direct.subscribe_message(name, heard)
+
+    async def _first_autopilot(self, mavsdk: Mavsdk, timeout_s: float) -> System | None:
+        loop = asyncio.get_running_loop()
+        found: asyncio.Future[System | None] = loop.create_future()
+
+        def resolve(system: System | None) -> None:
+            if not found.done():
+                found.set_result(system)
+
+        def heard(system: System | None) -> None:
+            loop.call_soon_threadsafe(resolve, system)
+
+        handle = mavsdk.first_autopilot_async(timeout_s, heard)
+        try:
+            return await found
+        finally:
+            mavsdk.cancel_first_autopilot(handle)
+
+    def _dispatch(self, message: MavlinkMessage) -> None:
+        if not self._closed:
+            self._on_message(message.message_name, json.loads(message.fields_json))
+
+    async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
+        """Send one message; `allowed` is asked in the instant before, and False sends nothing. None is sent as NaN."""
+        message = MavlinkMessage(name, 0, 0, self.system_id, AUTOPILOT_COMPONENT, json.dumps(fields))
+        return await asyncio.get_running_loop().run_in_executor(self._sender, self._send_now, message, allowed)
+
+    def _send_now(self, message: MavlinkMessage, allowed: Callable[[], bool]) -> bool:
+        if self._direct is None or self._closed or not allowed():
+            return False
+        self._direct.send_message(message)
+        return True
+
+    async def parameter(self, name: str) -> float | None:
+        """An autopilot parameter, or None when it has none of that name (or does not answer)."""
+        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._read_parameter, name)
+
+    def _read_parameter(self, name: str) -> float | None:
+        if self._param is None:
+            return None
+        try:
+            return float(self._param.get_param_int(name))
+        except ParamError as error:
+            if error.result != ParamResult.WRONG_TYPE:
+                return None
+        with contextlib.suppress(ParamError):
+            return float(self._param.get_param_float(name))
+        return None
+
+    async def set_parameter(self, name: str, value: float) -> bool:
+        """True when the autopilot confirmed the new value."""
+        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._write_parameter, name, value)
+
+    def _write_parameter(self, name: str, value: float) -> bool:
+        if self._param is None:
+            return False
+        try:
+            self._param.set_param_int(name, round(value))
+        except ParamError as error:
+            if error.result != ParamResult.WRONG_TYPE:
+                return False
+            with contextlib.suppress(ParamError):
+                self._param.set_param_float(name, value)
+                return True
+            return False
+        return True
+
+    async def close(self) -> None:
+        """Idempotent."""
+        if self._closed:
+            return
+        self._closed = True
+        mavsdk, self._mavsdk = self._mavsdk, None
+        if mavsdk is not None:
+            await asyncio.get_running_loop().run_in_executor(self._blocking, mavsdk.destroy)
+        self._sender.shutdown(wait=False)
+        self._blocking.shutdown(wait=False)

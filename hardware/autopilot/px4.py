@@ -1,0 +1,93 @@
+"""PX4, as measured on 1.16: main and sub modes, DO_REPOSITION obeys speed and yaw, take-off altitude is AMSL."""
+
+from __future__ import annotations
+
+from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
+from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, set_mode
+
+
+def px4_mode(main: int, sub: int = 0) -> int:
+    """The raw custom mode (px4_custom_mode.h): main mode in byte 2, sub mode in byte 3."""
+    return main << 16 | sub << 24
+
+
+_AUTO = 4
+_TAKE_OFF, _LOITER, _MISSION, _RETURN, _LAND = 2, 3, 4, 5, 6
+HOLD, TAKING_OFF = px4_mode(_AUTO, _LOITER), px4_mode(_AUTO, _TAKE_OFF)
+RETURNING, LANDING = px4_mode(_AUTO, _RETURN), px4_mode(_AUTO, _LAND)
+
+
+def _order(name: str, sub: int, *modes: int) -> ModeOrder:
+    return ModeOrder(name, (_AUTO, sub), frozenset(modes))
+
+
+def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
+    return command_long(TAKE_OFF, None, None, None, None, None, None, amsl_m)
+
+
+PX4 = Dialect(
+    name="px4",
+    mode_names={
+        px4_mode(1): "MANUAL",
+        px4_mode(2): "ALTCTL",
+        px4_mode(3): "POSCTL",
+        px4_mode(3, 1): "ORBIT",
+        px4_mode(3, 2): "POSCTL SLOW",
+        px4_mode(_AUTO, 1): "READY",
+        TAKING_OFF: "TAKEOFF",
+        HOLD: "HOLD",
+        px4_mode(_AUTO, _MISSION): "MISSION",
+        RETURNING: "RETURN",
+        LANDING: "LAND",
+        px4_mode(_AUTO, 8): "FOLLOW",
+        px4_mode(_AUTO, 9): "PRECISION LAND",
+        px4_mode(5): "ACRO",
+        px4_mode(6): "OFFBOARD",
+        px4_mode(7): "STABILIZED",
+        px4_mode(10): "TERMINATION",
+    },
+    calm=frozenset({HOLD, TAKING_OFF}),
+    hold=(pause(), set_mode((_AUTO, _LOITER)), pause()),
+    hold_modes=frozenset({HOLD}),
+    return_home=_order("RETURN", _RETURN, RETURNING, LANDING),
+    land=_order("LAND", _LAND, LANDING),
+    before_take_off=_order("HOLD", _LOITER, HOLD, TAKING_OFF),
+    take_off=_take_off,
+    take_off_modes=frozenset({TAKING_OFF, HOLD}),
+    settled_modes=frozenset({HOLD}),
+    reposition_modes=frozenset({HOLD}),
+    reposition_sets_speed=True,
+    turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
+    failsafes=(
+        FailsafeRule(
+            "NAV_DLL_ACT",
+            "ground station lost",
+            frozenset({1, 2, 3}),
+            2,
+            "Set NAV_DLL_ACT to 2 (return): at 0 a vehicle without its station hovers until its battery is empty.",
+        ),
+        FailsafeRule(
+            "COM_RC_OVERRIDE",
+            "pilot's sticks override automatic flight",
+            frozenset(),
+            1,
+            "Set COM_RC_OVERRIDE to 1 (or 3): the pilot's sticks must end automatic flight at once.",
+            bit=1,
+        ),
+        FailsafeRule(
+            "GF_ACTION",
+            "geofence breached",
+            frozenset({2, 3, 5}),
+            3,
+            "Set GF_ACTION to 2 (hold) or 3 (return): at 0 or 1 the autopilot only watches the fence being left.",
+        ),
+        FailsafeRule(
+            "COM_OBL_RC_ACT",
+            "offboard link lost (Crossfix flies without offboard)",
+            frozenset({0, 1, 3, 4, 5}),
+            0,
+            "Set COM_OBL_RC_ACT to 0 (position), 3 (return) or 5 (hold).",
+            blocking=False,
+        ),
+    ),
+)

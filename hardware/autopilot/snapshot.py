@@ -1,0 +1,168 @@
+"""The latest of everything the vehicle said, and a few minutes of headings: a fold of MAVLink messages. Pure."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from hardware.autopilot.boot_clock import BootClock
+from hardware.readings import Controller, GeoPoint, HeadingSample, Telemetry
+
+Fields = dict[str, Any]
+
+HISTORY_S = 300.0
+_ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
+_PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
+_FIXES = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
+_ON_GROUND, _UNDEFINED = 1, 0  # MAV_LANDED_STATE
+
+NAMES = (
+    "HEARTBEAT",
+    "CURRENT_MODE",
+    "ATTITUDE",
+    "GLOBAL_POSITION_INT",
+    "GPS_RAW_INT",
+    "SYS_STATUS",
+    "BATTERY_STATUS",
+    "HOME_POSITION",
+    "EXTENDED_SYS_STATE",
+)
+"""The messages the fold understands."""
+
+
+@dataclass(slots=True)
+class Snapshot:
+    """Mutable on purpose: one instance a link, fed on the event loop."""
+
+    heard_at_s: float | None = None
+    custom_mode: int | None = None
+    mode_at_s: float | None = None
+    armed: bool | None = None
+    landed_state: int = _UNDEFINED
+    prearm_ok: bool | None = None
+    position: GeoPoint | None = None
+    position_at_s: float | None = None
+    altitude_amsl_m: float | None = None
+    altitude_relative_m: float | None = None
+    velocity_ned: tuple[float, float, float] | None = None
+    heading_deg: float | None = None
+    heading_at_s: float | None = None
+    attitude_heard_at_s: float | None = None
+    battery_percent: float | None = None
+    battery_at_s: float | None = None
+    fix_type: int | None = None
+    satellites: int | None = None
+    home: GeoPoint | None = None
+    home_amsl_m: float | None = None
+    _boot_clock: BootClock = field(default_factory=BootClock)
+    _headings: deque[HeadingSample] = field(default_factory=deque)
+
+    @property
+    def in_air(self) -> bool | None:
+        if self.landed_state != _UNDEFINED:
+            return self.landed_state != _ON_GROUND
+        if self.armed is None or self.altitude_relative_m is None:
+            return None
+        return self.armed and self.altitude_relative_m > 1.0
+
+    @property
+    def speed_m_s(self) -> float | None:
+        return None if self.velocity_ned is None else math.hypot(*self.velocity_ned)
+
+    def fold(self, name: str, fields: Fields, heard_at_s: float) -> None:
+        """Take one message in. A field that is not a number (null on the wire) is left as it was."""
+        self.heard_at_s = heard_at_s
+        match name:
+            case "HEARTBEAT":
+                self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
+                self.armed = bool(int(fields["base_mode"]) & _ARMED)
+            case "CURRENT_MODE":
+                self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
+            case "ATTITUDE":
+                self._attitude(fields, heard_at_s)
+            case "GLOBAL_POSITION_INT":
+                self._global_position(fields, heard_at_s)
+            case "GPS_RAW_INT":
+                self.fix_type, self.satellites = int(fields["fix_type"]), int(fields["satellites_visible"])
+            case "SYS_STATUS":
+                self._battery(fields, heard_at_s)
+                if int(fields["onboard_control_sensors_present"]) & _PREARM:
+                    self.prearm_ok = bool(int(fields["onboard_control_sensors_health"]) & _PREARM)
+            case "BATTERY_STATUS":
+                if int(fields.get("id", 0)) == 0:
+                    self._battery(fields, heard_at_s)
+            case "HOME_POSITION":
+                self.home = GeoPoint(fields["latitude"] / 1e7, fields["longitude"] / 1e7)
+                self.home_amsl_m = fields["altitude"] / 1e3
+            case "EXTENDED_SYS_STATE":
+                self.landed_state = int(fields["landed_state"])
+
+    def _attitude(self, fields: Fields, heard_at_s: float) -> None:
+        yaw = fields["yaw"]
+        if yaw is None or not math.isfinite(yaw):
+            return
+        at = self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
+        self.heading_deg, self.heading_at_s = math.degrees(yaw) % 360.0 % 360.0, at
+        self.attitude_heard_at_s = heard_at_s
+        history = self._headings
+        if not history or at > history[-1].at_s:
+            history.append(HeadingSample(at, self.heading_deg, self.position))
+        while at - history[0].at_s > HISTORY_S:
+            history.popleft()
+
+    def _global_position(self, fields: Fields, heard_at_s: float) -> None:
+        lat, lon = fields["lat"] / 1e7, fields["lon"] / 1e7
+        if lat == 0.0 and lon == 0.0:
+            return  # the autopilot has no position yet
+        self.position = GeoPoint(lat, lon)
+        self.position_at_s = self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
+        self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
+        self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
+
+    def _battery(self, fields: Fields, heard_at_s: float) -> None:
+        percent = fields["battery_remaining"]
+        if percent is not None and 0 <= percent <= 100:
+            self.battery_percent, self.battery_at_s = float(percent), heard_at_s
+
+    def headings(self, since_s: float) -> list[HeadingSample]:
+        """At or after `since_s`, in time order."""
+        history = list(self._headings)
+        return history[bisect_left(history, since_s, key=lambda sample: sample.at_s) :]
+
+    def telemetry(
+        self,
+        now_s: float,
+        connected: bool,
+        mode: str | None,
+        controller: Controller,
+        autopilot: Literal["px4", "ardupilot", "unknown"],
+    ) -> Telemetry:
+        north, east, down = self.velocity_ned or (None, None, None)
+        return Telemetry(
+            connected=connected,
+            at_s=now_s,
+            position=self.position,
+            position_at_s=self.position_at_s,
+            altitude_amsl_m=self.altitude_amsl_m,
+            altitude_relative_m=self.altitude_relative_m,
+            heading_deg=self.heading_deg,
+            heading_at_s=self.heading_at_s,
+            velocity_north_m_s=north,
+            velocity_east_m_s=east,
+            velocity_down_m_s=down,
+            battery_percent=self.battery_percent,
+            battery_at_s=self.battery_at_s,
+            gps_fix=None if self.fix_type is None else _FIXES[min(self.fix_type, len(_FIXES) - 1)],
+            satellites=self.satellites,
+            armed=self.armed,
+            in_air=self.in_air,
+            mode=mode,
+            mode_at_s=self.mode_at_s,
+            home=self.home,
+            home_amsl_m=self.home_amsl_m,
+            controller=controller,
+            autopilot=autopilot,
+        )

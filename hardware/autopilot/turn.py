@@ -1,0 +1,97 @@
+"""The ways to turn a multicopter once around, each watched by telemetry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from hardware.autopilot.commander import Commander, Manoeuvre
+from hardware.autopilot.dialect import Dialect, TurnMethod
+from hardware.autopilot.messages import CONDITION_YAW, Outgoing, command_long, reposition
+from hardware.autopilot.patience import Deadline, News
+from hardware.autopilot.snapshot import Snapshot
+from hardware.autopilot.turning import FULL_CIRCLE, TOLERANCE, TurnProgress, next_target, step_size
+from hardware.ports import Clock
+from hardware.readings import GeoPoint
+
+STUCK_S = 6.0
+"""Seconds without at least STUCK_DEG of turning after which a way of turning has failed."""
+STUCK_DEG = 4.0
+LEG_DEG = 90.0
+_NUDGE_DEG = 9e-6  # one metre of latitude
+
+
+class TurnManoeuvre:
+    """One turn; `run` tries one way of doing it and says whether the circle was seen."""
+
+    def __init__(
+        self,
+        manoeuvre: Manoeuvre,
+        commander: Commander,
+        clock: Clock,
+        snapshot: Snapshot,
+        news: News,
+        go_on: Callable[[Manoeuvre], None],
+        dialect: Dialect,
+        rate_deg_s: float,
+    ) -> None:
+        self._manoeuvre = manoeuvre
+        self._commander = commander
+        self._clock = clock
+        self._snapshot = snapshot
+        self._news = news
+        self._go_on = go_on
+        self._dialect = dialect
+        self._rate = rate_deg_s
+        self.turned_deg = 0.0
+
+    async def run(self, method: TurnMethod, place: GeoPoint, altitude_amsl_m: float) -> bool:
+        """True once telemetry saw the whole circle; False when the vehicle stopped turning."""
+        snapshot = self._snapshot
+        if self._dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
+            # yaw commands are acknowledged in every mode and obeyed in this one only
+            await self._order(reposition(place, altitude_amsl_m, None, None), "holding the spot")
+        if snapshot.heading_deg is None or snapshot.heading_at_s is None:
+            return False
+        progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
+        began, sent = self._clock.now(), 0.0
+        stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), 0.0
+        while not progress.done:
+            self._go_on(self._manoeuvre)
+            target = self._target(method, self._clock.now() - began, progress.turned_deg, sent)
+            if target - sent > 1.0:
+                await self._order(self._step(method, progress, target, place, altitude_amsl_m), "the turn")
+                sent = target
+            await self._news.wait()
+            for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
+                self.turned_deg, seen_at = progress.see(sample.heading_deg), sample.at_s
+            if progress.turned_deg > stuck_from + STUCK_DEG:
+                stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), progress.turned_deg
+            elif stuck.passed:
+                return False
+        return True
+
+    async def _order(self, outgoing: Outgoing, what: str) -> None:
+        await self._commander.order(self._manoeuvre, outgoing, self._dialect.reposition_modes, what)
+
+    def _target(self, method: TurnMethod, elapsed_s: float, turned_deg: float, sent_deg: float) -> float:
+        """Degrees from the start that should be ordered by now."""
+        if method != "condition_yaw":
+            return next_target(elapsed_s, self._rate, turned_deg, step_size(self._rate))
+        lead = 0.4 * self._rate + 2.0  # order the next leg before this one brakes
+        reached = sent_deg == 0.0 or turned_deg > sent_deg - lead
+        return min(turned_deg + LEG_DEG, FULL_CIRCLE + TOLERANCE) if reached else sent_deg
+
+    def _step(
+        self, method: TurnMethod, progress: TurnProgress, target_deg: float, place: GeoPoint, altitude_amsl_m: float
+    ) -> Outgoing:
+        heading = (progress.start_deg + target_deg) % FULL_CIRCLE
+        if method == "condition_yaw":
+            return command_long(CONDITION_YAW, target_deg - progress.turned_deg, self._rate, 1.0, 1.0, 0.0, 0.0, 0.0)
+        if method == "condition_yaw_absolute":
+            return command_long(CONDITION_YAW, heading, self._rate, 1.0, 0.0, 0.0, 0.0, 0.0)
+        if method == "nudged_yaw_steps":
+            # some versions ignore a reposition that changes nothing but yaw: move a metre to and fro with it
+            side = _NUDGE_DEG if round(target_deg / step_size(self._rate)) % 2 else 0.0
+            place = GeoPoint(place.lat_deg + side, place.lon_deg)
+        return reposition(place, altitude_amsl_m, None, heading)

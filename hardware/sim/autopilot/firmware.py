@@ -1,0 +1,273 @@
+"""What PX4 and ArduCopter have in common: arming, tasks, failsafes, the faults a test may order. Pure, stepped in time.
+
+A flavour gives modes their numbers and says how commands, sticks and failsafes behave (see px4.py, ardupilot.py; the
+behaviour was measured on PX4 1.16 SIH and ArduCopter 4.7 SITL).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, field
+from random import Random
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import development as mavlink
+
+from hardware.sim.autopilot.copter import Airframe, Copter, Wind
+from hardware.sim.autopilot.flight import Flight
+from hardware.sim.autopilot.geodesy import HomeFrame
+from hardware.sim.autopilot.parameters import Parameters
+from hardware.sim.autopilot.sensors import Navigation
+
+ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = 0, 1, 2, 3, 4
+"""MAV_RESULT."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """Where and in what the vehicle flies. gps_sigma m; heading_error, heading_sigma deg; battery %."""
+
+    home: HomeFrame
+    seed: int = 1
+    wind: Wind = field(default_factory=Wind)
+    airframe: Airframe = field(default_factory=Airframe)
+    gps_sigma: float = 0.3
+    heading_deg: float = 0.0
+    heading_error: float = 0.0
+    heading_sigma: float = 0.3
+    battery_percent: float = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """COMMAND_INT or COMMAND_LONG. lat, lon: degrees (None: not given). p1..p4, z: NaN is "not given"."""
+
+    number: int
+    p1: float = math.nan
+    p2: float = math.nan
+    p3: float = math.nan
+    p4: float = math.nan
+    lat: float | None = None
+    lon: float | None = None
+    z: float = math.nan
+    frame: int = mavlink.MAV_FRAME_GLOBAL
+    is_int: bool = False
+
+
+@dataclass(slots=True)
+class Faults:
+    """What a test ordered to go wrong; counters count down with each command they spoil."""
+
+    refuse: int = 0
+    ignore_yaw: int = 0
+    ignore_goto: int = 0
+    ignore_all: int = 0
+    silent: int = 0
+    link_lost_until: float = -1.0
+    no_prearm: bool = False
+
+
+def deg_or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+class Firmware:
+    """Base of the flavours. `time` is seconds since boot, simulated."""
+
+    name: ClassVar[str]
+    mav_autopilot: ClassVar[int]
+    modes: ClassVar[dict[str, int]]
+    """Mode name -> custom_mode."""
+    pilot_mode: ClassVar[str]
+    """The mode that a pilot's mode switch selects to take over."""
+    give_back_mode: ClassVar[str]
+    heartbeat_on_mode_change: ClassVar[bool]
+    streams_by_default: ClassVar[dict[int, float]]
+    """Message id -> Hz sent without being asked."""
+    ready_after: ClassVar[float]
+    """Seconds from boot until prearm checks pass."""
+
+    def __init__(self, conditions: Conditions, parameters: Parameters) -> None:
+        self.conditions = conditions
+        self.home = conditions.home
+        self.parameters = parameters
+        self.rng = Random(conditions.seed)
+        self.copter = Copter(conditions.airframe, conditions.wind, Random(conditions.seed + 1), conditions.heading_deg)
+        self.copter.energy *= conditions.battery_percent / 100.0
+        self.navigation = Navigation(
+            self.copter,
+            Random(conditions.seed + 2),
+            conditions.gps_sigma,
+            conditions.heading_error,
+            conditions.heading_sigma,
+        )
+        self.flight = Flight(self.copter, self.navigation)
+        self.faults = Faults()
+        self.time = 0.0
+        self.mode = next(iter(self.modes))
+        self.mode_changed_at = 0.0
+        self.outbox: deque[mavlink.MAVLink_message] = deque()
+        self.commands: deque[tuple[float, int]] = deque(maxlen=10_000)
+        """(time, MAV_CMD) of every command received, for tests that ask what passed."""
+        self.gcs_heard_at: float | None = None
+        self.gcs_failsafe = False
+        self.heartbeat_due = False
+        self._armed_at = 0.0
+        self._battery_failsafe = False
+
+    # -- modes -----------------------------------------------------------------------------------------------------
+
+    @property
+    def custom_mode(self) -> int:
+        return self.modes[self.mode]
+
+    def set_mode(self, mode: str) -> None:
+        """Select a mode and begin what it does."""
+        if mode != self.mode:
+            self.mode = mode
+            self.mode_changed_at = self.time
+            self.heartbeat_due = self.heartbeat_on_mode_change
+        self.enter(mode)
+
+    def enter(self, mode: str) -> None:
+        """Begin the flight task of a mode; flavours implement it."""
+        raise NotImplementedError
+
+    def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
+        self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+
+    # -- commands --------------------------------------------------------------------------------------------------
+
+    def command(self, command: Command) -> int | None:
+        """Carry out a command; MAV_RESULT, or None when (ordered so) no acknowledgement is sent."""
+        self.commands.append((self.time, command.number))
+        faults = self.faults
+        if faults.silent > 0:
+            faults.silent -= 1
+            return None
+        if faults.refuse > 0:
+            faults.refuse -= 1
+            return DENIED
+        if faults.ignore_all > 0:
+            faults.ignore_all -= 1
+            return ACCEPTED
+        return self.carry_out(command)
+
+    def carry_out(self, command: Command) -> int:
+        raise NotImplementedError
+
+    def _spoiled_goto(self) -> bool:
+        if self.faults.ignore_goto > 0:
+            self.faults.ignore_goto -= 1
+            return True
+        return False
+
+    def _spoiled_yaw(self) -> bool:
+        if self.faults.ignore_yaw > 0:
+            self.faults.ignore_yaw -= 1
+            return True
+        return False
+
+    # -- arming ----------------------------------------------------------------------------------------------------
+
+    @property
+    def prearm_ok(self) -> bool:
+        return self.time >= self.ready_after and not self.faults.no_prearm
+
+    def arm(self) -> int:
+        if not self.prearm_ok:
+            self.say("Preflight Fail: not ready", mavlink.MAV_SEVERITY_CRITICAL)
+            return TEMPORARILY_REJECTED
+        if not self.flight.armed:
+            self.flight.arm()
+            self._armed_at = self.time
+        return ACCEPTED
+
+    def disarm(self) -> int:
+        if self.flight.in_air:
+            return DENIED
+        self.flight.disarm()
+        return ACCEPTED
+
+    def disarm_delay(self) -> float:
+        """Seconds on the ground, armed and without a take-off, after which the autopilot disarms (<= 0: never)."""
+        raise NotImplementedError
+
+    # -- the pilot -------------------------------------------------------------------------------------------------
+
+    def move_sticks(self, velocity: tuple[float, float, float], yaw_rate: float) -> bool:
+        """The pilot moves the sticks; True when that took control."""
+        raise NotImplementedError
+
+    def switch_mode(self, mode: str) -> None:
+        """The pilot's mode switch. Raises ValueError for a mode this flavour has not."""
+        if mode not in self.modes:
+            raise ValueError(f"{self.name} has no mode {mode}; it has {', '.join(self.modes)}.")
+        self.set_mode(mode)
+
+    # -- time ------------------------------------------------------------------------------------------------------
+
+    def step(self, dt: float) -> None:
+        self.time += dt
+        self.flight.step(dt)
+        if self.flight.armed:
+            self._watch_ground()
+            self._watch_gcs()
+            self._watch_battery()
+            self.watch()
+
+    def watch(self) -> None:
+        """What a flavour watches besides."""
+
+    def _watch_ground(self) -> None:
+        flight = self.flight
+        if flight.task in ("land", "return") and flight.grounded_for > 2.0:
+            flight.disarm()
+            self.landed()
+            return
+        delay = self.disarm_delay()
+        if flight.task == "idle" and flight.grounded_for > delay > 0.0 and self.time - self._armed_at > delay:
+            flight.disarm()
+            self.say("Disarmed: no take-off")
+
+    def landed(self) -> None:
+        """After the motors stopped at the end of a landing."""
+
+    def gcs_timeout(self) -> float:
+        """Seconds without a ground station's heartbeat that count as lost."""
+        raise NotImplementedError
+
+    def gcs_lost(self) -> None:
+        """The failsafe for a lost ground station, by its parameter."""
+        raise NotImplementedError
+
+    gcs_timeout_floor: float = 0.0
+    """A ground station sends heartbeats by the wall's clock: sped up, no less than this many simulated seconds."""
+
+    def _watch_gcs(self) -> None:
+        if self.gcs_heard_at is None or not self.flight.in_air:
+            return
+        lost = self.time - self.gcs_heard_at > max(self.gcs_timeout(), self.gcs_timeout_floor)
+        if lost and not self.gcs_failsafe:
+            self.gcs_failsafe = True
+            self.gcs_lost()
+        elif not lost:
+            self.gcs_failsafe = False
+
+    def battery_low(self) -> None:
+        """The battery failsafe, by its parameter; called once."""
+        raise NotImplementedError
+
+    def battery_threshold(self) -> float:
+        """Percent."""
+        raise NotImplementedError
+
+    def _watch_battery(self) -> None:
+        if not self._battery_failsafe and self.copter.battery_percent < self.battery_threshold():
+            self._battery_failsafe = True
+            self.say("Low battery", mavlink.MAV_SEVERITY_WARNING)
+            self.battery_low()
+        if self.copter.energy <= 0.0 and self.flight.in_air and self.flight.task != "land":
+            self.say("Battery empty", mavlink.MAV_SEVERITY_EMERGENCY)
+            self.flight.land()

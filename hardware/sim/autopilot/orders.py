@@ -1,0 +1,122 @@
+"""The simulated pilot, and what goes wrong: JSON orders for tests and demonstrations, one object in, one object out.
+
+    {"do": "pilot_sticks", "north_m_s": 2, "east_m_s": 0, "up_m_s": 0, "yaw_deg_s": 0}   the pilot moves the sticks
+    {"do": "pilot_mode", "mode": "POSCTL"}    the pilot's mode switch (without "mode": the flavour's usual one)
+    {"do": "give_back"}                       the mode switch back to the autopilot's holding mode
+    {"do": "link_loss", "seconds": 8}         nothing passes the radio link, both ways (simulated seconds)
+    {"do": "gps_jump", "north_m": 30, "east_m": 0, "seconds": 5}
+    {"do": "heading_error", "degrees": 15}
+    {"do": "battery", "percent": 15}
+    {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
+    {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent", "count": 1}
+    {"do": "prearm", "ok": false}
+    {"do": "truth"}                           where the vehicle truly is
+    {"do": "commands", "since_s": 0}          every command received (time since boot, MAV_CMD)
+    {"do": "ping"}   {"do": "stop"}
+
+Every answer has "ok", "time_s" (since boot, simulated) and, when not ok, "error".
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+from hardware.sim.autopilot.firmware import Firmware
+
+
+class OrderError(ValueError):
+    """An order that cannot be carried out; the message says why."""
+
+
+def _number(order: dict[str, Any], key: str, default: float | None = None) -> float:
+    value = order.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise OrderError(f'The order {order.get("do")!r} needs a number "{key}", not {value!r}.')
+    return float(value)
+
+
+class Orders:
+    """Carries out orders on a firmware."""
+
+    def __init__(self, firmware: Firmware) -> None:
+        self._firmware = firmware
+        self.stop_requested = False
+
+    def receive(self, line: bytes) -> bytes:
+        """One JSON object in, one out; a wrong one is answered with what is wrong."""
+        try:
+            order = json.loads(line)
+            if not isinstance(order, dict):
+                raise OrderError('An order is a JSON object such as {"do": "ping"}.')
+            answer = {"ok": True, "time_s": self._firmware.time} | self.carry_out(order)
+        except ValueError as error:
+            answer = {"ok": False, "time_s": self._firmware.time, "error": str(error)}
+        return json.dumps(answer).encode() + b"\n"
+
+    def carry_out(self, order: dict[str, Any]) -> dict[str, Any]:
+        """Raises ValueError with a sentence for whoever sent it."""
+        firmware, faults = self._firmware, self._firmware.faults
+        match order.get("do"):
+            case "ping":
+                return {"flavour": firmware.name}
+            case "pilot_sticks":
+                velocity = tuple(_number(order, key, 0.0) for key in ("north_m_s", "east_m_s", "up_m_s"))
+                took = firmware.move_sticks((velocity[0], velocity[1], velocity[2]), _number(order, "yaw_deg_s", 0.0))
+                return {"took_control": took, "mode": firmware.mode}
+            case "pilot_mode":
+                firmware.switch_mode(str(order.get("mode") or firmware.pilot_mode))
+                return {"mode": firmware.mode}
+            case "give_back":
+                firmware.switch_mode(firmware.give_back_mode)
+                return {"mode": firmware.mode}
+            case "link_loss":
+                faults.link_lost_until = firmware.time + _number(order, "seconds")
+            case "gps_jump":
+                firmware.navigation.jump(
+                    _number(order, "north_m", 0.0), _number(order, "east_m", 0.0), _number(order, "seconds", 5.0)
+                )
+            case "heading_error":
+                firmware.navigation.heading_error = _number(order, "degrees")
+            case "battery":
+                percent = min(100.0, max(0.0, _number(order, "percent")))
+                firmware.copter.energy = firmware.copter.airframe.capacity * percent / 100.0
+            case "set_param":
+                firmware.parameters.set(str(order.get("name")), _number(order, "value"))
+            case "prearm":
+                faults.no_prearm = not order.get("ok", True)
+            case "fault":
+                kind = order.get("kind")
+                if kind not in ("refuse", "ignore_yaw", "ignore_goto", "ignore_all", "silent"):
+                    raise OrderError(
+                        f"There is no fault {kind!r}: refuse, ignore_yaw, ignore_goto, ignore_all, silent."
+                    )
+                setattr(faults, kind, int(_number(order, "count", 1)))
+            case "truth":
+                return self._truth()
+            case "commands":
+                since = _number(order, "since_s", 0.0)
+                return {"commands": [[at, number] for at, number in firmware.commands if at >= since][-1000:]}
+            case "stop":
+                self.stop_requested = True
+            case unknown:
+                raise OrderError(f"There is no order {unknown!r}; see hardware/sim/autopilot/orders.py for the list.")
+        return {}
+
+    def _truth(self) -> dict[str, Any]:
+        firmware, copter = self._firmware, self._firmware.copter
+        lat, lon = firmware.home.to_geo(copter.north, copter.east)
+        return {
+            "lat": lat,
+            "lon": lon,
+            "altitude_amsl_m": firmware.home.amsl_m + copter.up,
+            "altitude_relative_m": copter.up,
+            "heading_deg": copter.heading % 360.0,
+            "speed_m_s": math.hypot(copter.v_north, copter.v_east),
+            "battery_percent": copter.battery_percent,
+            "mode": firmware.mode,
+            "mode_changed_at_s": firmware.mode_changed_at,
+            "armed": firmware.flight.armed,
+            "in_air": firmware.flight.in_air,
+        }

@@ -1,0 +1,105 @@
+"""The loop of the simulator's process: wall time to simulated steps, UDP to a ground station, UDP for orders."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import socket
+import time
+from dataclasses import dataclass
+
+from hardware.sim.autopilot.firmware import Firmware
+from hardware.sim.autopilot.orders import Orders
+from hardware.sim.autopilot.station import Station
+
+STEP = 0.02
+"""Simulated seconds a step."""
+GCS_TIMEOUT_WALL = 3.0
+"""A ground station's heartbeat comes once a wall second, however fast the simulation runs."""
+MOST_BEHIND_WALL = 5.0
+"""When the process was suspended for longer than this, the time it missed is not made up for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    host: str
+    port: int
+
+
+class Process:
+    """Sockets bound, not yet running. `connect`: where the ground station listens; `control`: our orders' port."""
+
+    def __init__(
+        self, firmware: Firmware, connect: Endpoint, control_port: int, speedup: float, parent: int | None
+    ) -> None:
+        firmware.gcs_timeout_floor = GCS_TIMEOUT_WALL * speedup
+        self._firmware = firmware
+        self._station = Station(firmware)
+        self._orders = Orders(firmware)
+        self._peer = (connect.host, connect.port)
+        self._speedup = speedup
+        self._parent = parent
+        self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._link.bind(("127.0.0.1" if connect.host.startswith("127.") else "0.0.0.0", 0))
+        self._control = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._control.bind(("127.0.0.1", control_port))
+        for each in (self._link, self._control):
+            each.setblocking(False)
+        self._tick = min(0.02, max(0.002, STEP / speedup))
+
+    @property
+    def control_port(self) -> int:
+        return self._control.getsockname()[1]
+
+    def run(self) -> None:
+        """Until ordered to stop or until the parent process is gone."""
+        started, next_look = time.monotonic(), 0.0
+        while not self._orders.stop_requested:
+            now = time.monotonic()
+            behind = (now - started) - self._firmware.time / self._speedup
+            if behind > MOST_BEHIND_WALL:
+                started += behind
+            self._advance((now - started) * self._speedup)
+            if now >= next_look:
+                next_look = now + 0.25
+                if self._parent is not None and os.getppid() != self._parent:
+                    return
+            readable, _, _ = select.select([self._link, self._control], [], [], self._tick)
+            for each in readable:
+                self._read(each)
+
+    def _advance(self, until: float) -> None:
+        firmware = self._firmware
+        while firmware.time + STEP <= until:
+            firmware.step(STEP)
+            for packet in self._station.due():
+                self._send(packet)
+
+    @property
+    def _link_lost(self) -> bool:
+        return self._firmware.time < self._firmware.faults.link_lost_until
+
+    def _send(self, packet: bytes) -> None:
+        if not self._link_lost:
+            with contextlib.suppress(ConnectionError, BlockingIOError):
+                self._link.sendto(packet, self._peer)
+
+    def _read(self, source: socket.socket) -> None:
+        while True:
+            try:
+                data, sender = source.recvfrom(4096)
+            except BlockingIOError:
+                return
+            except ConnectionError:
+                continue
+            if source is self._control:
+                with contextlib.suppress(OSError):
+                    source.sendto(self._orders.receive(data), sender)
+            elif not self._link_lost:
+                for packet in self._station.receive(data):
+                    self._send(packet)
+
+    def close(self) -> None:
+        self._link.close()
+        self._control.close()

@@ -1,0 +1,220 @@
+"""The PX4 flavour: main and sub modes, reposition with yaw, return by climbing first, sticks that take over."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from pymavlink.dialects.v20 import development as mavlink
+
+from hardware.sim.autopilot.firmware import (
+    ACCEPTED,
+    DENIED,
+    TEMPORARILY_REJECTED,
+    UNSUPPORTED,
+    Command,
+    Conditions,
+    Firmware,
+    deg_or_none,
+)
+from hardware.sim.autopilot.parameters import INT32, REAL32, Parameters
+
+
+def px4_mode(main: int, sub: int = 0) -> int:
+    return main << 16 | sub << 24
+
+
+DEFAULTS: dict[str, tuple[float, int]] = {
+    "NAV_DLL_ACT": (2, INT32),
+    "NAV_RCL_ACT": (2, INT32),
+    "COM_DL_LOSS_T": (10, INT32),
+    "COM_OBL_RC_ACT": (0, INT32),
+    "COM_RC_OVERRIDE": (1, INT32),
+    "COM_DISARM_PRFLT": (10.0, REAL32),
+    "COM_LOW_BAT_ACT": (3, INT32),
+    "BAT_LOW_THR": (0.15, REAL32),
+    "BAT_CRIT_THR": (0.07, REAL32),
+    "GF_ACTION": (2, INT32),
+    "GF_MAX_HOR_DIST": (0.0, REAL32),
+    "GF_MAX_VER_DIST": (0.0, REAL32),
+    "MIS_TAKEOFF_ALT": (2.5, REAL32),
+    "MPC_XY_CRUISE": (5.0, REAL32),
+    "MPC_XY_VEL_MAX": (12.0, REAL32),
+    "MPC_YAWRAUTO_MAX": (60.0, REAL32),
+    "RTL_RETURN_ALT": (30.0, REAL32),
+    "SYS_AUTOSTART": (10040, INT32),
+    "CAL_GYRO0_ID": (1310988, INT32),
+    "CAL_ACC0_ID": (1310988, INT32),
+    "CAL_MAG0_ID": (197388, INT32),
+}
+
+
+class Px4(Firmware):
+    name: ClassVar[str] = "px4"
+    mav_autopilot: ClassVar[int] = mavlink.MAV_AUTOPILOT_PX4
+    modes: ClassVar[dict[str, int]] = {
+        "HOLD": px4_mode(4, 3),
+        "MANUAL": px4_mode(1),
+        "ALTCTL": px4_mode(2),
+        "POSCTL": px4_mode(3),
+        "TAKEOFF": px4_mode(4, 2),
+        "MISSION": px4_mode(4, 4),
+        "RETURN": px4_mode(4, 5),
+        "LAND": px4_mode(4, 6),
+        "ACRO": px4_mode(5),
+        "OFFBOARD": px4_mode(6),
+        "STABILIZED": px4_mode(7),
+    }
+    auto: ClassVar[frozenset[str]] = frozenset({"HOLD", "TAKEOFF", "MISSION", "RETURN", "LAND"})
+    pilot_mode: ClassVar[str] = "POSCTL"
+    give_back_mode: ClassVar[str] = "HOLD"
+    heartbeat_on_mode_change: ClassVar[bool] = False
+    ready_after: ClassVar[float] = 6.0
+    streams_by_default: ClassVar[dict[int, float]] = {
+        mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
+        mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,
+        mavlink.MAVLINK_MSG_ID_ATTITUDE: 10.0,
+        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 5.0,
+        mavlink.MAVLINK_MSG_ID_VFR_HUD: 2.0,
+        mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 0.5,
+        mavlink.MAVLINK_MSG_ID_HOME_POSITION: 0.5,
+        mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 1.0,
+        mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
+    }
+
+    def __init__(self, conditions: Conditions) -> None:
+        super().__init__(conditions, Parameters(DEFAULTS, bytewise=True))
+        self._take_off_up = 0.0
+
+    # -- modes -----------------------------------------------------------------------------------------------------
+
+    def enter(self, mode: str) -> None:
+        flight = self.flight
+        if mode == "RETURN":
+            flight.return_home(self.parameters["RTL_RETURN_ALT"], self.parameters["MPC_XY_CRUISE"])
+        elif mode == "LAND":
+            flight.land()
+        elif mode == "TAKEOFF":
+            if flight.armed:
+                flight.take_off(self._take_off_up)
+        elif flight.in_air:
+            flight.stop()
+
+    def watch(self) -> None:
+        flight = self.flight
+        if self.mode == "TAKEOFF":
+            if flight.task == "idle":
+                flight.take_off(self._take_off_up)
+            elif self.navigation.up > self._take_off_up - 0.5:
+                self.set_mode("HOLD")
+        if self.mode in self.auto and self.mode not in ("RETURN", "LAND"):
+            self._watch_fence()
+
+    def landed(self) -> None:
+        self.mode = "HOLD"
+
+    def _watch_fence(self) -> None:
+        far, high = self.parameters["GF_MAX_HOR_DIST"], self.parameters["GF_MAX_VER_DIST"]
+        outside = 0.0 < far < math.hypot(self.navigation.north, self.navigation.east) or 0.0 < high < self.navigation.up
+        action = {2: "HOLD", 3: "RETURN", 5: "LAND"}.get(int(self.parameters["GF_ACTION"]))
+        if outside and action and self.mode != action:
+            self.say("Geofence breached", mavlink.MAV_SEVERITY_WARNING)
+            self.set_mode(action)
+
+    # -- commands --------------------------------------------------------------------------------------------------
+
+    def carry_out(self, command: Command) -> int:
+        match command.number:
+            case mavlink.MAV_CMD_COMPONENT_ARM_DISARM:
+                return self.arm() if command.p1 >= 0.5 else self.disarm()
+            case mavlink.MAV_CMD_DO_SET_MODE:
+                return self._select(px4_mode(int(command.p2), 0 if math.isnan(command.p3) else int(command.p3)))
+            case mavlink.MAV_CMD_NAV_TAKEOFF:
+                up = command.z - self.home.amsl_m if not math.isnan(command.z) else self.parameters["MIS_TAKEOFF_ALT"]
+                self._take_off_up = max(up, self.parameters["MIS_TAKEOFF_ALT"])
+                return self._select(self.modes["TAKEOFF"])
+            case mavlink.MAV_CMD_DO_REPOSITION:
+                return self._reposition(command)
+            case mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
+                return self._select(self.modes["RETURN"])
+            case mavlink.MAV_CMD_NAV_LAND:
+                return self._select(self.modes["LAND"])
+            case mavlink.MAV_CMD_DO_CHANGE_SPEED:
+                self.flight.demand.speed = min(command.p2, self.parameters["MPC_XY_VEL_MAX"])
+                return ACCEPTED
+            case _:
+                return UNSUPPORTED
+
+    def _select(self, custom_mode: int) -> int:
+        mode = next((name for name, number in self.modes.items() if number == custom_mode), None)
+        if mode is None:
+            return DENIED
+        if mode in self.auto and self.time < self.ready_after:
+            return TEMPORARILY_REJECTED
+        if mode != self.mode or not self.flight.in_air:
+            self.set_mode(mode)  # HOLD while in HOLD changes nothing: it flies on to where it was sent
+        return ACCEPTED
+
+    def _reposition(self, command: Command) -> int:
+        """Speed, change-mode flag, yaw (radians), place, altitude AMSL; from the pilot's mode into HOLD."""
+        if not self.flight.in_air:
+            return TEMPORARILY_REJECTED
+        change_mode = not math.isnan(command.p2) and int(command.p2) & 1
+        if self.mode != "HOLD" and not change_mode:
+            return DENIED
+        if self._spoiled_goto():
+            return ACCEPTED
+        if self.mode != "HOLD":
+            self.set_mode("HOLD")
+        nav = self.navigation
+        if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
+            self.flight.stop()  # "all three set to NaN - pause vehicle"
+            return ACCEPTED
+        place = nav.north, nav.east
+        if command.lat is not None and command.lon is not None:
+            place = self.home.to_local(command.lat, command.lon)
+        up = command.z - self.home.amsl_m if not math.isnan(command.z) else nav.up
+        speed = command.p1 if command.p1 > 0.0 else self.parameters["MPC_XY_CRUISE"]
+        self.flight.fly_to(*place, up, min(speed, self.parameters["MPC_XY_VEL_MAX"]))
+        yaw = deg_or_none(math.degrees(command.p4))
+        limit = self.parameters["MPC_YAWRAUTO_MAX"]
+        if yaw is not None and not self._spoiled_yaw():
+            self.flight.turn_to(yaw, limit)
+        elif yaw is None and math.hypot(place[0] - nav.north, place[1] - nav.east) > 2.0:
+            # with no yaw asked for the nose turns to where it flies
+            self.flight.turn_to(math.degrees(math.atan2(place[1] - nav.east, place[0] - nav.north)), limit)
+        return ACCEPTED
+
+    def disarm_delay(self) -> float:
+        return self.parameters["COM_DISARM_PRFLT"]
+
+    # -- pilot and failsafes ---------------------------------------------------------------------------------------
+
+    def move_sticks(self, velocity: tuple[float, float, float], yaw_rate: float) -> bool:
+        """COM_RC_OVERRIDE bit 0 covers the auto modes, bit 1 offboard."""
+        override = int(self.parameters["COM_RC_OVERRIDE"])
+        covered = override & 1 if self.mode in self.auto else override & 2 if self.mode == "OFFBOARD" else True
+        if not covered:
+            return False
+        if self.mode in self.auto or self.mode == "OFFBOARD":
+            self.set_mode("POSCTL")
+            self.say("Pilot took over using sticks")
+        self.flight.sticks(velocity, yaw_rate)
+        return True
+
+    def gcs_timeout(self) -> float:
+        return self.parameters["COM_DL_LOSS_T"]
+
+    def gcs_lost(self) -> None:
+        action = {1: "HOLD", 2: "RETURN", 3: "LAND"}.get(int(self.parameters["NAV_DLL_ACT"]))
+        if action and self.mode in self.auto and self.mode not in ("RETURN", "LAND"):
+            self.say("Failsafe activated: GCS connection lost", mavlink.MAV_SEVERITY_CRITICAL)
+            self.set_mode(action)
+
+    def battery_threshold(self) -> float:
+        return 100.0 * self.parameters["BAT_CRIT_THR"]
+
+    def battery_low(self) -> None:
+        action = {2: "LAND", 3: "RETURN"}.get(int(self.parameters["COM_LOW_BAT_ACT"]))
+        if action and self.flight.in_air and self.mode in self.auto:
+            self.set_mode(action)
