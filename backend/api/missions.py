@@ -4,31 +4,48 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from backend.api import summary
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
+from backend.mission.errors import MissionNotFound
 from backend.spec import MissionSpec
+from backend.store.digest import MissionDigest
 from backend.wire.resources import Mission, MissionList, PreflightReply
 
 router = APIRouter(prefix="/api/missions", tags=["missions"], responses=PROBLEM_RESPONSES)
 
 
+async def stored_mission(services: Services, mission_id: str) -> MissionDigest:
+    """Raises MissionNotFound."""
+    digest = await services.journal.mission(mission_id)
+    if digest is None:
+        raise MissionNotFound(mission_id)
+    return digest
+
+
+async def _mission(services: Services, mission_id: str) -> Mission:
+    digest = await stored_mission(services, mission_id)
+    return summary.mission(digest, await services.journal.read_kinds(mission_id, summary.DETAIL_KINDS))
+
+
 @router.get("")
 async def list_missions(services: ServicesDep) -> MissionList:
     """All missions, newest first."""
-    raise NotImplementedError
+    return MissionList(missions=[summary.mission_summary(digest) for digest in await services.journal.missions()])
 
 
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    raise NotImplementedError
+    return await _mission(services, await services.missions.create(spec, principal.name))
 
 
 @router.get("/{mission_id}")
 async def get_mission(mission_id: MissionId, services: ServicesDep) -> Mission:
     """One mission as the journal tells it."""
-    raise NotImplementedError
+    return await _mission(services, mission_id)
 
 
 @router.put("/{mission_id}/spec")
@@ -36,7 +53,8 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    raise NotImplementedError
+    await services.missions.edit(mission_id, spec, principal.name)
+    return await _mission(services, mission_id)
 
 
 @router.post("/{mission_id}/commands")
@@ -44,10 +62,11 @@ async def send_command(
     mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep
 ) -> CommandReply:
     """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
-    raise NotImplementedError
+    return await services.missions.command(mission_id, request, principal.name)
 
 
 @router.post("/{mission_id}/preflight")
 async def run_preflight(mission_id: MissionId, services: ServicesDep, principal: PrincipalDep) -> PreflightReply:
     """Run the checklist and record it."""
-    raise NotImplementedError
+    checked = await services.missions.preflight(mission_id)
+    return PreflightReply(passed=checked.passed, checks=checked.checks)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from fastapi import APIRouter
 
+from backend.api.areas import read_area
 from backend.api.dependencies import MissionId, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.spec import MissionSpec
@@ -27,4 +30,4 @@ async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
 @router.post("/areas")
 async def import_area(upload: AreaUpload) -> AreaImport:
     """Read the polygons of a GeoJSON or KML file as a mission area; 422 says what cannot be read."""
-    raise NotImplementedError
+    return await asyncio.to_thread(read_area, upload)

@@ -11,6 +11,8 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
+from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
+from backend.store.journal import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem
 
 log = logging.getLogger("crossfix.api")
@@ -81,6 +83,31 @@ async def on_invalid(_: Request, error: Exception) -> JSONResponse:
     )
 
 
+async def on_mission_input(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, MissionInputError)
+    errors = [FieldProblem(field=error.field, message=str(error))]
+    return respond(invalid(_sentence(str(error)), _sentence(error.remedy), errors).problem)
+
+
+async def on_mission_not_found(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, MissionNotFound)
+    return respond(ApiProblem(404, "No such mission", _sentence(str(error)), _sentence(error.remedy)).problem)
+
+
+async def on_mission_conflict(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, MissionConflict)
+    return respond(conflict(_sentence(str(error)), _sentence(error.remedy)).problem)
+
+
+async def on_journal_unavailable(_: Request, error: Exception) -> JSONResponse:
+    remedy = "The flight goes on and its events are kept on disk. Look at the database, then try again."
+    return respond(Problem(title="The database is away", status=503, detail=str(error), remedy=remedy))
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:].rstrip('.')}." if words else ""
+
+
 async def on_http(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)
     titles = {404: "No such page", 405: "Method not allowed", 413: "Too large"}
@@ -108,4 +135,8 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(ApiProblem, on_problem)
     app.add_exception_handler(RequestValidationError, on_invalid)
     app.add_exception_handler(HTTPException, on_http)
+    app.add_exception_handler(MissionInputError, on_mission_input)
+    app.add_exception_handler(MissionNotFound, on_mission_not_found)
+    app.add_exception_handler(MissionConflict, on_mission_conflict)
+    app.add_exception_handler(JournalUnavailable, on_journal_unavailable)
     app.add_exception_handler(Exception, on_fault)

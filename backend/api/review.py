@@ -2,17 +2,38 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Response
 
+from backend.api import summary
+from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
-from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.missions import stored_mission
+from backend.api.problems import PROBLEM_RESPONSES, not_found
+from backend.events import Recorded
+from backend.mission.ports import TrackPoint
+from backend.wire import export
 from backend.wire.resources import EventPage, SweepRecord, Track
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
 ExportFormat = Literal["geojson", "kml", "csv", "json"]
+
+EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], Sequence[TrackPoint]], str]] = {
+    "geojson": export.geojson,
+    "kml": export.kml,
+    "csv": export.bearings_csv,
+    "json": export.journal_json,
+}
+MEDIA_TYPES: dict[ExportFormat, str] = {
+    "geojson": "application/geo+json",
+    "kml": "application/vnd.google-earth.kml+xml",
+    "csv": "text/csv",
+    "json": "application/json",
+}
 
 BINARY: dict[int | str, dict[str, object]] = {
     200: {
@@ -23,15 +44,7 @@ BINARY: dict[int | str, dict[str, object]] = {
 FILE: dict[int | str, dict[str, object]] = {
     200: {
         "description": "The file",
-        "content": {
-            media: {"schema": {"type": "string", "format": "binary"}}
-            for media in (
-                "application/geo+json",
-                "application/vnd.google-earth.kml+xml",
-                "text/csv",
-                "application/json",
-            )
-        },
+        "content": {media: {"schema": {"type": "string", "format": "binary"}} for media in MEDIA_TYPES.values()},
     }
 }
 
@@ -44,7 +57,10 @@ async def list_events(
     limit: Annotated[int, Query(ge=1, le=5000)] = 1000,
 ) -> EventPage:
     """Recorded events with seq > after."""
-    raise NotImplementedError
+    digest = await stored_mission(services, mission_id)
+    recorded = await services.journal.read(mission_id, after)
+    page = recorded[:limit]
+    return EventPage(events=page, last_seq=digest.last_seq, more=len(recorded) > len(page))
 
 
 @router.get("/beliefs/{bearings}", response_class=Response, responses=BINARY)
@@ -55,22 +71,40 @@ async def get_belief(
     lite: bool = False,
 ) -> Response:
     """The belief after so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm."""
-    raise NotImplementedError
+    await stored_mission(services, mission_id)
+    recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
+    frame = await asyncio.to_thread(belief_frame, mission_id, recorded, bearings, lite)
+    if frame is None:
+        raise not_found("belief", f"after {bearings} bearings", "The mission has fewer bearings.")
+    return Response(frame, media_type="application/octet-stream")
 
 
 @router.get("/sweeps/{sweep_id}")
 async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: ServicesDep) -> SweepRecord:
     """The raw power samples of one sweep."""
-    raise NotImplementedError
+    await stored_mission(services, mission_id)
+    entry = await services.journal.sweep(mission_id, sweep_id)
+    if entry is None:
+        raise not_found("sweep", sweep_id, "The sweep ids are in the mission's events.")
+    return summary.sweep_record(entry)
 
 
 @router.get("/track")
 async def get_track(mission_id: MissionId, services: ServicesDep) -> Track:
     """The flown path."""
-    raise NotImplementedError
+    await stored_mission(services, mission_id)
+    points = [summary.track_fact(point) for point in await services.journal.track(mission_id)]
+    return Track(mission_id=mission_id, points=points)
 
 
 @router.get("/export/{format}", response_class=Response, responses=FILE)
 async def export_mission(mission_id: MissionId, format: ExportFormat, services: ServicesDep) -> Response:
     """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal)."""
-    raise NotImplementedError
+    await stored_mission(services, mission_id)
+    recorded = await services.journal.read(mission_id)
+    track = await services.journal.track(mission_id)
+    return Response(
+        await asyncio.to_thread(EXPORTS[format], recorded, track),
+        media_type=MEDIA_TYPES[format],
+        headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{format}"'},
+    )

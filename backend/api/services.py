@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
 
 from backend.commands import CommandReply, CommandRequest
 from backend.events import PreflightChecked
+from backend.live.hub import Hub
+from backend.settings import Settings
 from backend.spec import MissionSpec
+from backend.store.journal import SqlJournal
 from hardware.readings import Telemetry
 
 
@@ -28,12 +33,19 @@ class MissionService(Protocol):
 
     def telemetry(self) -> Telemetry: ...
 
+    def vehicle_detail(self) -> str:
+        """Why there is no vehicle, in the operator's words."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Services:
-    """Everything the endpoints use; made once by the application's start."""
+    """Everything the endpoints use; made once by the application's start. `now`: UTC epoch seconds of the mission's
+    clock."""
 
-    missions: Any
-    journal: Any
-    hub: Any
-    settings: Any
+    missions: MissionService
+    journal: SqlJournal
+    hub: Hub
+    settings: Settings
+    now: Callable[[], float]
+    began_monotonic_s: float = field(default_factory=time.monotonic)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import time
+
 from fastapi import APIRouter
 
 from backend.api.dependencies import ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.suggestion import suggested_mission
+from backend.live.snapshot import telemetry_message
+from backend.spec import Place
+from backend.version import VERSION
 from backend.wire.messages import TelemetryMessage
-from backend.wire.resources import Defaults, Health
+from backend.wire.resources import DatabaseHealth, Defaults, Health, VehicleHealth
 
 router = APIRouter(prefix="/api", tags=["system"], responses=PROBLEM_RESPONSES)
 
@@ -15,16 +21,35 @@ router = APIRouter(prefix="/api", tags=["system"], responses=PROBLEM_RESPONSES)
 @router.get("/health")
 async def health(services: ServicesDep) -> Health:
     """Which parts answer; never waits for one."""
-    raise NotImplementedError
+    settings, telemetry, report = services.settings, services.missions.telemetry(), services.journal.report()
+    kind = "sqlite" if settings.async_database_url.startswith("sqlite") else "postgresql"
+    return Health(
+        state="ok" if telemetry.connected and report.state == "ok" else "degraded",
+        version=VERSION,
+        uptime_s=time.monotonic() - services.began_monotonic_s,
+        database=DatabaseHealth(state=report.state, kind=kind, detail=report.detail, spooled=report.spooled),
+        vehicle=VehicleHealth(
+            connected=telemetry.connected,
+            autopilot=telemetry.autopilot,
+            detail="" if telemetry.connected else services.missions.vehicle_detail(),
+        ),
+        viewers=services.hub.viewers(),
+        simulated=settings.simulated,
+        time_factor=settings.time_factor,
+    )
 
 
 @router.get("/defaults")
 async def defaults(services: ServicesDep) -> Defaults:
     """A specification to start from, its area around the vehicle's home."""
-    raise NotImplementedError
+    telemetry, settings = services.missions.telemetry(), services.settings
+    known = telemetry.home or telemetry.position
+    home = Place(lat=known.lat_deg, lon=known.lon_deg) if known else None
+    fallback = Place(lat=settings.home_lat_deg, lon=settings.home_lon_deg)
+    return Defaults(spec=suggested_mission(home or fallback), home=home)
 
 
 @router.get("/vehicle")
 async def vehicle(services: ServicesDep) -> TelemetryMessage:
     """The vehicle as last heard, each value with its age."""
-    raise NotImplementedError
+    return telemetry_message(services.missions.telemetry(), services.now())

@@ -1,0 +1,38 @@
+"""The FastAPI application around given services."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager
+
+from fastapi import FastAPI
+
+from backend.api import live, problems
+from backend.api.guard import Guard
+from backend.api.page import Page
+from backend.api.schema import ROUTERS, operation_id
+from backend.settings import Settings
+from backend.version import VERSION
+
+Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
+
+
+def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
+    """`lifespan` puts the services into app.state.services before the first request."""
+    app = FastAPI(
+        title="Crossfix",
+        version=VERSION,
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+        redirect_slashes=False,
+        generate_unique_id_function=operation_id,
+    )
+    problems.install(app)
+    for router in ROUTERS:
+        app.include_router(router)
+    app.include_router(live.router)
+    app.router.default = Page(settings.page_dir)
+    app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))
+    return app

@@ -1,0 +1,142 @@
+"""What every request passes first: is it for us, does it come from our own page, is it of a sane size?
+
+A page of another site that is open in the operator's browser could otherwise reach the loopback address: by name
+(DNS rebinding: the Host header tells) or by a plain cross-site request or websocket (the Origin header tells; a CORS
+middleware guards neither the websocket nor requests that need no preflight).
+"""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from backend.api.problems import respond
+from backend.wire.problem import Problem
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+BODY_BYTES = 8 * 2**20
+UPLOADS = ("/api/maps", "/api/overlays")
+"""Their bodies are files, streamed to disk under limits of their own."""
+
+
+class Guard:
+    """Pure ASGI middleware around the whole application."""
+
+    def __init__(self, app: ASGIApp, allowed_hosts: Iterable[str]) -> None:
+        self._app = app
+        self._allowed = {"localhost", *(host.lower() for host in allowed_hosts)}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in {"http", "websocket"}:
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        problem = self._foreign(scope, headers) or _too_large(scope, headers)
+        if problem is not None:
+            await _refuse(problem, scope, receive, send)
+            return
+        if scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+            return
+        secured = _secured(send, headers.get("host", ""), scope["path"])
+        await self._app(scope, _counted(scope, receive), secured)
+
+    def _foreign(self, scope: Scope, headers: Headers) -> Problem | None:
+        host = headers.get("host", "")
+        if not self._is_ours(host):
+            return Problem(
+                title="Unknown host",
+                status=421,
+                detail=f"This server does not go by the name {host[:100]!r}.",
+                remedy="Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
+            )
+        if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+            return None
+        origin = headers.get("origin")
+        if origin is None or urlsplit(origin).netloc.lower() == host.lower():
+            return None
+        return Problem(
+            title="Foreign origin",
+            status=403,
+            detail=f"A page of {origin[:100]!r} may not command this server.",
+            remedy="Use the page that this server serves.",
+        )
+
+    def _is_ours(self, host: str) -> bool:
+        """An IP address cannot be rebound, a name can: only known names pass."""
+        try:
+            name = urlsplit(f"//{host}").hostname
+        except ValueError:
+            return False
+        if not name:
+            return False
+        try:
+            ipaddress.ip_address(name)
+        except ValueError:
+            return name in self._allowed
+        return True
+
+
+def _too_large(scope: Scope, headers: Headers) -> Problem | None:
+    length = headers.get("content-length", "0")
+    if scope["path"].startswith(UPLOADS) or not length.isdigit() or int(length) <= BODY_BYTES:
+        return None
+    return Problem(
+        title="Too large",
+        status=413,
+        detail=f"A request may have at most {BODY_BYTES // 2**20} MB.",
+        remedy="Simplify the geometry, or split the file.",
+    )
+
+
+def _counted(scope: Scope, receive: Receive) -> Receive:
+    if scope["path"].startswith(UPLOADS):
+        return receive
+    taken = 0
+
+    async def counted() -> Message:
+        nonlocal taken
+        message = await receive()
+        taken += len(message.get("body", b""))
+        if taken > BODY_BYTES:
+            raise HTTPException(413, f"A request may have at most {BODY_BYTES // 2**20} MB.")
+        return message
+
+    return counted
+
+
+async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+    """A websocket handshake is answered with the status too."""
+    if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    response = respond(problem)
+    await response(scope, receive, send)
+
+
+def _secured(send: Send, host: str, path: str) -> Send:
+    """MapLibre makes its worker from a blob and its icons from data; nothing comes from another machine."""
+    policy = (
+        "default-src 'self'; script-src 'self'; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; "
+        f"img-src 'self' data: blob:; connect-src 'self' ws://{host} wss://{host} blob: data:; frame-src 'self'; "
+        "frame-ancestors 'self'; object-src 'none'; base-uri 'none'; form-action 'self'"
+    )
+
+    async def secured(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.setdefault("content-security-policy", policy)
+            headers["x-content-type-options"] = "nosniff"
+            headers["referrer-policy"] = "no-referrer"
+            headers["cross-origin-opener-policy"] = "same-origin"
+            headers["cross-origin-resource-policy"] = "same-origin"
+            if path.startswith("/api/"):
+                headers.setdefault("cache-control", "no-store")
+        await send(message)
+
+    return secured

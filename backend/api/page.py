@@ -1,0 +1,55 @@
+"""The built page: hashed assets are kept for ever, everything else is asked for anew; unknown paths are the page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from starlette.exceptions import HTTPException
+from starlette.responses import HTMLResponse, Response
+from starlette.staticfiles import StaticFiles
+from starlette.types import Receive, Scope, Send
+
+NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Crossfix: the page is not built</title>
+<style>body{font:1.1rem/1.5 system-ui,sans-serif;max-width:40rem;margin:15vh auto;padding:0 1rem}</style>
+<h1>The page is not built yet</h1><p>The server runs. Build its page with <code>make build</code> (or start with
+<code>make run</code>), then load this address again.</p></html>"""
+
+
+class Page:
+    """ASGI application for every path that is no API path."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._files = StaticFiles(directory=folder, check_dir=False)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 4404, "reason": "no such websocket"})
+            return
+        response = await self._respond(scope)
+        await response(scope, receive, send)
+
+    async def _respond(self, scope: Scope) -> Response:
+        path = scope["path"]
+        if path == "/api" or path.startswith("/api/"):
+            raise HTTPException(404, f"The API has nothing at {path}.")
+        if scope["method"] not in {"GET", "HEAD"}:
+            raise HTTPException(405, "The page can only be read.", {"allow": "GET, HEAD"})
+        if not (self._folder / "index.html").is_file():
+            return HTMLResponse(NOT_BUILT, status_code=503, headers={"cache-control": "no-store"})
+        response = await self._file(path.lstrip("/") or "index.html", scope)
+        if response is None:
+            if Path(path).suffix:
+                raise HTTPException(404, f"There is no file {path}.")
+            response = await self._files.get_response("index.html", scope)
+        kept = "public, max-age=31536000, immutable" if path.startswith("/assets/") else "no-cache"
+        response.headers["cache-control"] = kept
+        return response
+
+    async def _file(self, path: str, scope: Scope) -> Response | None:
+        try:
+            return await self._files.get_response(path, scope)
+        except HTTPException as error:
+            if error.status_code == 404:
+                return None
+            raise

@@ -1,0 +1,21 @@
+"""A mission to start from: a rectangle north of the home, large enough to be worth a search."""
+
+from __future__ import annotations
+
+from backend.spec import MissionSpec, Place, Polygon
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint
+
+WIDTH_M, HEIGHT_M = 313.0, 200.0
+"""As wide as the field system's area, and deeper, so that a newcomer's search takes more than two places."""
+
+NAME = "New search"
+
+
+def suggested_mission(home: Place) -> MissionSpec:
+    """All other values are the specification's defaults. The home lies on the area's southern edge."""
+    frame = LocalFrame(GeoPoint(home.lat, home.lon))
+    east = WIDTH_M / 2
+    corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
+    ring = [(point.lon_deg, point.lat_deg) for point in (frame.to_geo(x, y) for x, y in corners)]
+    return MissionSpec(name=NAME, area=Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]]))

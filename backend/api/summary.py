@@ -1,0 +1,112 @@
+"""Stored facts as the resources of the wire."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+from numpy.typing import NDArray
+
+from backend.events import BeliefUpdated, MissionDrafted, MissionEdited, MissionEnded, MissionStarted, Recorded
+from backend.mission.ports import TrackPoint
+from backend.mission.state import GROUND
+from backend.store.digest import EPOCH, MissionDigest
+from backend.store.entries import SweepEntry
+from backend.wire.resources import Mission, MissionSummary, SweepRecord, TrackFact
+
+DETAIL_KINDS = ("mission_drafted", "mission_edited", "mission_started", "belief_updated", "mission_ended")
+"""The events that `mission` needs."""
+
+
+def _utc(at_us: int | None) -> datetime | None:
+    return None if at_us is None else EPOCH + timedelta(microseconds=at_us)
+
+
+def _summary(digest: MissionDigest) -> dict[str, object]:
+    return {
+        "mission_id": digest.mission_id,
+        "name": digest.name,
+        "phase": digest.phase,
+        "outcome": digest.outcome,
+        "drafted_at_utc": _utc(digest.drafted_at_us),
+        "started_at_utc": _utc(digest.started_at_us),
+        "ended_at_utc": _utc(digest.ended_at_us),
+        "mission_time_s": digest.mission_time_s,
+        "bearings": digest.bearings,
+        "rejected_sweeps": digest.rejected_sweeps,
+        "last_seq": digest.last_seq,
+    }
+
+
+def mission_summary(digest: MissionDigest) -> MissionSummary:
+    return MissionSummary.model_validate(_summary(digest))
+
+
+def mission(digest: MissionDigest, recorded: Sequence[Recorded]) -> Mission:
+    """recorded: the mission's events of DETAIL_KINDS, in order."""
+    spec = home = belief = ended = None
+    for record in recorded:
+        match record.event:
+            case MissionDrafted(spec=given) | MissionEdited(spec=given):
+                spec = given
+            case MissionStarted(home=place):
+                home = place
+            case BeliefUpdated() as updated:
+                belief = updated
+            case MissionEnded() as end:
+                ended = end
+    return Mission.model_validate(
+        {
+            **_summary(digest),
+            "spec": spec,
+            "editable": digest.phase in GROUND,
+            "home": home,
+            "estimate": belief.estimate if belief else None,
+            "localized": belief.localized if belief else False,
+            "not_yet": belief.not_yet if belief else ["no bearing was taken yet"],
+            "outcome_reason": ended.reason if ended else None,
+        }
+    )
+
+
+def sweep_record(entry: SweepEntry) -> SweepRecord:
+    sweep = entry.sweep()
+    began_s = float(sweep.at_s[0]) if len(sweep.at_s) else 0.0
+    return SweepRecord.model_validate(
+        {
+            "sweep_id": entry.sweep_id,
+            "mission_id": entry.mission_id,
+            "place_number": entry.place_number,
+            "attempt": entry.attempt,
+            "began_at_utc": datetime.fromtimestamp(began_s if math.isfinite(began_s) else 0.0, UTC),
+            "place": {"lat": entry.lat_deg, "lon": entry.lon_deg},
+            "altitude_amsl_m": entry.altitude_amsl_m,
+            "frequency_hz": entry.frequency_hz,
+            "drift_m": entry.drift_m,
+            "clipped_samples": entry.clipped_samples,
+            "noise_floor_db": entry.noise_floor_db,
+            "tag": entry.tag,
+            "at_s": _numbers(sweep.at_s - began_s),
+            "heading_deg": _numbers(sweep.heading_deg),
+            "power_db": _numbers(sweep.power_db),
+        }
+    )
+
+
+def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+    return [value if math.isfinite(value) else None for value in values.tolist()]
+
+
+def track_fact(point: TrackPoint) -> TrackFact:
+    return TrackFact(
+        at_utc=datetime.fromtimestamp(point.at_s, UTC),
+        lat=point.lat_deg,
+        lon=point.lon_deg,
+        altitude_amsl_m=point.altitude_amsl_m,
+        altitude_relative_m=point.altitude_relative_m,
+        heading_deg=point.heading_deg,
+        battery_percent=point.battery_percent,
+        mode=point.mode,
+    )

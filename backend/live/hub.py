@@ -1,0 +1,219 @@
+"""Shows what happens to everybody who watches, and waits for nobody.
+
+Events are kept as one text each in a bounded ring a mission; a viewer has a cursor into it and reads the journal when
+it fell behind the ring, so no event is ever dropped and a viewer that stands still costs no memory. Values that go
+stale (telemetry, sweep progress, status, belief) are slots: the newest wins, and what a viewer missed is counted.
+Everything is encoded once for all viewers.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict, deque
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from itertools import islice
+from typing import Literal
+
+from backend.events import Recorded
+from backend.live.snapshot import telemetry_message
+from backend.mission.ports import Status
+from backend.wire.belief_frame import encode_belief
+from backend.wire.messages import EventMessage, StatusMessage, SweepProgress
+from hardware.readings import Telemetry
+from planner.belief.grid import GridBelief
+
+RING = 500
+FEEDS = 8
+STALLED_S = 3.0
+PROGRESS_POINTS = 360
+
+SlotName = Literal["telemetry", "status", "sweep_progress", "belief"]
+ReadEvents = Callable[[str, int], Awaitable[list[Recorded]]]
+
+
+class BeliefFrame:
+    """A belief in the encodings that somebody asked for."""
+
+    def __init__(self, mission_id: str, bearings: int, belief: GridBelief, corners: list[tuple[float, float]]) -> None:
+        self._content = (mission_id, bearings, belief.density, corners)
+        self._encoded: dict[bool, bytes] = {}
+
+    def encoded(self, lite: bool) -> bytes:
+        if lite not in self._encoded:
+            self._encoded[lite] = encode_belief(*self._content, lite=lite)
+        return self._encoded[lite]
+
+
+@dataclass(slots=True)
+class Slot:
+    """version counts the values that were put in; 0: none yet."""
+
+    version: int = 0
+    value: str | BeliefFrame | None = None
+
+    def put(self, value: str | BeliefFrame | None) -> None:
+        self.version += 1
+        self.value = value
+
+
+@dataclass(slots=True)
+class Feed:
+    """What one mission's viewers see. ring: texts of consecutive events, the newest last."""
+
+    last_seq: int = 0
+    ring: deque[str] = field(default_factory=lambda: deque(maxlen=RING))
+    progress: Slot = field(default_factory=Slot)
+    belief: Slot = field(default_factory=Slot)
+
+    def add(self, record: Recorded) -> bool:
+        """False when it was known already. After a gap the ring begins anew: viewers read the gap in the journal."""
+        if record.seq <= self.last_seq:
+            return False
+        if self.ring and record.seq != self.last_seq + 1:
+            self.ring.clear()
+        self.ring.append(event_text(record))
+        self.last_seq = record.seq
+        return True
+
+    def skip_to(self, seq: int) -> None:
+        """The journal is further than what was published here: viewers read that part there."""
+        self.ring.clear()
+        self.last_seq = seq
+
+    def after(self, seq: int) -> list[str] | None:
+        """The texts with a higher number, or None when some are not in the ring any more."""
+        missing = self.last_seq - seq
+        if missing <= 0:
+            return []
+        if missing > len(self.ring):
+            return None
+        return list(islice(self.ring, len(self.ring) - missing, None))
+
+
+def event_text(record: Recorded) -> str:
+    return EventMessage(recorded=record).model_dump_json()
+
+
+@dataclass(eq=False, slots=True)
+class Viewer:
+    """One websocket. sending_since: loop time at which the send began that has not returned yet, None between sends."""
+
+    mission_id: str | None
+    lite: bool
+    cursor: int
+    wake: asyncio.Event = field(default_factory=asyncio.Event)
+    seen: dict[SlotName, int] = field(default_factory=dict)
+    dropped: int = 0
+    sending_since: float | None = None
+
+
+class Hub:
+    """backend.mission.ports.Publisher; `read` gives stored events after a number. Lives on one event loop."""
+
+    def __init__(self, read: ReadEvents, now: Callable[[], float]) -> None:
+        self.read = read
+        self._now = now
+        self._viewers: set[Viewer] = set()
+        self._feeds: OrderedDict[str, Feed] = OrderedDict()
+        self._telemetry = Slot()
+        self._status = Slot()
+
+    # Publisher
+
+    def events(self, recorded: Sequence[Recorded]) -> None:
+        for record in recorded:
+            feed = self.feed(record.mission_id)
+            if feed.add(record):
+                if record.event.kind in {"sweep_started", "sweep_rejected", "bearing_measured"}:
+                    feed.progress.put(None)
+                self._wake(record.mission_id)
+
+    def telemetry(self, telemetry: Telemetry, now_s: float) -> None:
+        self._telemetry.put(telemetry_message(telemetry, now_s).model_dump_json())
+        self._wake(None)
+
+    def sweep_progress(
+        self, mission_id: str, place_number: int, heading_deg: list[float], power_db: list[float], turned_deg: float
+    ) -> None:
+        step = -(-len(heading_deg) // PROGRESS_POINTS) or 1
+        message = SweepProgress(
+            mission_id=mission_id,
+            place_number=place_number,
+            heading_deg=heading_deg[::step],
+            power_db=power_db[::step],
+            turned_deg=turned_deg,
+        )
+        self.feed(mission_id).progress.put(message.model_dump_json())
+        self._wake(mission_id)
+
+    def belief(
+        self, mission_id: str, bearings: int, belief: GridBelief, corners_lon_lat: list[tuple[float, float]]
+    ) -> None:
+        self.feed(mission_id).belief.put(BeliefFrame(mission_id, bearings, belief, corners_lon_lat))
+        self._wake(mission_id)
+
+    def status(self, status: Status) -> None:
+        message = StatusMessage(
+            at_utc=datetime.fromtimestamp(self._now(), UTC),
+            mission_id=status.mission_id,
+            phase=status.phase,
+            doing=status.doing,
+            waits_for=status.waits_for,
+            receiver=status.receiver,
+            receiver_power_db=status.receiver_power_db,
+            receiver_age_s=status.receiver_age_s,
+            viewers=len(self._viewers),
+            battery_to_return_percent=status.battery_to_return_percent,
+            database=status.database,
+        )
+        self._status.put(message.model_dump_json())
+        self._wake(None)
+
+    def watchers(self) -> int:
+        """Viewers that take what they are sent: one whose send has not returned for some seconds is no watcher."""
+        now = asyncio.get_running_loop().time()
+        return sum(viewer.sending_since is None or now - viewer.sending_since < STALLED_S for viewer in self._viewers)
+
+    # Viewers
+
+    def viewers(self) -> int:
+        return len(self._viewers)
+
+    def join(self, viewer: Viewer, last_seq: int) -> None:
+        """last_seq: of the mission in the journal. The newest value of each slot counts as unseen, older ones not as
+        missed."""
+        if viewer.mission_id is not None and last_seq > self.feed(viewer.mission_id).last_seq:
+            self.feed(viewer.mission_id).skip_to(last_seq)
+            self._wake(viewer.mission_id)
+        for name, slot in self.slots(viewer).items():
+            viewer.seen[name] = max(0, slot.version - 1)
+        self._viewers.add(viewer)
+
+    def leave(self, viewer: Viewer) -> None:
+        self._viewers.discard(viewer)
+
+    def slots(self, viewer: Viewer) -> dict[SlotName, Slot]:
+        slots: dict[SlotName, Slot] = {"telemetry": self._telemetry, "status": self._status}
+        if viewer.mission_id is not None:
+            feed = self.feed(viewer.mission_id)
+            slots |= {"sweep_progress": feed.progress, "belief": feed.belief}
+        return slots
+
+    def feed(self, mission_id: str) -> Feed:
+        """Feeds nobody asked for longest are forgotten; the journal has their events."""
+        if mission_id not in self._feeds:
+            self._feeds[mission_id] = Feed()
+            watched = {viewer.mission_id for viewer in self._viewers}
+            for other in [name for name in self._feeds if name not in watched and name != mission_id]:
+                if len(self._feeds) <= FEEDS:
+                    break
+                del self._feeds[other]
+        self._feeds.move_to_end(mission_id)
+        return self._feeds[mission_id]
+
+    def _wake(self, mission_id: str | None) -> None:
+        for viewer in self._viewers:
+            if mission_id is None or viewer.mission_id == mission_id:
+                viewer.wake.set()

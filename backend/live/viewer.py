@@ -1,0 +1,72 @@
+"""The loop that serves one viewer: stored events first, then whatever is new, at the viewer's own pace."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Awaitable, Callable, Sequence
+
+from backend.events import Recorded
+from backend.live.hub import BeliefFrame, Hub, SlotName, Viewer, event_text
+
+Send = Callable[[str | bytes], Awaitable[None]]
+
+EVENTS_AT_ONCE = 50
+"""After so many events a look at the slots, so that telemetry lives while a long journal is caught up with."""
+
+SEND_S = 20.0
+
+
+class ViewerStalled(Exception):
+    """The viewer has taken nothing for `SEND_S`: it is let go, and may come back with its last number."""
+
+
+async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
+    """Runs until cancelled or until `send` raises. The viewer has joined the hub before."""
+    waiting: deque[str | Recorded] = deque()
+    while True:
+        if not waiting:
+            viewer.wake.clear()
+            waiting.extend(await _next_events(hub, viewer))
+        for _ in range(min(EVENTS_AT_ONCE, len(waiting))):
+            item = waiting.popleft()
+            await _send(viewer, send, item if isinstance(item, str) else event_text(item))
+            viewer.cursor += 1
+        for name, slot in hub.slots(viewer).items():
+            missed = slot.version - viewer.seen[name] - 1
+            if missed < 0:
+                continue
+            viewer.seen[name] = slot.version
+            if slot.value is not None:
+                await _send(viewer, send, _content(viewer, name, slot.value, missed))
+        if not waiting:
+            await viewer.wake.wait()
+
+
+async def _next_events(hub: Hub, viewer: Viewer) -> Sequence[str | Recorded]:
+    """The events right after the cursor, from the ring or, when it does not reach back so far, the journal."""
+    if viewer.mission_id is None:
+        return []
+    texts = hub.feed(viewer.mission_id).after(viewer.cursor)
+    return await hub.read(viewer.mission_id, viewer.cursor) if texts is None else texts
+
+
+def _content(viewer: Viewer, name: SlotName, value: str | BeliefFrame, missed: int) -> str | bytes:
+    if isinstance(value, BeliefFrame):
+        return value.encoded(viewer.lite)
+    if name == "telemetry":
+        viewer.dropped += missed
+        # `dropped` is the message's last field, the only one that differs between viewers
+        return f"{value.removesuffix('0}')}{viewer.dropped}}}"
+    return value
+
+
+async def _send(viewer: Viewer, send: Send, content: str | bytes) -> None:
+    viewer.sending_since = asyncio.get_running_loop().time()
+    try:
+        async with asyncio.timeout(SEND_S):
+            await send(content)
+    except TimeoutError as error:
+        raise ViewerStalled from error
+    finally:
+        viewer.sending_since = None

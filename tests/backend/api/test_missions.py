@@ -1,0 +1,106 @@
+"""Drafting, editing and commanding over HTTP, and how the API says no."""
+
+from __future__ import annotations
+
+from uuid import uuid4
+
+import pytest
+
+AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
+
+
+def spec(**changes) -> dict:
+    return {"name": "Search", "area": AREA, **changes}
+
+
+async def draft(client, **changes) -> dict:
+    reply = await client.post("/api/missions", json=spec(**changes))
+    assert reply.status_code == 201, reply.text
+    return reply.json()
+
+
+def is_problem(reply, status: int) -> dict:
+    assert reply.status_code == status, reply.text
+    assert reply.headers["content-type"] == "application/problem+json"
+    problem = reply.json()
+    assert problem["status"] == status
+    assert problem["title"]
+    assert problem["detail"]
+    assert "Traceback" not in reply.text
+    return problem
+
+
+async def test_a_drafted_mission_is_listed_and_opens_again(client):
+    first, second = await draft(client, name="one"), await draft(client, name="two")
+    assert {m["name"] for m in (await client.get("/api/missions")).json()["missions"]} == {"one", "two"}
+    again = (await client.get(f"/api/missions/{first['mission_id']}")).json()
+    assert again == first
+    assert again["phase"] == "draft"
+    assert again["editable"]
+    assert again["spec"]["sensor"]["sigma_deg"] == 7.0
+    assert second["mission_id"] != first["mission_id"]
+
+
+async def test_editing_replaces_the_specification(client):
+    mission = await draft(client)
+    url = f"/api/missions/{mission['mission_id']}"
+    edited = (await client.put(f"{url}/spec", json=spec(name="Other"))).json()
+    assert edited["name"] == edited["spec"]["name"] == "Other"
+    assert (await client.get(url)).json() == edited
+
+
+async def test_a_wrong_field_is_named(client):
+    problem = is_problem(await client.post("/api/missions", json=spec(sensor={"sigma_deg": -1})), 422)
+    assert [error["field"] for error in problem["errors"]] == ["sensor.sigma_deg"]
+    problem = is_problem(await client.post("/api/missions", json=spec(colour="red")), 422)
+    assert [error["field"] for error in problem["errors"]] == ["colour"]
+
+
+@pytest.mark.parametrize("body", [b"", b"{", b"[" * 100_000, b"\xff\xfe", b'{"name": NaN}', b"1" * 5000])
+async def test_a_body_that_is_no_json_is_a_problem(client, body):
+    reply = await client.post("/api/missions", content=body, headers={"content-type": "application/json"})
+    is_problem(reply, reply.status_code)
+    assert 400 <= reply.status_code < 500
+
+
+@pytest.mark.parametrize("rest", ["", "/events", "/track", "/sweeps/s", "/beliefs/0", "/export/kml"])
+async def test_an_unknown_mission_is_not_found(client, rest):
+    is_problem(await client.get(f"/api/missions/nobody{rest}"), 404)
+
+
+async def test_a_command_reaches_the_mission_and_its_refusal_is_an_answer(client, services):
+    mission = await draft(client)
+    body = {"command_id": str(uuid4()), "command": {"kind": "hold"}}
+    reply = await client.post(f"/api/missions/{mission['mission_id']}/commands", json=body)
+    assert reply.status_code == 200
+    assert reply.json()["accepted"] is False
+    assert reply.json()["reason"] == "nothing flies here"
+    assert [str(request.command_id) for request in services.missions.asked] == [body["command_id"]]
+    is_problem(await client.post("/api/missions/nobody/commands", json=body), 404)
+    body["command"] = {"kind": "fly_away"}
+    is_problem(await client.post(f"/api/missions/{mission['mission_id']}/commands", json=body), 422)
+
+
+async def test_a_fault_of_our_own_is_a_problem_with_an_incident(client, services, monkeypatch, caplog):
+    def broken() -> None:
+        raise RuntimeError("secret detail")
+
+    monkeypatch.setattr(services.missions, "telemetry", broken)
+    reply = await client.get("/api/vehicle")
+    problem = is_problem(reply, 500)
+    assert problem["incident"] in caplog.text
+    assert "secret detail" not in reply.text
+
+
+async def test_unknown_paths_and_methods_are_problems(client):
+    is_problem(await client.get("/api/nothing"), 404)
+    is_problem(await client.delete("/api/missions"), 405)
+
+
+async def test_too_large_a_body_is_refused_with_and_without_a_length(client):
+    async def chunks():
+        for _ in range(9):
+            yield b" " * 2**20
+
+    is_problem(await client.post("/api/missions", content=b" " * (9 * 2**20)), 413)
+    is_problem(await client.post("/api/missions", content=chunks()), 413)
