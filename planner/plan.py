@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from planner.belief.grid import GridBelief
+from planner.belief.grid import GridBelief, prior_belief
 from planner.kernels.model import Tasks
 from planner.policy.rollout import Rollout
 from planner.policy.simulation import HORIZON, BasePolicy, KernelName, TerminalValue, simulate
@@ -19,7 +19,7 @@ from planner.sampling import Sampling, random_paths
 from planner.selection.sequential_halving import sequential_halving
 from planner.selection.types import Selection
 from planner.selection.uniform import uniform
-from planner.types import Bearing, Decision, FloatArray, PlannerError, Problem
+from planner.types import Bearing, Decision, FloatArray, LinearMotion, PlannerError, Problem
 
 SelectionName = Literal["sequential_halving", "uniform"]
 _SELECTIONS: dict[str, Selection] = {"sequential_halving": sequential_halving, "uniform": uniform}
@@ -58,7 +58,7 @@ def plan(
     horizon: int = HORIZON,
     terminal: TerminalValue | None = None,
     without: Sequence[tuple[float, float]] = (),
-    kernel: KernelName = "reference",
+    kernel: KernelName = "compiled",
 ) -> Decision:
     """The next place to measure from, by policy rollout.
 
@@ -97,7 +97,7 @@ def expected_time_from(
     threads: int = 1,
     heading: float | None = None,
     horizon: int = HORIZON,
-    kernel: KernelName = "reference",
+    kernel: KernelName = "compiled",
 ) -> ExpectedTime:
     """Time until localization when the next bearing is taken at xy (m ENU), then the base policy followed.
 
@@ -144,3 +144,6 @@ def _check(belief: GridBelief, bearings: Sequence[Bearing], budget: int) -> None
 
 def warm_up() -> None:
     """Load (the first time: compile) the kernels, so that the first plan of a mission does not wait for them."""
+    square = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]])
+    problem = Problem((square,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
+    plan(problem, prior_belief(problem), (), (0.0, 0.0), budget=16, threads=1)

@@ -23,7 +23,9 @@ WIDEST_SIGMA = np.deg2rad(15.0)
 """Rollouts assume at most this noise: the likelihood's polynomial is good to 2e-4 there, to 3e-9 below 7 deg."""
 
 CLOSED_FEATURES = 10
-"""A rollout's end: platform x, y, estimate x, y, covariance xx, xy, yy, expected RMSE, bearings, localized (0 or 1)."""
+"""A rollout's end: platform x, y, estimate x, y, covariance xx, xy, yy, expected RMSE, bearings, localized (0 or 1).
+
+Of a localized rollout the expected RMSE is not worked out: the threshold stands there."""
 
 
 class Start(NamedTuple):

@@ -35,9 +35,9 @@ from planner.types import FloatArray
 
 NEARLY = 1e-9
 CONFIDENCE = 0.95
-HISTOGRAM_SHIFT = 46
-"""Weights are counted in bins of 1/64 octave, the leading 18 bits of a double, to find the 95 % cells."""
-HISTOGRAM_BINS = 2048
+HISTOGRAM_SHIFT = 48
+"""Weights are counted in bins of 1/16 octave, the leading 16 bits of a double, to find the 95 % cells."""
+HISTOGRAM_BINS = 512
 MEDIAN_STEPS = 20
 DEEPEST_DOUBLING = 12
 
@@ -97,7 +97,8 @@ def rollout(
         direction = float(np.arctan2(flight[1], flight[0])) if distance > 0 else heading
         cost += flight_time(rules, distance, direction - heading) + rules.measurement_time  # (4.5)
         place, heading, lattice = following, direction, next_lattice
-    end = [*place, look.x, look.y, look.xx, look.xy, look.yy, look.expected_rmse, belief.bearings, localized]
+    left_over = rules.threshold if localized else look.expected_rmse
+    end = [*place, look.x, look.y, look.xx, look.xy, look.yy, left_over, belief.bearings, localized]
     return cost, step + 1, np.array(end, dtype=float)
 
 
@@ -263,7 +264,7 @@ def second_largest(values: FloatArray) -> float:
 
 
 def confidence_hull(belief: Belief) -> FloatArray:
-    """Convex hull of the heaviest cells that hold 95 % of the mass; whole bins of equal weight (1/64 octave) enter."""
+    """Convex hull of the heaviest cells that hold 95 % of the mass; whole bins of equal weight (1/16 octave) enter."""
     weight = np.ascontiguousarray(belief.weight)
     bins = weight.view(np.int64) >> HISTOGRAM_SHIFT
     below_top = bins.max() - bins

@@ -103,7 +103,7 @@ class Rollout:
     budget: int = 3600
     threads: int = 1
     horizon: int = HORIZON
-    kernel: KernelName = "reference"
+    kernel: KernelName = "compiled"
     terminal: TerminalValue | None = None
     heading: float | None = None
     without: Sequence[tuple[float, float]] = ()

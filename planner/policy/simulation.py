@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from planner.belief.grid import GridBelief
-from planner.kernels import reference
+from planner.kernels import compiled, reference
 from planner.kernels.model import (
     ELLIPSE,
     EXPECTED_VALUE,
@@ -65,7 +65,7 @@ class Simulation:
     heading: float | None
     roads: RoadMap | None
     threads: int = 1
-    kernel: KernelName = "reference"
+    kernel: KernelName = "compiled"
     terminal: TerminalValue | None = None
 
     def first_actions(self, places: FloatArray) -> Actions:
@@ -84,7 +84,7 @@ class Simulation:
     def run(self, actions: Actions, paths: Paths, tasks: Tasks) -> Outcomes:
         """Outcomes of all tasks, cut rollouts closed by the terminal value; tasks are shared out to the threads."""
         out = outcomes(len(tasks.action))
-        kernel = reference.rollouts
+        kernel = compiled.rollouts if self.kernel == "compiled" else reference.rollouts
         parts = max(1, min(self.threads, len(tasks.action) // 8))
         if parts == 1:
             kernel(self.start, self.rules, actions, paths, tasks, out)
@@ -113,7 +113,7 @@ def simulate(
     heading: float | None = None,
     horizon: int = HORIZON,
     threads: int = 1,
-    kernel: KernelName = "reference",
+    kernel: KernelName = "compiled",
     terminal: TerminalValue | None = None,
 ) -> Simulation:
     """Prepare rollouts from this belief. PlannerError for numbers that cannot be flown or measured with."""
