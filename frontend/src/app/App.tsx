@@ -1,0 +1,62 @@
+// The safety bar at once; everything else as it arrives.
+import type { ComponentType } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { t } from "../i18n";
+import { SafetyBar } from "../panels/SafetyBar";
+import { overlay } from "./overlay";
+import { route, type Route } from "./route";
+
+type Page = ComponentType<Record<string, unknown>>;
+type Loader = () => Promise<unknown>;
+
+const loaders: Record<Route["page"] | "sheets", Loader> = {
+  missions: () => import("../pages/MissionsPage").then((m) => m.MissionsPage),
+  new: () => import("../pages/EditPage").then((m) => m.EditPage),
+  edit: () => import("../pages/EditPage").then((m) => m.EditPage),
+  mission: () => import("../pages/FlyPage").then((m) => m.FlyPage),
+  maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
+  sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
+};
+
+function Lazy({ name, quiet = false, ...properties }: { name: keyof typeof loaders; quiet?: boolean } & Record<string, unknown>) {
+  const [state, setState] = useState<{ name: string; page: Page | null; failed: boolean }>({ name: "", page: null, failed: false });
+  useEffect(() => {
+    let wanted = true;
+    loaders[name]().then(
+      (page) => wanted && setState({ name, page: page as Page, failed: false }),
+      () => wanted && setState({ name, page: null, failed: true }),
+    );
+    return () => {
+      wanted = false;
+    };
+  }, [name]);
+  if (state.failed) {
+    return (
+      <p class="center" role="alert">
+        {t("app.loadFailed")} <button onClick={() => location.reload()}>{t("app.reload")}</button>
+      </p>
+    );
+  }
+  const Shown = state.name === name ? state.page : null;
+  if (!Shown) return quiet ? null : <p class="center muted">{t("app.loading")}</p>;
+  return <Shown {...properties} />;
+}
+
+function Sheets() {
+  const which = overlay.value;
+  if (which !== "settings" && which !== "keys" && which !== "tour") return null;
+  return <Lazy name="sheets" quiet which={which} />;
+}
+
+export function App() {
+  const current = route.value;
+  return (
+    <>
+      <SafetyBar />
+      <main>
+        <Lazy name={current.page} route={current} key={current.page} />
+      </main>
+      <Sheets />
+    </>
+  );
+}

@@ -1,0 +1,34 @@
+// Keys: '?' shows the sheet. Flight commands are chords, so that no single stray key flies anything.
+import { sendUrgent, type Urgent } from "../commands/urgent";
+import { overlay, toggle } from "./overlay";
+import { change, settings } from "./settings";
+import { flying, look } from "./store";
+
+const CHORDS: Record<string, Urgent> = { KeyA: "abort", KeyH: "hold", KeyR: "return" };
+
+const typing = (target: EventTarget | null) =>
+  target instanceof HTMLElement && (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName));
+
+function onKeyDown(event: KeyboardEvent): void {
+  const chord = event.altKey && event.shiftKey && !event.ctrlKey ? CHORDS[event.code] : undefined;
+  if (chord) {
+    event.preventDefault();
+    const target = flying.peek();
+    if (target) void sendUrgent(target.id, chord);
+    return;
+  }
+  if (event.key === "Escape") {
+    overlay.value = null;
+    return;
+  }
+  if (event.ctrlKey || event.altKey || event.metaKey || typing(event.target)) return;
+  if (event.key === "?") toggle("keys");
+  else if (event.key === "a") toggle("alerts");
+  else if (event.key === "l") look(null);
+  else if (event.key === "m") change("tones", !settings.peek().tones);
+  else if (event.key === "g") location.hash = "#/";
+}
+
+export function watchKeys(): void {
+  addEventListener("keydown", onKeyDown);
+}

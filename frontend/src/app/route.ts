@@ -1,0 +1,29 @@
+// Which page is shown: the part of the address after '#'.
+import { signal } from "@preact/signals";
+
+export type Route =
+  | { page: "missions" }
+  | { page: "new"; from: string | null }
+  | { page: "edit"; missionId: string }
+  | { page: "mission"; missionId: string }
+  | { page: "maps" };
+
+export function parseRoute(hash: string): Route {
+  const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
+  const id = parts[1];
+  if (parts[0] === "new") return { page: "new", from: id ?? null };
+  if (parts[0] === "maps") return { page: "maps" };
+  if (parts[0] === "mission" && id) return parts[2] === "edit" ? { page: "edit", missionId: id } : { page: "mission", missionId: id };
+  return { page: "missions" };
+}
+
+export const route = signal<Route>(parseRoute(location.hash));
+addEventListener("hashchange", () => {
+  route.value = parseRoute(location.hash);
+});
+
+export const missionAddress = (id: string) => `#/mission/${encodeURIComponent(id)}`;
+
+export function go(hash: string): void {
+  location.hash = hash;
+}

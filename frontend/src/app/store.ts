@@ -1,0 +1,204 @@
+// The page's state: what the source told, the moment looked at, and what follows from both.
+import { batch, computed, effect, signal } from "@preact/signals";
+import type { Source, SourceMessage } from "../sources/source";
+import { ageS } from "../state/age";
+import { emptyLive, reduceLive, type LiveState } from "../state/live";
+import { inFlight, missionAt, type MissionState } from "../state/mission";
+import type { Phase, TrackFact } from "../wire";
+import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
+
+export const live = signal<LiveState>(emptyLive);
+export const source = signal<Source | null>(null);
+
+/** Monotonic page time, ms; moves four times a second so that ages move. */
+export const nowMs = signal(performance.now());
+setInterval(() => {
+  nowMs.value = performance.now();
+}, 250);
+
+/** Sequence number of the event looked at; null: now. */
+export const cursor = signal<number | null>(null);
+
+export const events = computed(() => live.value.events);
+const liveMission = computed(() => live.value.mission);
+
+export const mission = computed<MissionState>(() =>
+  cursor.value === null ? liveMission.value : missionAt(events.value, cursor.value),
+);
+
+/** UTC of the event looked at, ms; null while live. */
+export const reviewTimeMs = computed<number | null>(() => {
+  if (cursor.value === null) return null;
+  const at = events.value.findLast((e) => e.seq <= cursor.value!)?.at_utc;
+  return at === undefined ? null : Date.parse(at);
+});
+
+export const track = signal<readonly TrackFact[]>([]);
+
+export interface VehicleView {
+  at: LonLat | null;
+  headingDeg: number | null;
+  positionAgeS: number | null;
+  altitudeRelativeM: number | null;
+  speedMs: number | null;
+  mode: string | null;
+}
+
+const telemetry = computed(() => live.value.telemetry);
+
+const reviewPoint = computed<TrackFact | null>(() => {
+  const time = reviewTimeMs.value;
+  if (time === null) return null;
+  return track.value.findLast((p) => Date.parse(p.at_utc) <= time) ?? track.value[0] ?? null;
+});
+
+export const vehicle = computed<VehicleView>(() => {
+  if (cursor.value !== null) {
+    const point = reviewPoint.value;
+    return {
+      at: point ? [point.lon, point.lat] : null,
+      headingDeg: point?.heading_deg ?? null,
+      positionAgeS: point ? 0 : null,
+      altitudeRelativeM: point?.altitude_relative_m ?? null,
+      speedMs: null,
+      mode: point?.mode ?? null,
+    };
+  }
+  const heard = telemetry.value;
+  const value = heard?.value;
+  return {
+    at: value && value.lon !== null && value.lat !== null ? [value.lon, value.lat] : null,
+    headingDeg: value?.heading_deg ?? null,
+    positionAgeS: ageS(value?.position_age_s, heard?.atMs ?? null, heard?.atMs ?? 0),
+    altitudeRelativeM: value?.altitude_relative_m ?? null,
+    speedMs: value?.ground_speed_m_s ?? null,
+    mode: value?.mode ?? null,
+  };
+});
+
+const livePath = computed(() => live.value.path);
+
+export const path = computed<readonly LonLat[]>(() => {
+  const time = reviewTimeMs.value;
+  const until = time ?? Infinity;
+  const flown = track.value.filter((p) => Date.parse(p.at_utc) <= until).map((p): LonLat => [p.lon, p.lat]);
+  return time === null ? [...flown, ...livePath.value] : flown;
+});
+
+/** Beliefs by number of bearings; a left-out bearing changes them all. */
+const beliefs = new Map<number, BeliefFrame>();
+export const belief = signal<BeliefFrame | null>(null);
+
+effect(() => {
+  const frame = live.value.belief;
+  if (frame) beliefs.set(frame.bearings, frame);
+});
+
+const excludedCount = computed(() => mission.value.bearings.filter((b) => b.excluded).length);
+effect(() => {
+  excludedCount.value;
+  beliefs.clear();
+});
+
+const liveBelief = computed(() => live.value.belief);
+const beliefWanted = computed(() => (mission.value.spec ? (mission.value.belief?.fact.bearings ?? 0) : null));
+
+effect(() => {
+  const wanted = beliefWanted.value;
+  const newest = liveBelief.value;
+  const from = source.value;
+  const id = mission.value.missionId;
+  if (wanted === null || !from || !id) {
+    belief.value = null;
+    return;
+  }
+  const known = newest?.bearings === wanted && cursor.value === null ? newest : beliefs.get(wanted);
+  if (known) {
+    belief.value = known;
+    return;
+  }
+  void from.belief(id, wanted).then(
+    (frame) => {
+      if (frame) beliefs.set(wanted, frame);
+      if (beliefWanted.peek() === wanted) belief.value = frame;
+    },
+    () => {
+      if (beliefWanted.peek() === wanted) belief.value = null;
+    },
+  );
+});
+
+const status = computed(() => live.value.status);
+const statusMission = computed(() => status.value?.value.mission_id ?? null);
+const statusPhase = computed(() => (status.value?.value.phase ?? null) as Phase | null);
+
+/** The mission that abort, hold and return act on: the one the vehicle flies, whatever the page shows. */
+export const flying = computed<{ id: string; phase: Phase } | null>(() => {
+  const shown = liveMission.value;
+  if (shown.missionId && inFlight(shown.phase)) return { id: shown.missionId, phase: shown.phase };
+  if (statusMission.value && statusPhase.value && inFlight(statusPhase.value)) {
+    return { id: statusMission.value, phase: statusPhase.value };
+  }
+  return null;
+});
+
+/** Newest-wins messages are folded at most once a frame; events and link changes at once. */
+let pending: SourceMessage[] = [];
+let scheduled = false;
+
+function flush(): void {
+  scheduled = false;
+  const messages = pending;
+  pending = [];
+  const time = performance.now();
+  live.value = messages.reduce((state, message) => reduceLive(state, message, time), live.peek());
+}
+
+function receive(message: SourceMessage): void {
+  pending.push(message);
+  if (scheduled) return;
+  scheduled = true;
+  if (document.hidden) setTimeout(flush, 50);
+  else requestAnimationFrame(flush);
+}
+
+/** Shows another source. What is known of the vehicle stays, so that the safety bar never goes blank. */
+export function open(next: Source): void {
+  source.peek()?.stop();
+  pending = [];
+  const { telemetry: lastTelemetry, status: lastStatus } = live.peek();
+  batch(() => {
+    beliefs.clear();
+    belief.value = null;
+    track.value = [];
+    cursor.value = null;
+    live.value = {
+      ...emptyLive,
+      telemetry: lastTelemetry,
+      status: lastStatus,
+      link: { ...emptyLive.link, sinceMs: performance.now() },
+    };
+    source.value = next;
+  });
+  next.start((message) => {
+    if (source.peek() === next) receive(message);
+  });
+  if (next.missionId) void loadTrack(next, next.missionId);
+}
+
+/** The path flown before this page was opened; asked again for a review. */
+export async function loadTrack(from: Source, missionId: string): Promise<void> {
+  const loaded = await from.track(missionId).catch(() => null);
+  if (!loaded || source.peek() !== from) return;
+  batch(() => {
+    track.value = loaded.points;
+    live.value = { ...live.peek(), path: [] };
+  });
+}
+
+export function look(seq: number | null): void {
+  const id = live.peek().mission.missionId;
+  const from = source.peek();
+  if (seq !== null && cursor.peek() === null && id && from) void loadTrack(from, id);
+  cursor.value = seq;
+}

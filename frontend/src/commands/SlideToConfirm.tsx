@@ -1,0 +1,133 @@
+// Slide, or hold the space bar for 1.5 s, to confirm. Expires when it is left alone.
+import { useEffect, useRef, useState } from "preact/hooks";
+import { t } from "../i18n";
+
+export const HOLD_MS = 1500;
+export const EXPIRES_S = 20;
+const CONFIRM_AT = 0.92;
+
+interface Properties {
+  label: string;
+  testId: string;
+  onConfirm: () => void;
+  onCancel: () => void;
+  disabled?: boolean;
+  /** Seconds until it goes away by itself. */
+  expiresS?: number;
+}
+
+export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = false, expiresS = EXPIRES_S }: Properties) {
+  const track = useRef<HTMLDivElement>(null);
+  const [position, setPosition] = useState(0);
+  const [left, setLeft] = useState(expiresS);
+  const dragFrom = useRef<number | null>(null);
+  const holding = useRef<number | null>(null);
+  const confirmed = useRef(false);
+
+  const confirm = () => {
+    if (confirmed.current) return;
+    confirmed.current = true;
+    setPosition(1);
+    onConfirm();
+  };
+
+  useEffect(() => track.current?.focus({ preventScroll: true }), []);
+
+  useEffect(() => {
+    const timer = setInterval(() => {
+      if (dragFrom.current !== null || holding.current !== null) return;
+      setLeft((seconds) => seconds - 1);
+    }, 1000);
+    return () => clearInterval(timer);
+  }, []);
+  useEffect(() => {
+    if (left <= 0 && !confirmed.current) onCancel();
+  }, [left]);
+
+  const release = () => {
+    if (holding.current !== null) cancelAnimationFrame(holding.current);
+    holding.current = null;
+    dragFrom.current = null;
+    if (!confirmed.current) setPosition(0);
+  };
+  useEffect(() => release, []);
+
+  const hold = () => {
+    if (holding.current !== null || disabled) return;
+    const began = performance.now();
+    const step = () => {
+      const share = (performance.now() - began) / HOLD_MS;
+      setPosition(Math.min(1, share));
+      if (share >= 1) {
+        holding.current = null;
+        confirm();
+      } else holding.current = requestAnimationFrame(step);
+    };
+    holding.current = requestAnimationFrame(step);
+  };
+
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (event.key === " ") {
+      event.preventDefault();
+      if (!event.repeat) hold();
+    } else if (event.key === "Escape") {
+      event.stopPropagation();
+      onCancel();
+    }
+  };
+
+  const knobTravel = () => (track.current ? track.current.clientWidth - track.current.clientHeight : 1);
+
+  return (
+    <div class="slide-row">
+      <div
+        ref={track}
+        class={`slide ${disabled ? "slide-disabled" : ""}`}
+        data-testid={testId}
+        role="slider"
+        tabIndex={0}
+        aria-label={`${label}, ${t("slide.hint")}`}
+        aria-valuemin={0}
+        aria-valuemax={100}
+        aria-valuenow={Math.round(position * 100)}
+        aria-disabled={disabled}
+        onKeyDown={onKeyDown}
+        onKeyUp={(event) => event.key === " " && release()}
+        onBlur={release}
+      >
+        <div class="slide-fill" style={{ width: `calc(var(--target) + (100% - var(--target)) * ${position})` }} />
+        <span class="slide-label">
+          {label}
+          <small>
+            {t("slide.hint")} · {t("slide.expires", { seconds: Math.max(0, left) })}
+          </small>
+        </span>
+        <div
+          class="slide-knob"
+          style={{ left: `calc((100% - var(--target)) * ${position})` }}
+          onPointerDown={(event) => {
+            if (disabled) return;
+            event.currentTarget.setPointerCapture(event.pointerId);
+            dragFrom.current = event.clientX;
+          }}
+          onPointerMove={(event) => {
+            if (dragFrom.current === null) return;
+            const share = Math.min(1, Math.max(0, (event.clientX - dragFrom.current) / knobTravel()));
+            setPosition(share);
+          }}
+          onPointerUp={() => {
+            if (dragFrom.current !== null && position >= CONFIRM_AT) confirm();
+            release();
+          }}
+          onPointerCancel={release}
+          aria-hidden="true"
+        >
+          ›
+        </div>
+      </div>
+      <button class="icon" aria-label={t("slide.cancel")} data-testid={`${testId}-cancel`} onClick={onCancel}>
+        ✕
+      </button>
+    </div>
+  );
+}

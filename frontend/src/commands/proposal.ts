@@ -1,0 +1,53 @@
+// The operator's own next place: asked what it costs first, flown to only after a slide.
+import { signal } from "@preact/signals";
+import { live, source } from "../app/store";
+import type { ExpectedTime, Place, Problem } from "../wire";
+import { asProblem, report, send } from "./send";
+
+export interface Proposal {
+  place: Place;
+  result: ExpectedTime | null;
+  problem: Problem | null;
+  /** Expected time of the planner's place, asked at the same moment, s. */
+  compareS: number | null;
+}
+
+export const proposal = signal<Proposal | null>(null);
+
+let asking: AbortController | null = null;
+
+export function propose(place: Place): void {
+  const from = source.peek();
+  const id = live.peek().mission.missionId;
+  if (!from || !id) return;
+  asking?.abort();
+  asking = new AbortController();
+  const { signal: aborted } = asking;
+  report("proposal", null);
+  proposal.value = { place, result: null, problem: null, compareS: null };
+  const planned = live.peek().mission.plan?.fact.place;
+  const mine = from.expectedTime(id, place, aborted);
+  const theirs = planned ? from.expectedTime(id, planned, aborted).catch(() => null) : Promise.resolve(null);
+  void Promise.all([mine, theirs]).then(
+    ([result, compare]) => {
+      if (!aborted.aborted) {
+        proposal.value = { place, result, problem: null, compareS: compare?.expected_time_s ?? null };
+      }
+    },
+    (error: unknown) => {
+      if (!aborted.aborted) proposal.value = { place, result: null, problem: asProblem(error), compareS: null };
+    },
+  );
+}
+
+export function cancelProposal(): void {
+  asking?.abort();
+  proposal.value = null;
+}
+
+export async function confirmProposal(): Promise<void> {
+  const chosen = proposal.peek();
+  const id = live.peek().mission.missionId;
+  if (!chosen || !id) return;
+  if (await send("proposal", id, { kind: "override", place: chosen.place })) proposal.value = null;
+}

@@ -1,0 +1,54 @@
+// Abort, hold and return: sent at once, and again under the same id until the server answers.
+import { signal } from "@preact/signals";
+import { source } from "../app/store";
+import { newCommandId } from "../sources/api";
+import { RequestFailed } from "../sources/problem";
+import { asProblem, refusal, report } from "./send";
+
+export type Urgent = "abort" | "hold" | "return";
+
+export interface UrgentState {
+  stage: "sending" | "retrying" | "confirmed";
+  count: number;
+}
+
+/** One entry a kind: a hold never takes the place of an abort that is still on its way. */
+export const urgent = signal<Partial<Record<Urgent, UrgentState>>>({});
+
+const RETRY_MS = 700;
+const GIVE_UP_AFTER = 60;
+const SHOWN_MS = 4000;
+
+const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+
+function show(kind: Urgent, state: UrgentState | null): void {
+  const { [kind]: _old, ...others } = urgent.value;
+  urgent.value = state ? { ...others, [kind]: state } : others;
+}
+
+export async function sendUrgent(missionId: string, kind: Urgent): Promise<void> {
+  const underWay = urgent.peek()[kind];
+  if (underWay && underWay.stage !== "confirmed") return;
+  const commandId = newCommandId();
+  report("bar", null);
+  for (let count = 0; count < GIVE_UP_AFTER; count++) {
+    show(kind, { stage: count === 0 ? "sending" : "retrying", count });
+    try {
+      const reply = await source.peek()!.send(missionId, { kind }, commandId);
+      if (!reply.accepted) {
+        report("bar", refusal(reply));
+        break;
+      }
+      report("bar", null);
+      show(kind, { stage: "confirmed", count });
+      await pause(SHOWN_MS);
+      break;
+    } catch (error) {
+      report("bar", asProblem(error));
+      const refused = error instanceof RequestFailed && error.problem.status >= 400 && error.problem.status < 500;
+      if (refused) break;
+      await pause(RETRY_MS);
+    }
+  }
+  show(kind, null);
+}

@@ -1,0 +1,18 @@
+// All words of the page come through here. English is the reference; a missing translation does not compile.
+import { signal } from "@preact/signals";
+import { en, type MessageKey } from "./en";
+
+export type { MessageKey } from "./en";
+export type Language = "en" | "de";
+export type Parameters = Record<string, string | number>;
+
+const table = signal<Record<MessageKey, string>>(en);
+
+export async function setLanguage(language: Language): Promise<void> {
+  table.value = language === "de" ? (await import("./de")).de : en;
+  document.documentElement.lang = language;
+}
+
+export function t(key: MessageKey, parameters: Parameters = {}): string {
+  return table.value[key].replace(/\{(\w+)\}/g, (whole, name: string) => String(parameters[name] ?? whole));
+}

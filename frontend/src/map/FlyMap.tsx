@@ -1,0 +1,300 @@
+// The mission on the map: everything follows the page's signals; clicks and drags propose a place, never fly there.
+import { effect, signal } from "@preact/signals";
+import { Marker, type GeoJSONSource, type ImageSource, type Map as GlMap, type MapMouseEvent } from "maplibre-gl";
+import { useEffect, useRef } from "preact/hooks";
+import { highlighted } from "../app/highlight";
+import { settings } from "../app/settings";
+import { belief, cursor, live, mission, nowMs, path, source, vehicle } from "../app/store";
+import { cancelProposal, proposal, propose } from "../commands/proposal";
+import { t, type MessageKey } from "../i18n";
+import { OLD_AFTER_S } from "../state/age";
+import { boundsOf, lonLat } from "../state/geometry";
+import { inFlight } from "../state/mission";
+import { formatPlace } from "../units/coordinates";
+import { formatDuration, formatLength } from "../units/quantities";
+import type { LonLat } from "../wire/beliefFrame";
+import { addBasemap, basemap } from "./basemap";
+import { beliefPixels, imageCorners } from "./beliefImage";
+import { createMap, fit, gridStepM } from "./createMap";
+import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, pathFeatures, planFeatures, roseFeatures, type Features } from "./features";
+import { hover, watchHover } from "./hover";
+import { missionLayers, SOURCES, SWITCHES, type SourceName, type Switch } from "./layers";
+import { shownOverlays } from "./overlays";
+import { palettes } from "./palette";
+
+const hidden = signal<ReadonlySet<Switch>>(new Set());
+const follow = signal(false);
+
+/** Times of the last belief: when it came and when it was painted, for the measurement in tests. */
+declare global {
+  interface Window {
+    crossfixBeliefPainted?: { bearings: number; atMs: number };
+  }
+}
+
+function put(map: GlMap, name: SourceName, data: Features): void {
+  map.getSource<GeoJSONSource>(name)?.setData(data);
+}
+
+function beliefBitmap(): HTMLCanvasElement | null {
+  const frame = belief.value;
+  if (!frame) return null;
+  const canvas = document.createElement("canvas");
+  canvas.width = frame.nx;
+  canvas.height = frame.ny;
+  canvas.getContext("2d")!.putImageData(new ImageData(beliefPixels(frame), frame.nx, frame.ny), 0, 0);
+  return canvas;
+}
+
+function paintBelief(map: GlMap): void {
+  const frame = belief.value;
+  const image = beliefBitmap();
+  const shown = map.getSource<ImageSource>("belief");
+  if (!frame || !image) {
+    if (shown) map.setLayoutProperty("belief", "visibility", "none");
+    return;
+  }
+  const coordinates = imageCorners(frame);
+  if (!shown) {
+    map.addSource("belief", { type: "image", url: image.toDataURL(), coordinates });
+    map.addLayer(
+      { id: "belief", type: "raster", source: "belief", paint: { "raster-fade-duration": 0, "raster-resampling": "linear" } },
+      "no-fly",
+    );
+  } else {
+    shown.updateImage({ image, coordinates });
+  }
+  map.setLayoutProperty("belief", "visibility", hidden.value.has("belief") ? "none" : "visible");
+  map.once("render", () => {
+    window.crossfixBeliefPainted = { bearings: frame.bearings, atMs: performance.now() };
+  });
+}
+
+function vehicleElement(): HTMLElement {
+  const element = document.createElement("div");
+  element.className = "vehicle";
+  element.dataset["testid"] = "vehicle";
+  element.innerHTML =
+    '<svg viewBox="-16 -16 32 32" width="36" height="36" aria-hidden="true"><path d="M0 -14 L9 11 L0 6 L-9 11 Z"/></svg>';
+  return element;
+}
+
+function nextElement(): HTMLElement {
+  const element = document.createElement("div");
+  element.className = "next-place";
+  element.dataset["testid"] = "next-place";
+  return element;
+}
+
+const canPropose = () =>
+  cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
+
+/** Everything that follows a signal, each in its own effect so that telemetry never redraws the plan. */
+function bind(map: GlMap): () => void {
+  const vehicleMarker = new Marker({ element: vehicleElement(), rotationAlignment: "map" });
+  const nextMarker = new Marker({ element: nextElement(), draggable: true });
+  nextMarker.on("dragend", () => {
+    const { lng, lat } = nextMarker.getLngLat();
+    propose({ lat, lon: lng });
+  });
+  let vehicleShown = false;
+  let nextShown = false;
+  const stops = [
+    effect(() => put(map, "plan", planFeatures(mission.value.spec))),
+    effect(() => {
+      const { lines, wedges, places } = bearingFeatures(mission.value);
+      put(map, "bearings", lines);
+      put(map, "wedges", wedges);
+      put(map, "places", places);
+      put(map, "roses", roseFeatures(mission.value));
+    }),
+    effect(() => {
+      const { c95, circle, place } = estimateFeatures(mission.value);
+      put(map, "c95", c95);
+      put(map, "circle", circle);
+      put(map, "estimate", place);
+    }),
+    effect(() => put(map, "candidates", candidateFeatures(mission.value, highlighted.value))),
+    effect(() => put(map, "path", pathFeatures(path.value))),
+    effect(() => put(map, "overlays", shownOverlays.value)),
+    effect(() => {
+      const home = mission.value.home;
+      put(map, "home", collection(home ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(home) } }] : []));
+    }),
+    effect(() => paintBelief(map)),
+    effect(() => {
+      for (const layer of missionLayers(palettes[settings.value.theme])) {
+        const by = layer.metadata?.switch;
+        if (by) map.setLayoutProperty(layer.id, "visibility", hidden.value.has(by) ? "none" : "visible");
+      }
+    }),
+    effect(() => {
+      const { at, headingDeg } = vehicle.value;
+      if (!at) {
+        vehicleMarker.remove();
+        vehicleShown = false;
+        return;
+      }
+      vehicleMarker.setLngLat(at).setRotation(headingDeg ?? 0);
+      if (!vehicleShown) vehicleMarker.addTo(map);
+      vehicleShown = true;
+      if (follow.value) map.easeTo({ center: at, duration: 300 });
+    }),
+    effect(() => {
+      nowMs.value;
+      const received = live.peek().telemetry;
+      const age = cursor.value !== null || !received ? 0 : (nowMs.value - received.atMs) / 1000 + (received.value.position_age_s ?? 0);
+      vehicleMarker.getElement().classList.toggle("old", age > OLD_AFTER_S);
+    }),
+    effect(() => {
+      const proposed = proposal.value;
+      const plan = mission.value.plan?.fact;
+      const at = proposed?.place ?? (mission.value.ended ? undefined : plan?.place);
+      nextMarker.getElement().classList.toggle("proposed", proposed !== null);
+      nextMarker.getElement().title = t("map.next");
+      if (!at) {
+        nextMarker.remove();
+        nextShown = false;
+        return;
+      }
+      nextMarker.setLngLat(lonLat(at)).setDraggable(cursor.value === null && inFlight(mission.value.phase));
+      if (!nextShown) nextMarker.addTo(map);
+      nextShown = true;
+    }),
+  ];
+  return () => {
+    stops.forEach((stop) => stop());
+    vehicleMarker.remove();
+    nextMarker.remove();
+  };
+}
+
+function frameAll(map: GlMap, animate: boolean): void {
+  const spec = mission.peek().spec;
+  const at = vehicle.peek().at;
+  const home = mission.peek().home;
+  const points: LonLat[] = [
+    ...(spec ? areaPoints(spec.area) : []),
+    ...(home ? [lonLat(home)] : []),
+    ...(at && inFlight(mission.peek().phase) ? [at] : []),
+  ];
+  const box = boundsOf(points);
+  if (box) fit(map, box, animate);
+}
+
+let framedFor: string | null = null;
+
+function MapTools({ map }: { map: { current: GlMap | null } }) {
+  const flip = (which: Switch) => {
+    const next = new Set(hidden.value);
+    if (!next.delete(which)) next.add(which);
+    hidden.value = next;
+  };
+  return (
+    <div class="map-tools">
+      <button data-testid="map-fit" onClick={() => map.current && frameAll(map.current, true)}>
+        {t("map.fit")}
+      </button>
+      <button aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
+        {t("map.follow")}
+      </button>
+      <details>
+        <summary>{t("map.layers")}</summary>
+        <div class="map-layers">
+          {SWITCHES.map((name) => (
+            <label class="check" key={name}>
+              <input type="checkbox" checked={!hidden.value.has(name)} onChange={() => flip(name)} />
+              {t(`map.layer.${name}` satisfies MessageKey)}
+            </label>
+          ))}
+        </div>
+      </details>
+    </div>
+  );
+}
+
+function Readout() {
+  const { place, expected } = hover.value;
+  const units = settings.value.units;
+  return (
+    <div class="readout" data-testid="readout">
+      {place && <span data-testid="cursor-coordinates">{formatPlace(place, settings.value.coordinates)}</span>}
+      {expected?.allowed && expected.expected_time_s !== null && (
+        <strong data-testid="hover-time">{t("map.hover", { time: formatDuration(expected.expected_time_s) })}</strong>
+      )}
+      {expected && !expected.allowed && <span>{t("map.hoverNo", { reason: expected.reason })}</span>}
+      {basemap.value === null && gridStepM.value !== null && (
+        <span class="muted">{t("map.grid", { length: formatLength(gridStepM.value, units) })}</span>
+      )}
+    </div>
+  );
+}
+
+function Legend() {
+  const colours = palettes[settings.value.theme].rounds;
+  return (
+    <div class="map-legend" aria-hidden="true">
+      <span>
+        <i class="legend-belief" /> {t("map.legend.belief")}
+      </span>
+      <span>
+        {colours.map((c) => (
+          <i class="legend-dot" style={{ background: c }} key={c} />
+        ))}{" "}
+        {t("map.legend.rounds")}
+      </span>
+    </div>
+  );
+}
+
+const FALLBACK_START: LonLat = [7.1, 50.73];
+
+export function FlyMap() {
+  const box = useRef<HTMLDivElement>(null);
+  const map = useRef<GlMap | null>(null);
+  const theme = settings.value.theme;
+  const units = settings.value.units;
+  useEffect(() => {
+    const start = vehicle.peek().at ?? (mission.peek().spec ? areaPoints(mission.peek().spec!.area)[0] : undefined) ?? FALLBACK_START;
+    const created = createMap(box.current!, palettes[theme], units, start);
+    map.current = created;
+    let unbind: () => void = () => undefined;
+    const stopFraming = effect(() => {
+      const id = mission.value.spec ? mission.value.missionId : null;
+      if (id === null || framedFor === id) return;
+      framedFor = id;
+      frameAll(created, false);
+    });
+    created.on("load", () => {
+      for (const name of SOURCES) created.addSource(name, { type: "geojson", data: collection([]) });
+      for (const layer of missionLayers(palettes[theme])) created.addLayer(layer);
+      unbind = bind(created);
+      void addBasemap(created, theme === "indoor" ? "dark" : "light", "no-fly").catch(() => undefined);
+      box.current?.setAttribute("data-ready", "true");
+    });
+    created.on("click", (event: MapMouseEvent) => {
+      if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
+    });
+    const stopHover = watchHover(created, (place, aborted) => {
+      const id = mission.peek().missionId;
+      const from = source.peek();
+      return id && from && canPropose() ? from.expectedTime(id, place, aborted) : null;
+    });
+    return () => {
+      stopFraming();
+      stopHover();
+      unbind();
+      created.remove();
+      map.current = null;
+      cancelProposal();
+    };
+  }, [theme, units, basemap.value]);
+  return (
+    <>
+      <div class="map" ref={box} data-testid="map" />
+      <MapTools map={map} />
+      <Legend />
+      <Readout />
+    </>
+  );
+}

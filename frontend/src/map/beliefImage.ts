@@ -1,0 +1,37 @@
+// The belief as a picture: cividis (safe for colour-blind eyes), fading to nothing where nothing is.
+import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
+
+/** Every sixteenth colour of cividis (Nunez, Anderton, Renslow 2018), linear in between. */
+const CIVIDIS: readonly (readonly [number, number, number])[] = [
+  [0, 34, 78], [0, 46, 106], [26, 56, 111], [50, 67, 109], [67, 78, 108], [83, 90, 109], [97, 101, 111], [111, 112, 115],
+  [125, 124, 120], [140, 136, 120], [155, 148, 118], [171, 160, 114], [188, 174, 108], [205, 187, 99], [222, 201, 88],
+  [240, 216, 70], [254, 232, 56],
+]; // prettier-ignore
+
+export function cividis(share: number): [number, number, number] {
+  const position = Math.min(1, Math.max(0, share)) * (CIVIDIS.length - 1);
+  const i = Math.min(CIVIDIS.length - 2, Math.floor(position));
+  const f = position - i;
+  const [a, b] = [CIVIDIS[i]!, CIVIDIS[i + 1]!];
+  return [a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1]), a[2] + f * (b[2] - a[2])];
+}
+
+/** Alpha of a probability relative to the peak: 0 at 0, a tenth of the peak already well visible. */
+export const opacity = (share: number): number => Math.min(1, 2.2 * Math.sqrt(Math.max(0, share))) * 0.85;
+
+/** RGBA bytes, row 0 in the north (as pictures are); cells come from the south. */
+export function beliefPixels({ nx, ny, cells }: Pick<BeliefFrame, "nx" | "ny" | "cells">): Uint8ClampedArray<ArrayBuffer> {
+  const pixels = new Uint8ClampedArray(4 * nx * ny);
+  for (let row = 0; row < ny; row++) {
+    for (let column = 0; column < nx; column++) {
+      const share = cells[(ny - 1 - row) * nx + column]!;
+      if (!(share > 0)) continue;
+      const [r, g, b] = cividis(Math.sqrt(share));
+      pixels.set([r, g, b, 255 * opacity(share)], 4 * (row * nx + column));
+    }
+  }
+  return pixels;
+}
+
+/** NW, NE, SE, SW: the order in which MapLibre wants an image's corners. */
+export const imageCorners = ({ bounds: [sw, se, ne, nw] }: BeliefFrame): [LonLat, LonLat, LonLat, LonLat] => [nw, ne, se, sw];

@@ -1,0 +1,100 @@
+// A MapLibre map that needs nothing from outside: plain grid, or an offline package from this server.
+import { addProtocol, AttributionControl, Map as GlMap, NavigationControl, ScaleControl, setWorkerUrl, type GeoJSONSource, type StyleSpecification } from "maplibre-gl";
+import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
+import "maplibre-gl/dist/maplibre-gl.css";
+import { signal } from "@preact/signals";
+import { t } from "../i18n";
+import type { UnitSystem } from "../units/quantities";
+import type { LonLat } from "../wire/beliefFrame";
+import { gridLines } from "./grid";
+import type { Palette } from "./palette";
+
+setWorkerUrl(workerUrl);
+
+let pmtilesReady: Promise<void> | null = null;
+
+/** PMTiles is read in ranges from this server; its client is loaded when the first package is shown. */
+export function preparePmtiles(): Promise<void> {
+  pmtilesReady ??= import("pmtiles").then(({ Protocol }) => {
+    addProtocol("pmtiles", new Protocol().tile);
+  });
+  return pmtilesReady;
+}
+
+export function hasWebgl(): boolean {
+  try {
+    return document.createElement("canvas").getContext("webgl2") !== null;
+  } catch {
+    return false;
+  }
+}
+
+const EMPTY: GeoJSON.FeatureCollection = { type: "FeatureCollection", features: [] };
+
+function plainStyle(colours: Palette): StyleSpecification {
+  return {
+    version: 8,
+    sources: { grid: { type: "geojson", data: EMPTY } },
+    layers: [
+      { id: "ground", type: "background", paint: { "background-color": colours.ground } },
+      {
+        id: "grid",
+        type: "line",
+        source: "grid",
+        paint: { "line-color": ["case", ["get", "major"], colours.gridMajor, colours.grid], "line-width": 1 },
+      },
+    ],
+  };
+}
+
+/** Where the camera was, so that another theme or page shows the same place. */
+let lastCamera: { center: LonLat; zoom: number } | null = null;
+
+/** Step of the plain grid now, m. */
+export const gridStepM = signal<number | null>(null);
+
+const EARTH_PIXEL_M = 78271.517;
+
+export function createMap(container: HTMLElement, colours: Palette, units: UnitSystem, start: LonLat): GlMap {
+  const map = new GlMap({
+    container,
+    style: plainStyle(colours),
+    center: lastCamera?.center ?? start,
+    zoom: lastCamera?.zoom ?? 15.5,
+    attributionControl: false,
+    dragRotate: false,
+    pitchWithRotate: false,
+    maxPitch: 0,
+    fadeDuration: 0,
+    locale: {
+      "Map.Title": t("map.label"),
+      "NavigationControl.ZoomIn": t("map.zoomIn"),
+      "NavigationControl.ZoomOut": t("map.zoomOut"),
+    },
+  });
+  map.touchZoomRotate.disableRotation();
+  map.keyboard.disableRotation();
+  map.addControl(new NavigationControl({ showCompass: false }), "top-right");
+  map.addControl(new ScaleControl({ maxWidth: 140, unit: units }), "bottom-right");
+  map.addControl(new AttributionControl({ compact: true, customAttribution: "" }), "bottom-right");
+  const anchor: LonLat = lastCamera?.center ?? start;
+  const redrawGrid = () => {
+    const { lng, lat } = map.getCenter();
+    lastCamera = { center: [lng, lat], zoom: map.getZoom() };
+    const b = map.getBounds();
+    const metresPerPixel = (EARTH_PIXEL_M * Math.cos((lat * Math.PI) / 180)) / 2 ** map.getZoom();
+    const width = b.getEast() - b.getWest();
+    const height = b.getNorth() - b.getSouth();
+    const box = { west: b.getWest() - width / 2, east: b.getEast() + width / 2, south: b.getSouth() - height / 2, north: b.getNorth() + height / 2 };
+    const { stepM, lines } = gridLines(box, metresPerPixel, anchor);
+    gridStepM.value = stepM;
+    map.getSource<GeoJSONSource>("grid")?.setData(lines);
+  };
+  map.on("load", redrawGrid);
+  map.on("moveend", redrawGrid);
+  return map;
+}
+
+export function fit(map: GlMap, box: [number, number, number, number], animate: boolean): void {
+  map.fitBounds(box, { padding: 48, maxZoom: 18.5, duration: animate ? 400 : 0 });
+}

@@ -1,0 +1,117 @@
+// The mission as map features. Pure: the same for live, review and fixture.
+import { rankCandidates, roundShade } from "../state/candidates";
+import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
+import type { MissionState } from "../state/mission";
+import { polarScale, radius } from "../state/polar";
+import type { Area, MissionSpec } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
+
+export type Features = GeoJSON.FeatureCollection;
+
+export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
+
+const feature = (geometry: GeoJSON.Geometry, properties: Record<string, unknown> = {}): GeoJSON.Feature => ({
+  type: "Feature",
+  geometry,
+  properties,
+});
+const point = (at: LonLat, properties: Record<string, unknown> = {}) => feature({ type: "Point", coordinates: at }, properties);
+const line = (coordinates: LonLat[], properties: Record<string, unknown> = {}) =>
+  feature({ type: "LineString", coordinates }, properties);
+const polygon = (ring: LonLat[], properties: Record<string, unknown> = {}) =>
+  feature({ type: "Polygon", coordinates: [ring] }, properties);
+
+export function areaPoints(area: Area): LonLat[] {
+  return area.type === "Polygon" ? (area.coordinates.flat() as LonLat[]) : (area.coordinates.flat(2) as LonLat[]);
+}
+
+/** Length of bearing lines: past the far end of the search area. */
+export function reachM(spec: MissionSpec | null): number {
+  const box = spec && boundsOf(areaPoints(spec.area));
+  return box ? 1.15 * distanceM([box[0], box[1]], [box[2], box[3]]) : 300;
+}
+
+export function planFeatures(spec: MissionSpec | null): Features {
+  if (!spec) return collection([]);
+  return collection([
+    feature(spec.area as GeoJSON.Geometry, { what: "area" }),
+    ...(spec.flight.fence ? [feature(spec.flight.fence as GeoJSON.Geometry, { what: "fence" })] : []),
+    ...spec.flight.no_fly.map((area) => feature(area as GeoJSON.Geometry, { what: "no_fly" })),
+  ]);
+}
+
+/** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
+export function bearingFeatures(mission: MissionState): { lines: Features; wedges: Features; places: Features } {
+  const reach = reachM(mission.spec);
+  const used = mission.bearings.filter((b) => !b.excluded);
+  const lines: GeoJSON.Feature[] = [];
+  const wedges: GeoJSON.Feature[] = [];
+  used.forEach(({ fact }, i) => {
+    const at = lonLat(fact.place);
+    const properties = { quality: fact.quality, age: used.length - 1 - i };
+    lines.push(line([at, destination(at, fact.bearing_deg, reach)], { ...properties, what: "main" }));
+    wedges.push(polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, reach), properties));
+    for (const peak of fact.peaks) {
+      lines.push(line([at, destination(at, peak.bearing_deg, reach)], { ...properties, what: "peak", weight: peak.weight }));
+    }
+  });
+  for (const { fact } of mission.bearings.filter((b) => b.excluded)) {
+    const at = lonLat(fact.place);
+    lines.push(line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" }));
+  }
+  const places = new Map(mission.bearings.map(({ fact }) => [fact.place_number, fact.place]));
+  return {
+    lines: collection(lines),
+    wedges: collection(wedges),
+    places: collection([...places].map(([number, at]) => point(lonLat(at), { label: String(number) }))),
+  };
+}
+
+/** Received power around each measurement place as a rose; the newest strong, older ones fainter. */
+export function roseFeatures(mission: MissionState): Features {
+  const size = reachM(mission.spec) / 9;
+  const used = mission.bearings;
+  return collection(
+    used.flatMap(({ fact, excluded }, i) => {
+      const scale = polarScale(fact.binned_db);
+      if (!scale) return [];
+      const width = 360 / fact.binned_db.length;
+      const ring = fact.binned_db.flatMap((db, bin) =>
+        db === null ? [] : [destination(lonLat(fact.place), (bin + 0.5) * width, size * radius(db, scale))],
+      );
+      return [polygon([...ring, ring[0]!], { age: used.length - 1 - i, excluded })];
+    }),
+  );
+}
+
+export function estimateFeatures(mission: MissionState): { c95: Features; circle: Features; place: Features } {
+  const estimate = mission.belief?.fact.estimate;
+  if (!estimate) return { c95: collection([]), circle: collection([]), place: collection([]) };
+  const at = lonLat(estimate);
+  return {
+    c95: collection([feature(estimate.c95 as GeoJSON.Geometry)]),
+    circle: collection([polygon(circle(at, estimate.expected_rmse_m))]),
+    place: collection([point(at)]),
+  };
+}
+
+export function candidateFeatures(mission: MissionState, lit: number | null): Features {
+  const plan = mission.plan?.fact;
+  if (!plan || mission.ended) return collection([]);
+  return collection(
+    rankCandidates(plan)
+      .toReversed()
+      .map(({ candidate, index, chosen }) =>
+        point(lonLat(candidate), {
+          index,
+          shade: roundShade(candidate, plan, chosen),
+          lit: index === lit,
+          label: `${Math.round(candidate.value_s)} s`,
+        }),
+      ),
+  );
+}
+
+export function pathFeatures(path: readonly LonLat[]): Features {
+  return path.length < 2 ? collection([]) : collection([line([...path])]);
+}

@@ -1,0 +1,1 @@
+export function EditPage() { return null; }

@@ -1,0 +1,59 @@
+// The one screen: map, estimate, bearing, next place, timeline; live and review alike.
+import type { ComponentType } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import type { Route } from "../app/route";
+import { mission, open, source } from "../app/store";
+import { sourceFor } from "../app/sourceFor";
+import { t } from "../i18n";
+import { AlertBanner } from "../panels/AlertsButton";
+import { EstimatePanel } from "../panels/EstimatePanel";
+import { PlanPanel } from "../panels/PlanPanel";
+import { PreflightPanel } from "../panels/PreflightPanel";
+import { SweepPanel } from "../panels/SweepPanel";
+import { Timeline } from "../panels/Timeline";
+
+function MapArea() {
+  const [state, setState] = useState<"loading" | "none" | { Map: ComponentType }>("loading");
+  useEffect(() => {
+    void import("../map/createMap").then(async ({ hasWebgl }) => {
+      if (!hasWebgl()) setState("none");
+      else {
+        const { FlyMap } = await import("../map/FlyMap");
+        setState({ Map: FlyMap });
+      }
+    }, () => setState("none"));
+  }, []);
+  return (
+    <div class="map-area" data-tour="2">
+      {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
+      {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
+      {typeof state === "object" && <state.Map />}
+      <AlertBanner />
+    </div>
+  );
+}
+
+export function FlyPage({ route }: { route: Extract<Route, { page: "mission" }> }) {
+  useEffect(() => {
+    if (source.peek()?.missionId !== route.missionId) open(sourceFor(route.missionId));
+  }, [route.missionId]);
+  const { phase, missionId } = mission.value;
+  const before = phase === "draft" || phase === "ready";
+  return (
+    <div class="fly" data-testid="fly">
+      <MapArea />
+      <aside class="side">
+        {before && missionId ? (
+          <PreflightPanel missionId={missionId} />
+        ) : (
+          <>
+            <EstimatePanel />
+            <SweepPanel />
+            <PlanPanel />
+          </>
+        )}
+      </aside>
+      <Timeline />
+    </div>
+  );
+}

@@ -1,0 +1,1 @@
+export function MapsPage() { return null; }

@@ -1,0 +1,159 @@
+// All missions, newest first: open, edit, use again, take away.
+import { useEffect, useState } from "preact/hooks";
+import { go, missionAddress } from "../app/route";
+import { sourceFor } from "../app/sourceFor";
+import { open, source } from "../app/store";
+import { asProblem } from "../commands/send";
+import { t } from "../i18n";
+import { ProblemText } from "../panels/ProblemNote";
+import * as api from "../sources/api";
+import { NotARecording, readRecording, replays } from "../sources/replay";
+import { inFlight, isOver } from "../state/mission";
+import { phaseName } from "../state/words";
+import { formatDuration } from "../units/quantities";
+import type { MissionSummary, Problem } from "../wire";
+
+const REFRESH_MS = 5000;
+const FORMATS: readonly api.ExportFormat[] = ["geojson", "kml", "csv", "json"];
+
+function Export({ id }: { id: string }) {
+  return (
+    <details class="export">
+      <summary class="button">{t("missions.export")}</summary>
+      <div class="export-list">
+        {FORMATS.map((format) => (
+          <a class="button" href={api.exportAddress(id, format)} download key={format}>
+            {format === "geojson" ? "GeoJSON" : format.toUpperCase()}
+          </a>
+        ))}
+      </div>
+    </details>
+  );
+}
+
+function Row({ mission }: { mission: MissionSummary }) {
+  const flies = inFlight(mission.phase);
+  return (
+    <tr data-testid="mission-row" data-mission={mission.mission_id} data-phase={mission.phase}>
+      <td>
+        <a href={missionAddress(mission.mission_id)}>
+          <strong>{mission.name}</strong>
+        </a>
+      </td>
+      <td>
+        <span class={`tag ${flies ? "active" : ""}`}>
+          {mission.outcome ? t(`outcome.${mission.outcome}`) : phaseName(mission.phase)}
+        </span>
+      </td>
+      <td class="number">{mission.drafted_at_utc.slice(0, 16).replace("T", " ")}</td>
+      <td class="number">{mission.mission_time_s === null ? "–" : formatDuration(mission.mission_time_s)}</td>
+      <td class="number">
+        {mission.bearings}
+        {mission.rejected_sweeps > 0 && <span class="muted"> ({t("missions.rejected", { count: mission.rejected_sweeps })})</span>}
+      </td>
+      <td>
+        <div class="row-actions">
+          <a class="button" href={missionAddress(mission.mission_id)} data-testid="open-mission">
+            {t("missions.open")}
+          </a>
+          <a class="button" href={`#/new/${encodeURIComponent(mission.mission_id)}`}>
+            {t("missions.copy")}
+          </a>
+          {isOver(mission.phase) && <Export id={mission.mission_id} />}
+        </div>
+      </td>
+    </tr>
+  );
+}
+
+function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
+  return (
+    <label class="button">
+      {t("missions.openFile")}
+      <input
+        class="visually-hidden"
+        type="file"
+        accept=".json,application/json"
+        onChange={(e) => {
+          const file = e.currentTarget.files?.[0];
+          if (!file) return;
+          void file.text().then((text) => {
+            try {
+              const recording = readRecording(text);
+              replays.set(recording.missionId, recording);
+              go(missionAddress(recording.missionId));
+            } catch (error) {
+              const reason = error instanceof NotARecording ? error.message : String(error);
+              onProblem(t("missions.recordingBroken", { name: file.name, reason }));
+            }
+          });
+        }}
+      />
+    </label>
+  );
+}
+
+export function MissionsPage() {
+  const [list, setList] = useState<readonly MissionSummary[] | null>(null);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const [broken, setBroken] = useState<string | null>(null);
+  const [wanted, setWanted] = useState("");
+  useEffect(() => {
+    if (source.peek()?.missionId !== null) open(sourceFor(null));
+    const read = () =>
+      api.missions().then(
+        ({ missions }) => {
+          setList(missions);
+          setProblem(null);
+        },
+        (error: unknown) => setProblem(asProblem(error)),
+      );
+    void read();
+    const timer = setInterval(() => void read(), REFRESH_MS);
+    return () => clearInterval(timer);
+  }, []);
+  const shown = list?.filter((m) => m.name.toLowerCase().includes(wanted.toLowerCase()));
+  return (
+    <div class="page" data-testid="missions">
+      <div class="page-head">
+        <h1>{t("missions.title")}</h1>
+        <input type="search" placeholder={t("missions.search")} aria-label={t("missions.search")} value={wanted} onInput={(e) => setWanted(e.currentTarget.value)} />
+        <OpenRecording onProblem={setBroken} />
+        <a class="button primary" href="#/new" data-testid="new-mission">
+          {t("missions.new")}
+        </a>
+      </div>
+      {broken && <p class="refused" role="alert">{broken}</p>}
+      {problem && (
+        <div class="problem" role="alert">
+          <div>
+            <ProblemText problem={problem} />
+          </div>
+        </div>
+      )}
+      {!list && !problem && <p class="muted">{t("missions.loading")}</p>}
+      {list?.length === 0 && <p class="card">{t("missions.empty")}</p>}
+      {shown && shown.length > 0 && (
+        <table class="table">
+          <thead>
+            <tr>
+              <th scope="col">{t("missions.name")}</th>
+              <th scope="col">{t("missions.state")}</th>
+              <th scope="col">{t("missions.drafted")}</th>
+              <th scope="col">{t("missions.time")}</th>
+              <th scope="col">{t("missions.bearings")}</th>
+              <th scope="col">
+                <span class="visually-hidden">{t("missions.open")}</span>
+              </th>
+            </tr>
+          </thead>
+          <tbody>
+            {shown.map((mission) => (
+              <Row mission={mission} key={mission.mission_id} />
+            ))}
+          </tbody>
+        </table>
+      )}
+    </div>
+  );
+}

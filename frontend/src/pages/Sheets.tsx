@@ -1,0 +1,1 @@
+export function Sheets() { return null; }

@@ -1,0 +1,104 @@
+// Warning, caution, advisory: how many are open, the list, acknowledgement, mute.
+import { computed } from "@preact/signals";
+import { overlay, toggle } from "../app/overlay";
+import { change, settings } from "../app/settings";
+import { live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { send } from "../commands/send";
+import { t, type MessageKey } from "../i18n";
+import { alertRank, isOpen, sortAlerts } from "../state/alerts";
+import type { Alert } from "../state/mission";
+import { formatAge } from "../units/quantities";
+import { ProblemNote } from "./ProblemNote";
+
+const open = computed(() => mission.value.alerts.filter(isOpen));
+const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
+
+function AlertRow({ alert }: { alert: Alert }) {
+  nowMs.value;
+  const age = ((reviewTimeMs.value ?? Date.now()) - Date.parse(alert.raisedAt)) / 1000;
+  const id = live.value.mission.missionId;
+  return (
+    <li class={`alert-row ${isOpen(alert) ? alert.level : "past"}`} data-testid="alert-row" data-level={alert.level}>
+      <div>
+        <strong>{t(`alerts.${alert.level}` satisfies MessageKey)}</strong> <span class="muted">{formatAge(age)}</span>
+        <div>{alert.text}</div>
+        {alert.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: alert.remedy })}</div>}
+        {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: alert.acknowledgedBy })}</div>}
+        {alert.cleared && <div class="muted">{t("alerts.cleared")}</div>}
+      </div>
+      {isOpen(alert) && id && (
+        <button
+          data-testid="acknowledge"
+          onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: alert.id })}
+        >
+          {t("alerts.acknowledge")}
+        </button>
+      )}
+    </li>
+  );
+}
+
+function AlertsSheet() {
+  const alerts = sortAlerts(mission.value.alerts);
+  return (
+    <div class="popover" role="dialog" aria-label={t("alerts.title")} data-testid="alerts-panel">
+      <div class="popover-head">
+        <h2>{t("alerts.title")}</h2>
+        <button data-testid="mute" aria-pressed={!settings.value.tones} onClick={() => change("tones", !settings.value.tones)}>
+          {t(settings.value.tones ? "alerts.mute" : "alerts.unmute")}
+        </button>
+      </div>
+      <ProblemNote desk="alerts" />
+      {alerts.length === 0 ? (
+        <p class="muted">{t("alerts.none")}</p>
+      ) : (
+        <ul class="alert-list">
+          {alerts.map((alert) => (
+            <AlertRow alert={alert} key={alert.id} />
+          ))}
+        </ul>
+      )}
+    </div>
+  );
+}
+
+export function AlertsButton() {
+  const count = open.value.length;
+  return (
+    <div class="anchor">
+      <button
+        class={`alerts ${worst.value ?? ""}`}
+        data-testid="alerts"
+        data-count={count}
+        aria-expanded={overlay.value === "alerts"}
+        aria-label={t("bar.alerts.count", { count })}
+        onClick={() => toggle("alerts")}
+      >
+        <span>{t("bar.alerts")}</span>
+        <b>{count}</b>
+        {!settings.value.tones && <small>{t("alerts.muted")}</small>}
+      </button>
+      {overlay.value === "alerts" && <AlertsSheet />}
+    </div>
+  );
+}
+
+/** The most urgent open alert, over the map until somebody acknowledges it. */
+export function AlertBanner() {
+  const first = sortAlerts(open.value)[0];
+  if (!first || alertRank(first.level) > alertRank("caution")) return null;
+  const id = live.value.mission.missionId;
+  return (
+    <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner">
+      <span>
+        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {first.text}{" "}
+        {first.remedy && t("problem.remedy", { remedy: first.remedy })}
+      </span>
+      {id && (
+        <button onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>
+          {t("alerts.acknowledge")}
+        </button>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,148 @@
+// Where the emitter probably is, how wrong that may be, and how long until it may be said.
+import { useState } from "preact/hooks";
+import { copyText } from "../app/clipboard";
+import { change, settings } from "../app/settings";
+import { live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { t, type MessageKey } from "../i18n";
+import { remainingTime } from "../state/timeLeft";
+import { formatPlace, type CoordinateFormat } from "../units/coordinates";
+import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
+
+const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
+
+function Coordinates({ lat, lon }: { lat: number; lon: number }) {
+  const [copied, setCopied] = useState(false);
+  const format = settings.value.coordinates;
+  const text = formatPlace({ lat, lon }, format);
+  return (
+    <div class="coordinates">
+      <output data-testid="estimate-coordinates" data-lat={lat} data-lon={lon}>
+        {text}
+      </output>
+      <select
+        aria-label={t("estimate.format")}
+        value={format}
+        onChange={(e) => change("coordinates", e.currentTarget.value as CoordinateFormat)}
+      >
+        {FORMATS.map((f) => (
+          <option value={f} key={f}>
+            {f.toUpperCase()}
+          </option>
+        ))}
+      </select>
+      <button
+        data-testid="copy"
+        onClick={() => {
+          void copyText(text).then((done) => {
+            setCopied(done);
+            setTimeout(() => setCopied(false), 1500);
+          });
+        }}
+      >
+        {t(copied ? "estimate.copied" : "estimate.copy")}
+      </button>
+    </div>
+  );
+}
+
+function TimeLeft() {
+  nowMs.value;
+  const { plan, ended, belief } = mission.value;
+  if (!plan || ended || belief?.fact.localized) return null;
+  const factor = live.value.hello?.time_factor ?? 1;
+  const left = remainingTime(plan, reviewTimeMs.value ?? Date.now(), reviewTimeMs.value === null ? factor : 1);
+  if (!left) return null;
+  return (
+    <div data-testid="time-left" data-seconds={left.meanS}>
+      <dt>{t("estimate.localizedIn")}</dt>
+      <dd>
+        {left.meanS > 0 ? t("estimate.about", { time: formatDuration(left.meanS) }) : t("estimate.overdue")}
+        {left.worstS !== null && left.worstS > 0 && (
+          <small>{t("estimate.in90", { time: formatDuration(left.worstS) })}</small>
+        )}
+      </dd>
+    </div>
+  );
+}
+
+function Budget() {
+  const { telemetry, status } = live.value;
+  const battery = telemetry?.value.battery_percent ?? null;
+  const home = status?.value.battery_to_return_percent ?? null;
+  const reserve = mission.value.spec?.flight.reserve_battery_percent ?? null;
+  if (battery === null || home === null || reserve === null || reviewTimeMs.value !== null) return null;
+  return <span class="muted">{t("estimate.budget", { percent: Math.round(battery - home - reserve) })}</span>;
+}
+
+export function EstimatePanel() {
+  const { belief, spec, ended } = mission.value;
+  const units = settings.value.units;
+  const fact = belief?.fact;
+  const estimate = fact?.estimate;
+  const localized = fact?.localized ?? false;
+  return (
+    <section class="panel estimate" data-testid="estimate" data-tour="3" aria-label={t("estimate.title")}>
+      <h2>
+        {t("estimate.title")}
+        {fact && (
+          <Budget />
+        )}
+        {fact && (
+          <span class={`verdict ${localized ? "verdict-yes" : ""}`} data-testid="verdict" data-localized={localized}>
+            {t(localized ? "estimate.localized" : "estimate.notYet")}
+          </span>
+        )}
+      </h2>
+      {!fact && <p class="muted">{t("estimate.none")}</p>}
+      {fact && !estimate && <p data-testid="inconsistent">{t("estimate.inconsistent")}</p>}
+      {estimate && (
+        <>
+          <Coordinates lat={estimate.lat} lon={estimate.lon} />
+          <dl class="figures">
+            <div>
+              <dt>{t("estimate.rmse")}</dt>
+              <dd data-testid="expected-rmse" data-value={estimate.expected_rmse_m}>
+                ±{formatLength(estimate.expected_rmse_m, units)}
+                {spec && (
+                  <small> {t("estimate.threshold", { length: formatLength(spec.localization.expected_rmse_m, units) })}</small>
+                )}
+              </dd>
+            </div>
+            <div>
+              <dt>{t("estimate.c95")}</dt>
+              <dd data-testid="c95-area" data-value={estimate.c95_area_m2}>
+                {formatArea(estimate.c95_area_m2, units)}
+                <small>
+                  {" "}
+                  {t("estimate.axes", {
+                    major: formatLength(estimate.major_axis_m, units),
+                    minor: formatLength(estimate.minor_axis_m, units),
+                    bearing: formatBearing(estimate.major_axis_deg % 180),
+                  })}
+                </small>
+              </dd>
+            </div>
+            <TimeLeft />
+          </dl>
+        </>
+      )}
+      {!estimate && (
+        <dl class="figures">
+          <TimeLeft />
+        </dl>
+      )}
+      {fact && !localized && fact.not_yet.length > 0 && (
+        <ul class="reasons" data-testid="not-yet">
+          {fact.not_yet.map((reason) => (
+            <li key={reason}>{reason}</li>
+          ))}
+        </ul>
+      )}
+      {ended && (
+        <p class="outcome" data-testid="outcome" data-outcome={ended.fact.outcome}>
+          {t(`outcome.${ended.fact.outcome}` satisfies MessageKey)}: {ended.fact.reason}
+        </p>
+      )}
+    </section>
+  );
+}

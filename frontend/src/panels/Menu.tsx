@@ -1,0 +1,54 @@
+import { overlay, toggle, type Overlay } from "../app/overlay";
+import { t } from "../i18n";
+
+const show = (which: Overlay) => () => {
+  overlay.value = which;
+};
+const close = () => {
+  overlay.value = null;
+};
+
+export function Menu() {
+  const isOpen = overlay.value === "menu";
+  return (
+    <nav class="anchor" aria-label={t("bar.menu")}>
+      <button class="icon" data-testid="menu" aria-label={t("bar.menu")} aria-expanded={isOpen} onClick={() => toggle("menu")}>
+        ☰
+      </button>
+      {isOpen && (
+        <ul class="popover menu">
+          <li>
+            <a href="#/" onClick={close} data-testid="menu-missions">
+              {t("menu.missions")}
+            </a>
+          </li>
+          <li>
+            <a href="#/new" onClick={close} data-testid="menu-new">
+              {t("menu.new")}
+            </a>
+          </li>
+          <li>
+            <a href="#/maps" onClick={close} data-testid="menu-maps">
+              {t("menu.maps")}
+            </a>
+          </li>
+          <li>
+            <button onClick={show("settings")} data-testid="menu-settings">
+              {t("menu.settings")}
+            </button>
+          </li>
+          <li>
+            <button onClick={show("keys")} data-testid="menu-keys">
+              {t("menu.keys")} <kbd>?</kbd>
+            </button>
+          </li>
+          <li>
+            <button onClick={show("tour")} data-testid="menu-tour">
+              {t("menu.tour")}
+            </button>
+          </li>
+        </ul>
+      )}
+    </nav>
+  );
+}

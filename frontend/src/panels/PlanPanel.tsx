@@ -1,0 +1,221 @@
+// Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
+import { settings } from "../app/settings";
+import { cursor, live, mission, vehicle } from "../app/store";
+import { send } from "../commands/send";
+import { SlideToConfirm } from "../commands/SlideToConfirm";
+import { t } from "../i18n";
+import { cancelProposal, confirmProposal, propose, proposal, type Proposal } from "../commands/proposal";
+import { rankCandidates, roundShade } from "../state/candidates";
+import { bearingDeg, distanceM, lonLat } from "../state/geometry";
+import { highlighted } from "../app/highlight";
+import { formatPlace } from "../units/coordinates";
+import { formatBearing, formatDuration, formatLength } from "../units/quantities";
+import type { CandidateFact, PlanChosen } from "../wire";
+import { ProblemNote, ProblemText } from "./ProblemNote";
+
+const SHOWN = 12;
+
+function roundWords(candidate: CandidateFact): string {
+  return candidate.dropped_in_round === null
+    ? t("plan.kept")
+    : t("plan.roundNumber", { round: candidate.dropped_in_round });
+}
+
+function CandidateTable({ plan }: { plan: PlanChosen }) {
+  const ranked = rankCandidates(plan);
+  const canPropose = cursor.value === null && !mission.value.ended;
+  return (
+    <table class="candidates" data-testid="candidates">
+      <caption class="visually-hidden">{t("plan.candidates")}</caption>
+      <thead>
+        <tr>
+          <th scope="col">{t("plan.place")}</th>
+          <th scope="col">{t("plan.value")}</th>
+          <th scope="col">{t("plan.error")}</th>
+          <th scope="col">{t("plan.rollouts")}</th>
+          <th scope="col">{t("plan.round")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {ranked.slice(0, SHOWN).map(({ candidate, index, chosen }) => (
+          <tr
+            key={index}
+            data-testid="candidate"
+            data-chosen={chosen}
+            class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}
+            onMouseEnter={() => (highlighted.value = index)}
+            onMouseLeave={() => (highlighted.value = null)}
+          >
+            <td>
+              <button
+                class="candidate-name"
+                disabled={!canPropose || chosen}
+                title={t("plan.flyHere")}
+                onFocus={() => (highlighted.value = index)}
+                onBlur={() => (highlighted.value = null)}
+                onClick={() => propose({ lat: candidate.lat, lon: candidate.lon })}
+              >
+                <i class="swatch" style={{ background: `var(--round-${roundShade(candidate, plan, chosen)})` }} />
+                {index + 1}
+              </button>
+            </td>
+            <td>{formatDuration(candidate.value_s)}</td>
+            <td>{candidate.std_error_s.toFixed(1)}</td>
+            <td>{candidate.rollouts}</td>
+            <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function costWords(proposed: Proposal, plan: PlanChosen | undefined): string | null {
+  const time = proposed.result?.expected_time_s;
+  if (time === null || time === undefined) return proposed.result ? t("proposal.unknownCost") : null;
+  const planned = proposed.compareS ?? plan?.expected_time_s ?? null;
+  if (planned === null) return null;
+  const difference = time - planned;
+  if (Math.abs(difference) < 1) return t("proposal.same");
+  return t(difference > 0 ? "proposal.costs" : "proposal.saves", { difference: formatDuration(Math.abs(difference)) });
+}
+
+function ProposalCard({ proposed }: { proposed: Proposal }) {
+  const plan = mission.value.plan?.fact;
+  const { result, problem } = proposed;
+  const here = vehicle.value.at;
+  const units = settings.value.units;
+  return (
+    <div class="proposal" data-testid="proposal" data-allowed={result?.allowed ?? ""}>
+      <h3>{t("proposal.title")}</h3>
+      <div>
+        {formatPlace(proposed.place, settings.value.coordinates)}
+        {here && (
+          <span class="muted">
+            {" · "}
+            {t("plan.distance", {
+              length: formatLength(distanceM(here, lonLat(proposed.place)), units),
+              bearing: formatBearing(bearingDeg(here, lonLat(proposed.place))),
+            })}
+          </span>
+        )}
+      </div>
+      {!result && !problem && <p class="muted">{t("proposal.asking")}</p>}
+      {problem && (
+        <div class="problem" role="alert">
+          <div>
+            <ProblemText problem={problem} />
+          </div>
+        </div>
+      )}
+      {result && !result.allowed && (
+        <p class="refused" role="alert">
+          {t("proposal.notAllowed", { reason: result.reason })}
+        </p>
+      )}
+      {result?.expected_time_s != null && (
+        <p data-testid="proposal-cost" data-seconds={result.expected_time_s}>
+          {t("proposal.expected", { time: formatDuration(result.expected_time_s) })}
+          {result.time_90_s !== null && ` (${t("proposal.in90", { time: formatDuration(result.time_90_s) })})`}
+        </p>
+      )}
+      {result && (
+        <p>
+          <strong>{costWords(proposed, plan)}</strong>
+        </p>
+      )}
+      <ProblemNote desk="proposal" />
+      {result?.allowed || problem ? (
+        <SlideToConfirm
+          key={`${proposed.place.lat},${proposed.place.lon}`}
+          label={t("proposal.slide")}
+          testId="override-slider"
+          onConfirm={() => void confirmProposal()}
+          onCancel={cancelProposal}
+          expiresS={30}
+        />
+      ) : (
+        <button onClick={cancelProposal}>{t("proposal.cancel")}</button>
+      )}
+    </div>
+  );
+}
+
+function Decision({ id }: { id: string }) {
+  const { phase, automatic } = mission.value;
+  const waiting = phase === "waiting";
+  return (
+    <div class="decision">
+      <button
+        class={waiting ? "primary" : ""}
+        data-testid="accept"
+        disabled={!waiting}
+        onClick={() => void send("plan", id, { kind: "accept" })}
+      >
+        {t("plan.accept")}
+      </button>
+      <button data-testid="veto" disabled={!waiting && phase !== "flying"} onClick={() => void send("plan", id, { kind: "veto" })}>
+        {t("plan.veto")}
+      </button>
+      <button
+        class="switch"
+        role="switch"
+        aria-checked={automatic}
+        data-testid="automatic"
+        title={t("plan.auto")}
+        onClick={() => void send("plan", id, { kind: "set_automatic", automatic: !automatic })}
+      >
+        <span class="switch-knob" aria-hidden="true" />
+        <span>
+          {t("plan.auto")}
+          <small>{t(automatic ? "plan.autoOn" : "plan.autoOff")}</small>
+        </span>
+      </button>
+    </div>
+  );
+}
+
+export function PlanPanel() {
+  const { plan, missionId, ended, startedAt } = mission.value;
+  const proposed = proposal.value;
+  const isLive = cursor.value === null && !ended;
+  const fact = plan?.fact;
+  const here = vehicle.value.at;
+  return (
+    <section class="panel plan" data-testid="plan" data-tour="5" aria-label={t("plan.title")}>
+      <h2>
+        {t("plan.title")}
+        {fact && here && (
+          <span class="muted">
+            {t("plan.distance", {
+              length: formatLength(distanceM(here, lonLat(fact.place)), settings.value.units),
+              bearing: formatBearing(bearingDeg(here, lonLat(fact.place))),
+            })}
+          </span>
+        )}
+      </h2>
+      <ProblemNote desk="plan" />
+      {proposed && isLive && <ProposalCard proposed={proposed} />}
+      {missionId && isLive && startedAt && live.value.mission.missionId === missionId && <Decision id={missionId} />}
+      {!fact && <p class="muted">{t("plan.none")}</p>}
+      {fact && (
+        <>
+          <p class="why" data-testid="why">
+            <strong>{t("plan.why")}</strong> {fact.reason}{" "}
+            <span class="muted">
+              {fact.source === "planner"
+                ? t("plan.effort", {
+                    rollouts: fact.rollouts.toLocaleString("en"),
+                    candidates: fact.candidates.length,
+                    time: fact.plan_ms.toFixed(0),
+                  })
+                : t("plan.byOperator", { by: fact.by ?? "?" })}
+            </span>
+          </p>
+          {fact.candidates.length > 0 && <CandidateTable plan={fact} />}
+          {isLive && !proposed && <p class="muted">{t("plan.dragHint")}</p>}
+        </>
+      )}
+    </section>
+  );
+}

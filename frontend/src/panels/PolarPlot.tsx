@@ -1,0 +1,82 @@
+// The sweep by hand: power against heading, the pattern's fit, the bearing with its sigma, other peaks.
+import { t } from "../i18n";
+import { binnedPath, polarPoint, polarScale, radius, type PolarScale } from "../state/polar";
+import { formatBearing } from "../units/quantities";
+
+export interface PolarData {
+  binnedDb: readonly (number | null)[];
+  fittedDb: readonly (number | null)[];
+  samples: { headingDeg: number; db: number }[];
+  bearing: { deg: number; sigmaDeg: number; quality: number } | null;
+  peaks: { deg: number; weight: number }[];
+  rejected: boolean;
+}
+
+function wedgePath(deg: number, sigma: number): string {
+  const [x0, y0] = polarPoint(deg - sigma, 1);
+  const [x1, y1] = polarPoint(deg + sigma, 1);
+  return `M0 0L${x0} ${y0}A1 1 0 0 1 ${x1} ${y1}Z`;
+}
+
+function Rings({ scale }: { scale: PolarScale | null }) {
+  const steps = scale ? [0, Math.round(scale.spanDb / 2)] : [];
+  return (
+    <g class="polar-rings">
+      <circle r="1" />
+      <circle r="0.56" />
+      <path d="M-1 0H1M0-1V1" />
+      {["N", "E", "S", "W"].map((name, i) => {
+        const [x, y] = polarPoint(90 * i, 1.14);
+        return (
+          <text x={x} y={y} key={name}>
+            {name}
+          </text>
+        );
+      })}
+      {scale &&
+        steps.map((down) => {
+          const [x, y] = polarPoint(62, radius(scale.topDb - down, scale) * (down ? 1 : 1.2));
+          return (
+            <text class="polar-db" x={x} y={y} key={down}>
+              {(scale.topDb - down).toFixed(0)} dB
+            </text>
+          );
+        })}
+    </g>
+  );
+}
+
+export function PolarPlot({ data }: { data: PolarData }) {
+  const scale = polarScale([...data.binnedDb, ...data.samples.map((s) => s.db)]);
+  const words = data.bearing
+    ? t("sweep.plot", { bearing: formatBearing(data.bearing.deg), quality: data.bearing.quality.toFixed(2) })
+    : t("sweep.plotEmpty");
+  return (
+    <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
+      <Rings scale={scale} />
+      {data.bearing && <path class="polar-wedge" d={wedgePath(data.bearing.deg, data.bearing.sigmaDeg)} />}
+      {scale && data.fittedDb.length > 0 && (
+        <path class="polar-fit" d={binnedPath(data.fittedDb, scale)} data-testid="polar-fit" />
+      )}
+      {scale && data.binnedDb.length > 0 && (
+        <path
+          class={`polar-power ${data.rejected ? "polar-rejected" : ""}`}
+          d={binnedPath(data.binnedDb, scale)}
+          data-testid="polar-power"
+        />
+      )}
+      {scale &&
+        data.samples.map((s, i) => {
+          const [x, y] = polarPoint(s.headingDeg, radius(s.db, scale));
+          return <circle class="polar-sample" cx={x} cy={y} r="0.018" key={i} />;
+        })}
+      {data.peaks.map((peak) => {
+        const [x, y] = polarPoint(peak.deg, 0.35 + 0.65 * Math.min(1, peak.weight));
+        return <line class="polar-peak" x1="0" y1="0" x2={x} y2={y} key={peak.deg} />;
+      })}
+      {data.bearing && (
+        <line class="polar-bearing" x1="0" y1="0" x2={polarPoint(data.bearing.deg, 1)[0]} y2={polarPoint(data.bearing.deg, 1)[1]} />
+      )}
+    </svg>
+  );
+}

@@ -1,0 +1,87 @@
+// Before the start: the checklist that refuses, with remedies, and the slide that starts.
+import { signal } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
+import { source } from "../app/store";
+import { mission } from "../app/store";
+import { asProblem, report, send } from "../commands/send";
+import { SlideToConfirm } from "../commands/SlideToConfirm";
+import { t } from "../i18n";
+import { ProblemNote } from "./ProblemNote";
+
+const checking = signal(false);
+
+export async function runPreflight(missionId: string): Promise<void> {
+  const from = source.peek();
+  if (!from || checking.peek()) return;
+  checking.value = true;
+  report("start", null);
+  try {
+    await from.preflight(missionId);
+  } catch (error) {
+    report("start", asProblem(error));
+  } finally {
+    checking.value = false;
+  }
+}
+
+export function PreflightPanel({ missionId }: { missionId: string }) {
+  const { checks, preflightPassed, spec } = mission.value;
+  const [sliding, setSliding] = useState(false);
+  useEffect(() => {
+    if (checks === null && spec) void runPreflight(missionId);
+  }, [missionId, checks === null, spec === null]);
+  const refusing = checks?.filter((c) => !c.ok && c.blocking).length ?? 0;
+  return (
+    <section class="panel preflight" data-testid="preflight" data-passed={preflightPassed ?? ""} aria-label={t("preflight.title")}>
+      <h2>
+        {t("preflight.title")}
+        <button data-testid="preflight-run" disabled={checking.value} onClick={() => void runPreflight(missionId)}>
+          {t(checking.value ? "preflight.running" : checks ? "preflight.again" : "preflight.run")}
+        </button>
+      </h2>
+      <ProblemNote desk="start" />
+      {checks === null && !checking.value && <p class="muted">{t("preflight.none")}</p>}
+      {checks && (
+        <>
+          <p class={preflightPassed ? "" : "refused"}>
+            <strong>{preflightPassed ? t("preflight.passed") : t("preflight.failed", { count: refusing })}</strong>
+          </p>
+          <ul class="checks">
+            {checks.toSorted((a, b) => Number(a.ok) - Number(b.ok)).map((check) => {
+              const verdict = check.ok ? "ok" : check.blocking ? "notOk" : "warning";
+              return (
+                <li class={`check-${verdict}`} key={check.name} data-testid="check" data-ok={check.ok}>
+                  <span class="check-mark" aria-label={t(`preflight.${verdict}`)}>
+                    {check.ok ? "✓" : check.blocking ? "✕" : "!"}
+                  </span>
+                  <span>
+                    <strong>{check.name}</strong> {check.detail}
+                    {!check.ok && check.remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: check.remedy })}</em>}
+                  </span>
+                </li>
+              );
+            })}
+          </ul>
+        </>
+      )}
+      <div class="start-row">
+        <a class="button" href={`#/mission/${encodeURIComponent(missionId)}/edit`} data-testid="edit">
+          {t("preflight.edit")}
+        </a>
+        {!sliding && (
+          <button class="primary" data-testid="start" disabled={!preflightPassed} onClick={() => setSliding(true)}>
+            {t("preflight.start")}
+          </button>
+        )}
+      </div>
+      {sliding && (
+        <SlideToConfirm
+          label={t("preflight.slide")}
+          testId="start-slider"
+          onConfirm={() => void send("start", missionId, { kind: "start" }).then(() => setSliding(false))}
+          onCancel={() => setSliding(false)}
+        />
+      )}
+    </section>
+  );
+}

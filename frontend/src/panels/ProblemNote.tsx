@@ -1,0 +1,34 @@
+// The server's no, in its words: what is wrong, what to do.
+import { t } from "../i18n";
+import { problems, report, type Desk } from "../commands/send";
+import type { Problem } from "../wire";
+
+export function ProblemText({ problem }: { problem: Problem }) {
+  return (
+    <>
+      <strong>{problem.title}.</strong> {problem.detail}
+      {problem.errors.map((e) => (
+        <div class="problem-field" key={e.field}>
+          {e.field}: {e.message}
+        </div>
+      ))}
+      {problem.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: problem.remedy })}</div>}
+      {problem.incident && <div class="muted">{t("problem.incident", { id: problem.incident })}</div>}
+    </>
+  );
+}
+
+export function ProblemNote({ desk }: { desk: Desk }) {
+  const problem = problems.value[desk];
+  if (!problem) return null;
+  return (
+    <div class="problem" role="alert" data-testid={`problem-${desk}`}>
+      <div>
+        <ProblemText problem={problem} />
+      </div>
+      <button class="icon" aria-label={t("problem.dismiss")} onClick={() => report(desk, null)}>
+        ✕
+      </button>
+    </div>
+  );
+}

@@ -1,0 +1,244 @@
+// Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
+import { useState } from "preact/hooks";
+import { settings } from "../app/settings";
+import { cursor, events, flying, live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { missionAddress } from "../app/route";
+import { send } from "../commands/send";
+import { SlideToConfirm } from "../commands/SlideToConfirm";
+import { sendUrgent, urgent, type Urgent } from "../commands/urgent";
+import { t, type MessageKey } from "../i18n";
+import { ageS, freshness, OLD_AFTER_S, type Freshness } from "../state/age";
+import { stateWords } from "../state/words";
+import { formatAge, formatDuration } from "../units/quantities";
+import { AlertsButton } from "./AlertsButton";
+import { Menu } from "./Menu";
+import { ProblemNote } from "./ProblemNote";
+
+function UrgentButton({ kind }: { kind: Urgent }) {
+  const target = flying.value;
+  const heard = live.value.telemetry?.value;
+  const shown = live.value.mission.missionId;
+  const id = target?.id ?? (heard?.in_air || !heard ? shown : null);
+  return (
+    <button
+      class={`urgent urgent-${kind}`}
+      data-testid={kind}
+      disabled={!id}
+      title={id ? t(`bar.${kind}.hint` satisfies MessageKey) : t("bar.nothingFlies")}
+      onClick={() => id && void sendUrgent(id, kind)}
+    >
+      {t(`bar.${kind}` satisfies MessageKey)}
+    </button>
+  );
+}
+
+function Resume() {
+  const [armed, setArmed] = useState(false);
+  const target = flying.value;
+  const canResume = target?.phase === "hold" || target?.phase === "manual";
+  if (!target || !canResume) return null;
+  if (!armed) {
+    return (
+      <button class="resume" data-testid="resume" onClick={() => setArmed(true)}>
+        {t("bar.resume")}
+      </button>
+    );
+  }
+  return (
+    <div class="bar-slide">
+      <SlideToConfirm
+        label={t(target.phase === "manual" ? "bar.resume.slideManual" : "bar.resume.slide")}
+        testId="resume-slider"
+        onConfirm={() => {
+          setArmed(false);
+          void send("bar", target.id, { kind: "resume" });
+        }}
+        onCancel={() => setArmed(false)}
+      />
+    </div>
+  );
+}
+
+interface Reading {
+  label: string;
+  testId: string;
+  value: string;
+  age: number | null;
+  state: Freshness;
+  alert?: "warning" | "caution" | null;
+  more?: string;
+}
+
+function Indicator({ label, testId, value, age, state, alert, more }: Reading) {
+  return (
+    <div class={`indicator ${state} ${alert ?? ""}`} data-testid={testId} data-state={state}>
+      <span class="indicator-label">{label}</span>
+      <span class="indicator-value">{state === "gone" ? "–" : value}</span>
+      <span class="indicator-more">
+        {state === "old" && age !== null ? t("bar.age", { age: formatAge(age) }) : state === "fresh" ? more : ""}
+      </span>
+    </div>
+  );
+}
+
+function Indicators() {
+  const now = nowMs.value;
+  const { telemetry, status, link, lastMessageMs, unreadable } = live.value;
+  const heard = telemetry?.value;
+  const at = telemetry?.atMs ?? null;
+  const silence = ageS(0, lastMessageMs ?? link.sinceMs, now) ?? 0;
+  const linkAlert = link.state === "closed" || silence > 2 * OLD_AFTER_S ? "warning" : null;
+  const batteryAge = ageS(heard?.battery_age_s, at, now);
+  const gpsAge = ageS(heard?.position_age_s, at, now);
+  const connectedAge = ageS(0, at, now);
+  const receiverAge = ageS(status ? 0 : null, status?.atMs ?? null, now);
+  const needed = status?.value.battery_to_return_percent ?? null;
+  const battery = heard?.battery_percent ?? null;
+  const receiver = status?.value.receiver ?? "off";
+  const power = status?.value.receiver_power_db ?? null;
+  const reserve = live.value.mission.spec?.flight.reserve_battery_percent ?? 25;
+  const vehicleState = heard === undefined ? "bar.vehicle.never" : heard.connected ? "bar.vehicle.ok" : "bar.vehicle.lost";
+  const poorFix = heard?.gps_fix != null && /no|2d|none/i.test(heard.gps_fix);
+  return (
+    <div class="indicators">
+      <Indicator
+        label={t("bar.link")}
+        testId="link"
+        value={link.state === "closed" ? t("bar.link.closed", { age: formatAge(silence) }) : t(`bar.link.${link.state}`)}
+        age={silence}
+        state="fresh"
+        alert={linkAlert}
+        more={unreadable > 0 ? t("bar.unreadable", { count: unreadable }) : ""}
+      />
+      <Indicator
+        label={t("bar.vehicle")}
+        testId="vehicle-link"
+        value={t(vehicleState)}
+        age={connectedAge}
+        state={freshness(connectedAge)}
+        alert={heard && !heard.connected ? "warning" : null}
+        more={heard?.mode ?? ""}
+      />
+      <Indicator
+        label={t("bar.gps")}
+        testId="gps"
+        value={
+          heard?.satellites != null
+            ? t("bar.gps.satellites", { fix: heard.gps_fix ?? "?", count: heard.satellites })
+            : (heard?.gps_fix ?? t("bar.unknown"))
+        }
+        age={gpsAge}
+        state={freshness(gpsAge)}
+        alert={poorFix ? "caution" : null}
+      />
+      <Indicator
+        label={t("bar.battery")}
+        testId="battery"
+        value={battery === null ? t("bar.unknown") : `${Math.round(battery)} %`}
+        age={batteryAge}
+        state={freshness(batteryAge)}
+        alert={battery === null ? null : battery < (needed ?? 0) ? "warning" : battery < reserve + (needed ?? 0) ? "caution" : null}
+        more={needed === null ? "" : t("bar.battery.toReturn", { percent: Math.round(needed) })}
+      />
+      <Indicator
+        label={t("bar.receiver")}
+        testId="receiver"
+        value={t(`bar.receiver.${receiver}`)}
+        age={receiverAge}
+        state={freshness(receiverAge)}
+        alert={receiver === "lost" ? "warning" : receiver === "silent" ? "caution" : null}
+        more={power === null ? "" : `${power.toFixed(0)} dB`}
+      />
+    </div>
+  );
+}
+
+function controlWords(): string {
+  const pilot = mission.value.pilot;
+  if (pilot) return t("control.pilot", { mode: pilot.mode });
+  const heard = live.value.telemetry?.value;
+  if (!heard) return t("control.unknown");
+  if (heard.controller === "pilot") return t("control.pilot", { mode: heard.mode ?? "?" });
+  return t(heard.controller === "crossfix" ? "control.crossfix" : "control.nobody");
+}
+
+function Words() {
+  const now = nowMs.value;
+  const { status, link, lastMessageMs, hello } = live.value;
+  const silence = ageS(0, lastMessageMs ?? link.sinceMs, now) ?? 0;
+  const shown = mission.value;
+  const fresh = freshness(ageS(status ? 0 : null, status?.atMs ?? null, now)) === "fresh";
+  const aboutThis = status?.value.mission_id === shown.missionId;
+  const reviewed = cursor.value === null ? null : events.value.findLast((e) => e.seq <= cursor.value!);
+
+  let words = shown.missionId ? stateWords(shown) : t("state.none");
+  if (reviewed) words = `${t("state.review", { time: reviewed.at_utc.slice(11, 19) })}: ${words}`;
+  else if (fresh && aboutThis && settings.value.language === "en" && status?.value.doing) words = status.value.doing;
+  const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
+
+  const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;
+  const endedMs = shown.ended ? Date.parse(shown.ended.at) : null;
+  const untilMs = reviewTimeMs.value ?? endedMs ?? Date.now();
+  const waits = cursor.value === null && fresh && aboutThis ? status?.value.waits_for : null;
+  return (
+    <div class="words">
+      <div class={`state-words ${lost ? "stale" : ""}`} data-testid="state-words" data-phase={shown.phase} role="status">
+        <span data-testid="phase" hidden>
+          {shown.phase}
+        </span>
+        {lost ? t("state.lost", { age: formatAge(silence) }) : words}
+      </div>
+      <div class="state-more">
+        <span data-testid="control">{controlWords()}</span>
+        {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
+        {startedMs !== null && (
+          <span data-testid="mission-time" title={shown.spec?.name}>
+            {t("state.time", { duration: formatDuration((untilMs - startedMs) / 1000) })}
+          </span>
+        )}
+        {shown.spec && <span class="mission-name">{shown.spec.name}</span>}
+      </div>
+    </div>
+  );
+}
+
+function UrgentNote() {
+  const under = Object.entries(urgent.value) as [Urgent, NonNullable<(typeof urgent.value)[Urgent]>][];
+  const other = flying.value && flying.value.id !== live.value.mission.missionId;
+  if (under.length === 0 && !other) return null;
+  return (
+    <div class="urgent-note" role="status" data-testid="urgent-note">
+      {under.map(([kind, state]) => {
+        const command = t(`bar.${kind}` satisfies MessageKey);
+        const key = state.stage === "sending" ? "bar.sending" : state.stage === "retrying" ? "bar.retrying" : "bar.confirmed";
+        return <span key={kind}>{t(key, { command, count: state.count })}</span>;
+      })}
+      {other && (
+        <span>
+          {t("bar.otherFlies")} <a href={missionAddress(flying.value!.id)}>{t("bar.otherFlies.open")}</a>
+        </span>
+      )}
+    </div>
+  );
+}
+
+export function SafetyBar() {
+  return (
+    <header class="safety" aria-label={t("bar.label")}>
+      <div class="safety-row">
+        <div class="urgents" role="group" aria-label={t("bar.label")}>
+          <UrgentButton kind="abort" />
+          <UrgentButton kind="hold" />
+          <UrgentButton kind="return" />
+        </div>
+        <Resume />
+        <Words />
+        <Indicators />
+        <AlertsButton />
+        <Menu />
+      </div>
+      <UrgentNote />
+      <ProblemNote desk="bar" />
+    </header>
+  );
+}

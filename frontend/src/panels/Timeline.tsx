@@ -1,0 +1,182 @@
+// Everything that happened: a strip of time with a handle, and the events in words. Live and review are one screen.
+import { signal } from "@preact/signals";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { settings } from "../app/settings";
+import { cursor, events, look, mission } from "../app/store";
+import { t } from "../i18n";
+import { eventWords, isMain, toneOf } from "../state/words";
+import { formatClock, formatLength } from "../units/quantities";
+import type { Recorded } from "../wire";
+
+const showAll = signal(false);
+
+/** Runs through the recorded moments, `speed` seconds of the mission a second. */
+function usePlayback(all: readonly Recorded[]): [number | null, (speed: number | null) => void] {
+  const [speed, setSpeed] = useState<number | null>(null);
+  useEffect(() => {
+    if (speed === null) return;
+    const from = events.peek().find((e) => e.seq === cursor.peek()) ?? events.peek()[0];
+    if (!from) return;
+    const missionMs = Date.parse(from.at_utc);
+    const began = performance.now();
+    const timer = setInterval(() => {
+      const time = missionMs + (performance.now() - began) * speed;
+      const at = events.peek().findLast((e) => Date.parse(e.at_utc) <= time);
+      if (at && at.seq !== cursor.peek()) look(at.seq);
+      if (at?.seq === events.peek().at(-1)?.seq) setSpeed(null);
+    }, 100);
+    return () => clearInterval(timer);
+  }, [speed, all.length === 0]);
+  return [speed, setSpeed];
+}
+
+function Strip({ all }: { all: readonly Recorded[] }) {
+  const first = all[0];
+  const last = all.at(-1);
+  if (!first || !last) return null;
+  const begin = Date.parse((all.find((e) => e.event.kind === "mission_started") ?? first).at_utc);
+  const end = Math.max(begin + 1000, Date.parse(last.at_utc));
+  const share = (at: string) => Math.max(0, (Date.parse(at) - begin) / (end - begin)) * 100;
+  const rmse = mission.value.beliefs.filter((b) => b.expectedRmse !== null);
+  const top = Math.max(1, ...rmse.map((b) => b.expectedRmse!));
+  const at = cursor.value === null ? last : (all.findLast((e) => e.seq <= cursor.value!) ?? first);
+  const steps = rmse.map((b, i) => {
+    const x = share(b.at);
+    const y = 28 - 26 * (b.expectedRmse! / top);
+    return i === 0 ? `M${x} ${y}` : `H${x}V${y}`;
+  });
+  const settle = (seconds: number) => {
+    const time = begin + seconds * 1000;
+    const nearest = all.findLast((e) => Date.parse(e.at_utc) <= time) ?? first;
+    look(nearest.seq === last.seq ? null : nearest.seq);
+  };
+  return (
+    <div class="strip">
+      <svg class="strip-ticks" viewBox="0 0 100 30" preserveAspectRatio="none" aria-hidden="true">
+        {steps.length > 0 && <path class="strip-rmse" d={`${steps.join("")}H100`} vector-effect="non-scaling-stroke" />}
+        {all
+          .filter((e) => toneOf(e.event) !== "other")
+          .map((e) => (
+            <line
+              class={`tick tick-${toneOf(e.event)}`}
+              x1={share(e.at_utc)}
+              x2={share(e.at_utc)}
+              y1={toneOf(e.event) === "mode" ? 20 : 6}
+              y2="30"
+              vector-effect="non-scaling-stroke"
+              key={e.seq}
+            />
+          ))}
+      </svg>
+      {rmse.length > 0 && (
+        <span class="strip-scale" aria-hidden="true">
+          {t("timeline.rmse")} ≤ {formatLength(top, settings.value.units)}
+        </span>
+      )}
+      <input
+        type="range"
+        data-testid="scrub"
+        aria-label={t("timeline.scrub")}
+        aria-valuetext={`${formatClock(at.at_utc)} ${eventWords(at, settings.value.units)}`}
+        min={0}
+        max={(end - begin) / 1000}
+        step={0.1}
+        value={Math.max(0, (Date.parse(at.at_utc) - begin) / 1000)}
+        onInput={(e) => settle(Number(e.currentTarget.value))}
+        onKeyDown={(e) => {
+          const step = e.key === "ArrowLeft" ? -1 : e.key === "ArrowRight" ? 1 : 0;
+          if (step === 0) return;
+          e.preventDefault();
+          stepEvent(step);
+        }}
+      />
+    </div>
+  );
+}
+
+/** One event back or on; past the newest is live. */
+export function stepEvent(step: -1 | 1): void {
+  const all = events.peek();
+  const last = all.at(-1);
+  if (!last) return;
+  const target = (cursor.peek() ?? last.seq) + step;
+  look(target >= last.seq ? null : Math.max(all[0]!.seq, target));
+}
+
+function Log({ all }: { all: readonly Recorded[] }) {
+  const list = useRef<HTMLOListElement>(null);
+  const at = cursor.value;
+  const shown = showAll.value ? all : all.filter((e) => isMain(e.event));
+  const current = at === null ? null : shown.findLast((e) => e.seq <= at)?.seq;
+  useEffect(() => {
+    const box = list.current;
+    if (!box) return;
+    const row = box.querySelector<HTMLElement>('[aria-current="true"]');
+    if (row) box.scrollTop = row.offsetTop - box.clientHeight / 2;
+    else box.scrollTop = box.scrollHeight;
+  }, [shown.length, current]);
+  if (all.length === 0) return <p class="muted log-empty">{t("timeline.empty")}</p>;
+  return (
+    <ol class="log" ref={list} data-testid="event-log" aria-label={t("timeline.events")} tabIndex={0}>
+      {shown.map((recorded) => (
+        <li key={recorded.seq} aria-current={recorded.seq === current ? "true" : undefined}>
+          <button
+            class={`log-row log-${toneOf(recorded.event)}`}
+            data-testid="event-row"
+            data-kind={recorded.event.kind}
+            data-seq={recorded.seq}
+            onClick={() => look(recorded.seq === all.at(-1)?.seq ? null : recorded.seq)}
+          >
+            <time>{formatClock(recorded.at_utc)}</time>
+            <span>{eventWords(recorded, settings.value.units)}</span>
+          </button>
+        </li>
+      ))}
+    </ol>
+  );
+}
+
+export function Timeline() {
+  const all = events.value;
+  const reviewing = cursor.value !== null;
+  const [speed, play] = usePlayback(all);
+  return (
+    <section class="timeline" aria-label={t("timeline.label")} data-testid="timeline" data-tour="6">
+      <div class="timeline-controls">
+        <button
+          class={reviewing ? "primary" : "is-live"}
+          data-testid="go-live"
+          data-live={!reviewing}
+          onClick={() => {
+            play(null);
+            look(null);
+          }}
+        >
+          {t(reviewing ? "timeline.goLive" : mission.value.ended ? "timeline.review" : "timeline.live")}
+        </button>
+        <button class="icon" aria-label={t("timeline.previous")} data-testid="step-back" disabled={all.length === 0} onClick={() => stepEvent(-1)}>
+          ◂
+        </button>
+        <button class="icon" aria-label={t("timeline.next")} data-testid="step-on" disabled={!reviewing} onClick={() => stepEvent(1)}>
+          ▸
+        </button>
+        <button
+          data-testid="play"
+          disabled={all.length === 0}
+          onClick={() => {
+            if (speed === null && cursor.peek() === null && all[0]) look(all[0].seq);
+            play(speed === null ? 10 : null);
+          }}
+        >
+          {speed === null ? `${t("timeline.play")} 10×` : t("timeline.pause")}
+        </button>
+        <label class="check">
+          <input type="checkbox" checked={showAll.value} onChange={(e) => (showAll.value = e.currentTarget.checked)} />
+          {t("timeline.filter.all")}
+        </label>
+      </div>
+      <Strip all={all} />
+      <Log all={all} />
+    </section>
+  );
+}

@@ -1,0 +1,125 @@
+// REST, one function an endpoint. Every failure becomes a RequestFailed with a sentence to show.
+import type {
+  AreaImport,
+  Command,
+  CommandReply,
+  CommandRequest,
+  Defaults,
+  EventPage,
+  ExpectedTime,
+  Health,
+  Mission,
+  MissionList,
+  MissionSpec,
+  Place,
+  PreflightReply,
+  Preview,
+  Problem,
+  Recorded,
+  Track,
+} from "../wire";
+import { decodeBeliefFrame, type BeliefFrame } from "../wire/beliefFrame";
+import { RequestFailed, unreachable } from "./problem";
+
+const TIMEOUT_MS = 20_000;
+
+/** A random UUID also where the page is served without TLS (crypto.randomUUID needs a secure context). */
+export function newCommandId(): string {
+  const b = crypto.getRandomValues(new Uint8Array(16));
+  b[6] = (b[6]! & 0x0f) | 0x40;
+  b[8] = (b[8]! & 0x3f) | 0x80;
+  const hex = Array.from(b, (x) => x.toString(16).padStart(2, "0")).join("");
+  return `${hex.slice(0, 8)}-${hex.slice(8, 12)}-${hex.slice(12, 16)}-${hex.slice(16, 20)}-${hex.slice(20)}`;
+}
+
+export async function problemOf(response: Response): Promise<RequestFailed> {
+  const fallback: Problem = {
+    type: "about:blank",
+    title: `The server refused (${response.status})`,
+    status: response.status,
+    detail: response.statusText || "It gave no reason.",
+    remedy: "",
+    errors: [],
+    incident: null,
+  };
+  const isJson = response.headers.get("content-type")?.includes("json") ?? false;
+  const body = isJson ? ((await response.json()) as Partial<Problem>) : {};
+  return new RequestFailed({ ...fallback, ...body, errors: Array.isArray(body.errors) ? body.errors : [] });
+}
+
+async function request(path: string, init: RequestInit = {}): Promise<Response> {
+  const timeout = AbortSignal.timeout(TIMEOUT_MS);
+  const signal = init.signal ? AbortSignal.any([init.signal, timeout]) : timeout;
+  let response: Response;
+  try {
+    response = await fetch(`/api${path}`, { ...init, signal });
+  } catch (error) {
+    if (init.signal?.aborted) throw error;
+    throw unreachable(timeout.aborted ? "No answer within 20 seconds." : "The connection failed.");
+  }
+  if (!response.ok) throw await problemOf(response);
+  return response;
+}
+
+export async function requestEmpty(path: string, init: RequestInit): Promise<void> {
+  await request(path, init);
+}
+
+export async function json<T>(path: string, init?: RequestInit): Promise<T> {
+  return (await (await request(path, init)).json()) as T;
+}
+
+export const withBody = (method: string, body: unknown, signal?: AbortSignal): RequestInit => ({
+  method,
+  headers: { "content-type": "application/json" },
+  body: JSON.stringify(body),
+  signal: signal ?? null,
+});
+
+export type ExportFormat = "geojson" | "kml" | "csv" | "json";
+
+const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
+
+export const health = () => json<Health>("/health");
+export const defaults = () => json<Defaults>("/defaults");
+export const missions = () => json<MissionList>("/missions");
+export const mission = (id: string) => json<Mission>(missionPath(id));
+export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", withBody("POST", spec));
+export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));
+export const preflight = (id: string) => json<PreflightReply>(`${missionPath(id)}/preflight`, { method: "POST" });
+export const preview = (spec: MissionSpec, signal?: AbortSignal) => json<Preview>("/preview", withBody("POST", spec, signal));
+export const track = (id: string) => json<Track>(`${missionPath(id)}/track`);
+
+/** Where a file of the mission can be fetched from. */
+export const exportAddress = (id: string, format: ExportFormat) => `/api${missionPath(id)}/export/${format}`;
+
+export const sendCommand = (id: string, command: Command, commandId = newCommandId()): Promise<CommandReply> => {
+  const body: CommandRequest = { command_id: commandId, command };
+  return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
+};
+
+export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
+  json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place }, signal));
+
+export const importArea = (text: string, filename: string) =>
+  json<AreaImport>("/areas", withBody("POST", { text, filename }));
+
+export async function events(id: string): Promise<Recorded[]> {
+  const all: Recorded[] = [];
+  for (;;) {
+    const after = all.at(-1)?.seq ?? 0;
+    const page = await json<EventPage>(`${missionPath(id)}/events?after=${after}`);
+    all.push(...page.events);
+    if (!page.more || page.events.length === 0) return all;
+  }
+}
+
+export async function belief(id: string, bearings: number): Promise<BeliefFrame | null> {
+  try {
+    const response = await request(`${missionPath(id)}/beliefs/${bearings}`);
+    return await decodeBeliefFrame(await response.arrayBuffer());
+  } catch (error) {
+    if (error instanceof RequestFailed && error.problem.status === 404) return null;
+    throw error;
+  }
+}

@@ -1,0 +1,20 @@
+// Offline map packages and overlays on this server.
+import type { components } from "../wire/generated";
+import type { Area } from "../wire";
+import { json, requestEmpty, withBody } from "./api";
+
+type Schemas = components["schemas"];
+export type MapPackage = Schemas["MapPackage"];
+export type MapList = Schemas["MapList"];
+export type MapLayers = Schemas["MapLayers"];
+export type Coverage = Schemas["Coverage"];
+export type Overlay = Schemas["Overlay"];
+export type OverlayList = Schemas["OverlayList"];
+
+export const listMaps = () => json<MapList>("/maps");
+export const mapLayers = (id: string, theme: "light" | "dark") => json<MapLayers>(`/maps/${id}/layers?theme=${theme}`);
+export const deleteMap = (id: string) => requestEmpty(`/maps/${id}`, { method: "DELETE" });
+export const coverage = (area: Area) => json<Coverage>("/maps/coverage", withBody("POST", { area }));
+export const listOverlays = () => json<OverlayList>("/overlays");
+export const overlay = (id: string) => json<GeoJSON.FeatureCollection>(`/overlays/${id}`);
+export const deleteOverlay = (id: string) => requestEmpty(`/overlays/${id}`, { method: "DELETE" });

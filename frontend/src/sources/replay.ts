@@ -1,0 +1,84 @@
+// A recording: a mission's journal as exported (JSON), shown through the same interface as a live one.
+import { t } from "../i18n";
+import type { CommandReply, ExpectedTime, PreflightReply, Recorded, Track } from "../wire";
+import { RequestFailed } from "./problem";
+import * as api from "./api";
+import type { Source, SourceMessage } from "./source";
+
+/** Recordings opened in this tab, by mission id. */
+export const replays = new Map<string, ReplaySource>();
+
+export class NotARecording extends Error {}
+
+interface Exported {
+  mission_id?: unknown;
+  events?: unknown;
+  track?: unknown;
+}
+
+const isRecorded = (value: unknown): value is Recorded => {
+  const candidate = value as Partial<Recorded> | null;
+  return typeof candidate?.seq === "number" && typeof candidate.at_utc === "string" && typeof candidate.event === "object";
+};
+
+/** Reads the exported journal; says what is missing when it is something else. */
+export function readRecording(text: string): ReplaySource {
+  let parsed: Exported;
+  try {
+    parsed = JSON.parse(text) as Exported;
+  } catch {
+    throw new NotARecording("it is not JSON");
+  }
+  const events = Array.isArray(parsed) ? (parsed as unknown[]) : parsed.events;
+  if (!Array.isArray(events) || events.length === 0) throw new NotARecording("it holds no events");
+  const bad = events.findIndex((event) => !isRecorded(event));
+  if (bad >= 0) throw new NotARecording(`entry ${bad + 1} is not a recorded event`);
+  const recorded = (events as Recorded[]).toSorted((a, b) => a.seq - b.seq);
+  const points = Array.isArray(parsed.track) ? (parsed.track as Track["points"]) : ((parsed.track as Track | undefined)?.points ?? []);
+  return new ReplaySource(recorded, points);
+}
+
+function refuse(): never {
+  throw new RequestFailed({ type: "about:blank", title: t("problem.refused"), status: 409, detail: t("problem.recording"), remedy: "", errors: [], incident: null });
+}
+
+export class ReplaySource implements Source {
+  readonly kind = "replay";
+  readonly missionId: string;
+
+  constructor(
+    private readonly recorded: readonly Recorded[],
+    private readonly points: Track["points"],
+  ) {
+    this.missionId = recorded[0]!.mission_id;
+  }
+
+  start(listener: (message: SourceMessage) => void): void {
+    listener({ type: "link", state: "open", attempt: 0 });
+    const last = this.recorded.at(-1)!.seq;
+    listener({ type: "hello", server_version: "", mission_id: this.missionId, last_seq: last, time_factor: 1 });
+    for (const recorded of this.recorded) listener({ type: "event", recorded });
+  }
+
+  stop(): void {
+    return;
+  }
+
+  /** The server rebuilds beliefs of missions it knows; for others the picture stays empty. */
+  belief(missionId: string, bearings: number) {
+    return api.belief(missionId, bearings);
+  }
+  async track(): Promise<Track> {
+    return { mission_id: this.missionId, points: this.points };
+  }
+  async send(): Promise<CommandReply> {
+    return refuse();
+  }
+  async preflight(): Promise<PreflightReply> {
+    return refuse();
+  }
+  async expectedTime(): Promise<ExpectedTime> {
+    return refuse();
+  }
+  importArea = api.importArea;
+}

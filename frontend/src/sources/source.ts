@@ -1,0 +1,36 @@
+// Where the picture comes from. Panels see messages and cannot tell a live mission from a recording.
+import type { AreaImport, Command, CommandReply, ExpectedTime, LiveMessage, Place, PreflightReply, Track } from "../wire";
+import type { BeliefFrame } from "../wire/beliefFrame";
+
+export interface BeliefMessage {
+  type: "belief";
+  frame: BeliefFrame;
+}
+
+export interface LinkMessage {
+  type: "link";
+  state: "connecting" | "open" | "closed";
+  attempt: number;
+}
+
+/** Something arrived that could not be read: counted and shown, never dropped silently. */
+export interface UnreadableMessage {
+  type: "unreadable";
+  detail: string;
+}
+
+export type SourceMessage = LiveMessage | BeliefMessage | LinkMessage | UnreadableMessage;
+
+export interface Source {
+  readonly kind: "live" | "replay" | "fixture";
+  readonly missionId: string | null;
+  start(listener: (message: SourceMessage) => void): void;
+  stop(): void;
+  /** `commandId` given again means the same command again: it is carried out once. */
+  send(missionId: string, command: Command, commandId?: string): Promise<CommandReply>;
+  belief(missionId: string, bearings: number): Promise<BeliefFrame | null>;
+  track(missionId: string): Promise<Track>;
+  preflight(missionId: string): Promise<PreflightReply>;
+  expectedTime(missionId: string, place: Place, signal?: AbortSignal): Promise<ExpectedTime>;
+  importArea(text: string, filename: string): Promise<AreaImport>;
+}

@@ -1,0 +1,72 @@
+// Small distances on the WGS84 ellipsoid's tangent plane; good to centimetres within the few kilometres of a search.
+import type { LonLat } from "../wire/beliefFrame";
+import type { Place } from "../wire";
+
+const A = 6378137.0;
+const E2 = 6.69437999014e-3;
+const RAD = Math.PI / 180;
+
+/** Metres per degree of longitude and latitude at a latitude (prime vertical and meridian radius). */
+export function metresPerDegree(latDeg: number): [number, number] {
+  const s2 = Math.sin(latDeg * RAD) ** 2;
+  const w = 1 - E2 * s2;
+  const meridian = (A * (1 - E2)) / w ** 1.5;
+  const primeVertical = A / Math.sqrt(w);
+  return [RAD * primeVertical * Math.cos(latDeg * RAD), RAD * meridian];
+}
+
+export const lonLat = (place: Place): LonLat => [place.lon, place.lat];
+export const place = ([lon, lat]: LonLat): Place => ({ lat, lon });
+
+export function distanceM(a: LonLat, b: LonLat): number {
+  const [mx, my] = metresPerDegree((a[1] + b[1]) / 2);
+  return Math.hypot((b[0] - a[0]) * mx, (b[1] - a[1]) * my);
+}
+
+/** The point `metres` from `from` in compass direction `bearingDeg`. */
+export function destination(from: LonLat, bearingDeg: number, metres: number): LonLat {
+  const [mx, my] = metresPerDegree(from[1]);
+  const b = bearingDeg * RAD;
+  return [from[0] + (metres * Math.sin(b)) / mx, from[1] + (metres * Math.cos(b)) / my];
+}
+
+/** Compass bearing from a to b, [0, 360). */
+export function bearingDeg(a: LonLat, b: LonLat): number {
+  const [mx, my] = metresPerDegree((a[1] + b[1]) / 2);
+  return (Math.atan2((b[0] - a[0]) * mx, (b[1] - a[1]) * my) / RAD + 360) % 360;
+}
+
+export function circle(centre: LonLat, radiusM: number, corners = 72): LonLat[] {
+  const ring = Array.from({ length: corners }, (_, i) => destination(centre, (360 * i) / corners, radiusM));
+  return [...ring, ring[0]!];
+}
+
+/** A wedge of +-halfWidth around a bearing as a closed ring: apex, arc, apex. */
+export function wedge(apex: LonLat, bearing: number, halfWidthDeg: number, lengthM: number): LonLat[] {
+  const steps = Math.max(2, Math.ceil(halfWidthDeg));
+  const arc = Array.from({ length: 2 * steps + 1 }, (_, i) =>
+    destination(apex, bearing + halfWidthDeg * (i / steps - 1), lengthM),
+  );
+  return [apex, ...arc, apex];
+}
+
+/** [west, south, east, north] of a set of points; null when there is none. */
+export function boundsOf(points: readonly LonLat[]): [number, number, number, number] | null {
+  if (points.length === 0) return null;
+  const lons = points.map((p) => p[0]);
+  const lats = points.map((p) => p[1]);
+  return [Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)];
+}
+
+/** Area of a ring in m^2 (shoelace on the tangent plane), without sign. */
+export function ringAreaM2(ring: readonly LonLat[]): number {
+  const origin = ring[0];
+  if (!origin) return 0;
+  const [mx, my] = metresPerDegree(origin[1]);
+  let twice = 0;
+  ring.forEach((p, i) => {
+    const q = ring[(i + 1) % ring.length]!;
+    twice += (p[0] - origin[0]) * mx * (q[1] - origin[1]) * my - (q[0] - origin[0]) * mx * (p[1] - origin[1]) * my;
+  });
+  return Math.abs(twice) / 2;
+}

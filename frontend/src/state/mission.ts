@@ -1,0 +1,223 @@
+// A mission is a fold of its events. Pure: (state, recorded) -> state, the same live, in review and in tests.
+import type {
+  AlertLevel,
+  BearingMeasured,
+  BeliefUpdated,
+  CheckFact,
+  LinkName,
+  MissionEnded,
+  MissionSpec,
+  Phase,
+  PlanChosen,
+  Place,
+  Recorded,
+  SweepRejected,
+} from "../wire";
+
+export interface At<T> {
+  fact: T;
+  seq: number;
+  at: string;
+}
+
+export interface Bearing extends At<BearingMeasured> {
+  excluded: boolean;
+}
+
+export interface Alert {
+  id: string;
+  level: AlertLevel;
+  text: string;
+  remedy: string;
+  raisedAt: string;
+  acknowledgedBy: string | null;
+  cleared: boolean;
+}
+
+export interface Lost {
+  since: string;
+  detail: string;
+}
+
+export interface BeliefPoint {
+  seq: number;
+  at: string;
+  bearings: number;
+  expectedRmse: number | null;
+}
+
+export interface MissionState {
+  missionId: string | null;
+  lastSeq: number;
+  spec: MissionSpec | null;
+  phase: Phase;
+  phaseReason: string;
+  phaseSince: string | null;
+  checks: CheckFact[] | null;
+  preflightPassed: boolean | null;
+  home: Place | null;
+  startedAt: string | null;
+  plan: At<PlanChosen> | null;
+  /** The place on the way or being measured, by its number; null before the first plan. */
+  placeNumber: number | null;
+  attempt: number;
+  bearings: readonly Bearing[];
+  rejected: readonly At<SweepRejected>[];
+  belief: At<BeliefUpdated> | null;
+  beliefs: readonly BeliefPoint[];
+  automatic: boolean;
+  pilot: { mode: string; detail: string; since: string } | null;
+  alerts: readonly Alert[];
+  lost: Readonly<Partial<Record<LinkName, Lost>>>;
+  ended: At<MissionEnded> | null;
+}
+
+export const emptyMission: MissionState = {
+  missionId: null,
+  lastSeq: 0,
+  spec: null,
+  phase: "draft",
+  phaseReason: "",
+  phaseSince: null,
+  checks: null,
+  preflightPassed: null,
+  home: null,
+  startedAt: null,
+  plan: null,
+  placeNumber: null,
+  attempt: 1,
+  bearings: [],
+  rejected: [],
+  belief: null,
+  beliefs: [],
+  automatic: true,
+  pilot: null,
+  alerts: [],
+  lost: {},
+  ended: null,
+};
+
+function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): MissionState {
+  switch (event.kind) {
+    case "mission_drafted":
+    case "mission_edited":
+      return {
+        ...state,
+        spec: event.spec,
+        automatic: event.spec.flight.automatic,
+        checks: null,
+        preflightPassed: null,
+      };
+    case "preflight_checked":
+      return { ...state, checks: event.checks, preflightPassed: event.passed };
+    case "mission_started":
+      return { ...state, home: event.home, startedAt: at };
+    case "phase_changed":
+      return { ...state, phase: event.after, phaseReason: event.reason, phaseSince: at };
+    case "plan_chosen":
+      return { ...state, plan: { fact: event, seq, at }, placeNumber: event.place_number, attempt: 1 };
+    case "plan_vetoed":
+      return { ...state, plan: null };
+    case "flight_started":
+      return { ...state, placeNumber: event.place_number };
+    case "sweep_started":
+      return { ...state, placeNumber: event.place_number, attempt: event.attempt };
+    case "sweep_rejected":
+      return { ...state, rejected: [...state.rejected, { fact: event, seq, at }] };
+    case "bearing_measured":
+      return { ...state, bearings: [...state.bearings, { fact: event, seq, at, excluded: false }] };
+    case "bearing_excluded":
+      return {
+        ...state,
+        bearings: state.bearings.map((b) =>
+          b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b,
+        ),
+      };
+    case "belief_updated":
+      return {
+        ...state,
+        belief: { fact: event, seq, at },
+        beliefs: [
+          ...state.beliefs,
+          { seq, at, bearings: event.bearings, expectedRmse: event.estimate?.expected_rmse_m ?? null },
+        ],
+      };
+    case "automatic_changed":
+      return { ...state, automatic: event.automatic };
+    case "control_taken":
+      return { ...state, pilot: { mode: event.mode, detail: event.detail, since: at } };
+    case "control_released":
+      return { ...state, pilot: null };
+    case "link_lost":
+      return { ...state, lost: { ...state.lost, [event.link]: { since: at, detail: event.detail } } };
+    case "link_restored": {
+      const { [event.link]: _restored, ...lost } = state.lost;
+      return { ...state, lost };
+    }
+    case "alert_raised": {
+      const alert: Alert = {
+        id: event.alert_id,
+        level: event.level,
+        text: event.text,
+        remedy: event.remedy,
+        raisedAt: at,
+        acknowledgedBy: null,
+        cleared: false,
+      };
+      return { ...state, alerts: [...state.alerts.filter((a) => a.id !== alert.id), alert] };
+    }
+    case "alert_acknowledged":
+      return {
+        ...state,
+        alerts: state.alerts.map((a) => (a.id === event.alert_id ? { ...a, acknowledgedBy: event.by } : a)),
+      };
+    case "alert_cleared":
+      return {
+        ...state,
+        alerts: state.alerts.map((a) => (a.id === event.alert_id ? { ...a, cleared: true } : a)),
+      };
+    case "mission_ended":
+      return { ...state, ended: { fact: event, seq, at } };
+    case "took_off":
+    case "place_reached":
+    case "hold_ordered":
+    case "resume_ordered":
+    case "return_ordered":
+    case "abort_ordered":
+    case "command_accepted":
+    case "command_refused":
+    case "safety_vetoed":
+    case "server_restarted":
+      return state;
+  }
+}
+
+/** Events come in order; one that was already folded (after a reconnect) changes nothing. */
+export function foldMission(state: MissionState, recorded: Recorded): MissionState {
+  if (recorded.seq <= state.lastSeq) return state;
+  return { ...foldEvent(state, recorded), missionId: recorded.mission_id, lastSeq: recorded.seq };
+}
+
+export function missionAt(events: readonly Recorded[], seq: number): MissionState {
+  let state = emptyMission;
+  for (const recorded of events) {
+    if (recorded.seq > seq) break;
+    state = foldMission(state, recorded);
+  }
+  return state;
+}
+
+const IN_FLIGHT: readonly Phase[] = [
+  "taking_off",
+  "planning",
+  "waiting",
+  "flying",
+  "measuring",
+  "hold",
+  "manual",
+  "returning",
+  "landing",
+];
+
+export const inFlight = (phase: Phase): boolean => IN_FLIGHT.includes(phase);
+export const isOver = (phase: Phase): boolean => phase === "done" || phase === "aborted" || phase === "failed";

@@ -1,0 +1,46 @@
+// Received power against heading as points in a unit circle: north up, clockwise, loud outside.
+
+export interface PolarScale {
+  topDb: number;
+  spanDb: number;
+}
+
+const LEAST_SPAN_DB = 12;
+const INNER = 0.12;
+
+/** Outer rim: the loudest value; centre region: the quietest, but never less than 12 dB below. null: nothing heard. */
+export function polarScale(values: readonly (number | null)[]): PolarScale | null {
+  const heard = values.filter((v): v is number => v !== null && Number.isFinite(v));
+  if (heard.length === 0) return null;
+  const top = Math.max(...heard);
+  return { topDb: top, spanDb: Math.max(LEAST_SPAN_DB, top - Math.min(...heard)) };
+}
+
+export function radius(db: number, scale: PolarScale): number {
+  const share = 1 - (scale.topDb - db) / scale.spanDb;
+  return INNER + (1 - INNER) * Math.min(1, Math.max(0, share));
+}
+
+/** x to the right, y down (as in SVG), heading 0 up. */
+export function polarPoint(headingDeg: number, r: number): [number, number] {
+  const a = (headingDeg * Math.PI) / 180;
+  return [r * Math.sin(a), -r * Math.cos(a)];
+}
+
+/** One path over the bins (bin i covers headings i * 360/n .. (i+1) * 360/n); bins where nothing was heard are gaps. */
+export function binnedPath(binned: readonly (number | null)[], scale: PolarScale): string {
+  const width = 360 / binned.length;
+  const closed = binned.every((v) => v !== null);
+  let drawing = false;
+  let out = "";
+  binned.forEach((db, i) => {
+    if (db === null) {
+      drawing = false;
+      return;
+    }
+    const [x, y] = polarPoint((i + 0.5) * width, radius(db, scale));
+    out += `${drawing ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
+    drawing = true;
+  });
+  return closed && out ? `${out}Z` : out;
+}

@@ -1,0 +1,70 @@
+// One belief as it travels: 4-byte little-endian header length, JSON header, body (see backend/wire/belief_frame.py).
+
+export type LonLat = [number, number];
+
+export interface BeliefFrame {
+  missionId: string;
+  bearings: number;
+  nx: number;
+  ny: number;
+  /** SW, SE, NE, NW of the grid's outer edge. */
+  bounds: [LonLat, LonLat, LonLat, LonLat];
+  /** Largest probability of a cell. */
+  peak: number;
+  /** ny rows of nx cells, south to north, west to east; probability divided by `peak`. */
+  cells: Float32Array;
+}
+
+interface Header {
+  type: string;
+  mission_id: string;
+  bearings: number;
+  nx: number;
+  ny: number;
+  bounds: [LonLat, LonLat, LonLat, LonLat];
+  encoding: "f32-shuffle-zlib" | "u8-log-zlib";
+  peak: number;
+}
+
+export class BrokenFrame extends Error {}
+
+async function inflate(body: Uint8Array): Promise<Uint8Array> {
+  const stream = new Blob([body as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+function unshuffle(bytes: Uint8Array, count: number): Float32Array {
+  const plain = new Uint8Array(count * 4);
+  for (let i = 0; i < count; i++) {
+    for (let byte = 0; byte < 4; byte++) plain[4 * i + byte] = bytes[byte * count + i]!;
+  }
+  return new Float32Array(plain.buffer);
+}
+
+/** p = 10^(6 (u/255 - 1)), 0 stays 0: the inverse of u = round(255 (1 + log10(p) / 6)). */
+const LOG_LEVELS = Float32Array.from({ length: 256 }, (_, u) => (u === 0 ? 0 : 10 ** (6 * (u / 255 - 1))));
+
+export async function decodeBeliefFrame(buffer: ArrayBuffer): Promise<BeliefFrame> {
+  if (buffer.byteLength < 4) throw new BrokenFrame("The belief frame is shorter than its own header length.");
+  const headerLength = new DataView(buffer).getUint32(0, true);
+  if (4 + headerLength > buffer.byteLength) throw new BrokenFrame("The belief frame ends inside its header.");
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, headerLength))) as Header;
+  if (header.type !== "belief") throw new BrokenFrame(`A frame of type ${header.type} is not a belief.`);
+  const body = await inflate(new Uint8Array(buffer, 4 + headerLength));
+  const count = header.nx * header.ny;
+  const expected = header.encoding === "f32-shuffle-zlib" ? 4 * count : count;
+  if (body.length !== expected) {
+    throw new BrokenFrame(`The belief frame holds ${body.length} bytes, ${header.nx} x ${header.ny} cells need ${expected}.`);
+  }
+  const cells =
+    header.encoding === "f32-shuffle-zlib" ? unshuffle(body, count) : Float32Array.from(body, (u) => LOG_LEVELS[u]!);
+  return {
+    missionId: header.mission_id,
+    bearings: header.bearings,
+    nx: header.nx,
+    ny: header.ny,
+    bounds: header.bounds,
+    peak: header.peak,
+    cells,
+  };
+}

@@ -1,0 +1,51 @@
+// The wire's words under their own names; everything comes from the generated types.
+import type { components } from "./generated";
+
+type Schemas = components["schemas"];
+
+export type MissionSpec = Schemas["MissionSpec"];
+export type Place = Schemas["Place"];
+export type Polygon = Schemas["Polygon"];
+export type MultiPolygon = Schemas["MultiPolygon"];
+export type Area = Polygon | MultiPolygon;
+
+export type Recorded = Schemas["Recorded"];
+export type MissionEvent = Recorded["event"];
+export type EventKind = MissionEvent["kind"];
+export type EventOf<K extends EventKind> = Extract<MissionEvent, { kind: K }>;
+export type Phase = Schemas["PhaseChanged"]["after"];
+export type PlanChosen = Schemas["PlanChosen"];
+export type CandidateFact = Schemas["CandidateFact"];
+export type CheckFact = Schemas["CheckFact"];
+export type EstimateFact = Schemas["EstimateFact"];
+export type BearingMeasured = Schemas["BearingMeasured"];
+export type SweepRejected = Schemas["SweepRejected"];
+export type BeliefUpdated = Schemas["BeliefUpdated"];
+export type MissionEnded = Schemas["MissionEnded"];
+export type LinkName = Schemas["LinkLost"]["link"];
+export type AlertLevel = Schemas["AlertRaised"]["level"];
+
+export type Hello = Schemas["Hello"];
+export type EventMessage = Schemas["EventMessage"];
+export type TelemetryMessage = Schemas["TelemetryMessage"];
+export type SweepProgress = Schemas["SweepProgress"];
+export type StatusMessage = Schemas["StatusMessage"];
+export type LiveMessage = Hello | EventMessage | TelemetryMessage | SweepProgress | StatusMessage;
+
+export type CommandRequest = Schemas["CommandRequest"];
+export type Command = CommandRequest["command"];
+export type CommandReply = Schemas["CommandReply"];
+
+export type Problem = Schemas["Problem"];
+export type Defaults = Schemas["Defaults"];
+export type MissionSummary = Schemas["MissionSummary"];
+export type Mission = Schemas["Mission"];
+export type MissionList = Schemas["MissionList"];
+export type PreflightReply = Schemas["PreflightReply"];
+export type EventPage = Schemas["EventPage"];
+export type Track = Schemas["Track"];
+export type TrackFact = Schemas["TrackFact"];
+export type ExpectedTime = Schemas["ExpectedTime"];
+export type Preview = Schemas["Preview"];
+export type AreaImport = Schemas["AreaImport"];
+export type Health = Schemas["Health"];
