@@ -18,13 +18,35 @@ router = APIRouter(prefix="/api", tags=["planning"], responses=PROBLEM_RESPONSES
 @router.post("/missions/{mission_id}/expected-time")
 async def expected_time(mission_id: MissionId, request: ExpectedTimeRequest, services: ServicesDep) -> ExpectedTime:
     """The expected time to localization when the vehicle measured at this place next."""
-    raise NotImplementedError
+    async with services.planning:
+        found = await services.missions.expected_time(mission_id, request.place)
+    return ExpectedTime(
+        place=found.place,
+        allowed=found.allowed,
+        reason=found.reason,
+        expected_time_s=found.mean_s,
+        std_error_s=found.std_error_s,
+        time_90_s=found.p90_s,
+        rollouts=found.rollouts,
+    )
 
 
 @router.post("/preview")
 async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
     """Plan the first place of a mission that is not flown yet."""
-    raise NotImplementedError
+    async with services.planning:
+        found = await services.missions.preview(spec)
+    return Preview(
+        start=found.start,
+        first_place=found.first_place,
+        reason=found.reason,
+        expected_time_s=found.mean_s,
+        time_90_s=found.p90_s,
+        times_s=found.times_s,
+        candidates=found.candidates,
+        rollouts=found.rollouts,
+        plan_ms=found.plan_ms,
+    )
 
 
 @router.post("/areas")

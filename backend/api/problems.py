@@ -14,6 +14,7 @@ from starlette.exceptions import HTTPException
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.store.journal import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem
+from planner.types import PlannerError
 
 log = logging.getLogger("crossfix.api")
 
@@ -99,6 +100,11 @@ async def on_mission_conflict(_: Request, error: Exception) -> JSONResponse:
     return respond(conflict(_sentence(str(error)), _sentence(error.remedy)).problem)
 
 
+async def on_planner_error(_: Request, error: Exception) -> JSONResponse:
+    """The specification is well-formed, but there is nothing to plan in it."""
+    return respond(invalid(_sentence(str(error)), "Change the area, the fence or the planner's settings.").problem)
+
+
 async def on_journal_unavailable(_: Request, error: Exception) -> JSONResponse:
     remedy = "The flight goes on and its events are kept on disk. Look at the database, then try again."
     return respond(Problem(title="The database is away", status=503, detail=str(error), remedy=remedy))
@@ -138,5 +144,6 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(MissionInputError, on_mission_input)
     app.add_exception_handler(MissionNotFound, on_mission_not_found)
     app.add_exception_handler(MissionConflict, on_mission_conflict)
+    app.add_exception_handler(PlannerError, on_planner_error)
     app.add_exception_handler(JournalUnavailable, on_journal_unavailable)
     app.add_exception_handler(Exception, on_fault)

@@ -15,6 +15,8 @@ from backend.version import VERSION
 from backend.wire.messages import TelemetryMessage
 from backend.wire.resources import DatabaseHealth, Defaults, Health, VehicleHealth
 
+NO_VEHICLE = "No vehicle answers on the link. Check its power and the radio; the server keeps listening."
+
 router = APIRouter(prefix="/api", tags=["system"], responses=PROBLEM_RESPONSES)
 
 
@@ -31,7 +33,7 @@ async def health(services: ServicesDep) -> Health:
         vehicle=VehicleHealth(
             connected=telemetry.connected,
             autopilot=telemetry.autopilot,
-            detail="" if telemetry.connected else services.missions.vehicle_detail(),
+            detail="" if telemetry.connected else NO_VEHICLE,
         ),
         viewers=services.hub.viewers(),
         simulated=settings.simulated,

@@ -189,7 +189,7 @@ class SqlJournal:
         while True:
             if self._pending or self._fault is not None:
                 try:
-                    await self._drain()
+                    await self.drain()
                     retry_s = RETRY_FIRST_S
                 except DatabaseAway as error:
                     self._lost(error)
@@ -215,8 +215,8 @@ class SqlJournal:
             raise DatabaseAway(_why(error)) from error
         self._took_s = time.monotonic() - began
 
-    async def _drain(self) -> None:
-        """Everything that waits, in order; appends meanwhile queue up behind it."""
+    async def drain(self) -> None:
+        """Everything that waits, in order; appends meanwhile queue up behind it. Raises DatabaseAway."""
         await self._probe()
         drained = 0
         while self._pending:

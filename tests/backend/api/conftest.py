@@ -69,9 +69,6 @@ class PaperMissions:
     def telemetry(self) -> Telemetry:
         return self.heard
 
-    def vehicle_detail(self) -> str:
-        return "no vehicle answers"
-
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:

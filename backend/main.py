@@ -1,0 +1,47 @@
+"""The server: settings in, a running application out."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+
+import uvicorn
+from fastapi import FastAPI
+
+from backend.api.application import make_application
+from backend.api.services import Services
+from backend.live.protocol import LiveProtocol
+from backend.settings import Settings
+from backend.wiring import open_services
+
+OpenServices = Callable[[Settings], AbstractAsyncContextManager[Services]]
+
+
+def create_app(settings: Settings, opening: OpenServices = open_services) -> FastAPI:
+    """`opening` makes the parts behind the API and takes them down again."""
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with opening(settings) as services:
+            app.state.services = services
+            yield
+
+    return make_application(settings, lifespan)
+
+
+def server_config(settings: Settings, app: FastAPI) -> uvicorn.Config:
+    """How uvicorn runs it: one process, since the vehicle has one commander; no compression on the live channel."""
+    return uvicorn.Config(
+        app,
+        host=settings.host,
+        port=settings.port,
+        ws=LiveProtocol,
+        ws_max_size=64 * 1024,
+        ws_per_message_deflate=False,
+        ws_ping_interval=settings.live_ping_interval_s,
+        ws_ping_timeout=settings.live_ping_timeout_s,
+        timeout_graceful_shutdown=5,
+        access_log=False,
+        server_header=False,
+        log_level="warning",
+    )
