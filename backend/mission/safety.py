@@ -7,6 +7,7 @@ again right before every command that moves the vehicle. Order: the first veto i
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shapely import LineString, Point
@@ -16,6 +17,7 @@ from hardware.frame import LocalFrame
 from hardware.readings import GeoPoint, Telemetry
 
 POSITION_STALE_S = 3.0
+BATTERY_STALE_S = 30.0
 EDGE_TOLERANCE_M = 2.0
 """A hovering vehicle wanders about so much; fence and no-fly edges are tested with this much mercy on its own place."""
 
@@ -92,13 +94,16 @@ def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
 def battery_vetoes(
     limits: Limits, situation: Situation, flight_s: float = 0.0, end: GeoPoint | None = None
 ) -> tuple[Veto, ...]:
-    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?"""
+    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?
+
+    A vehicle that never reported a battery is not judged: preflight says so, the autopilot's own failsafe acts.
+    """
     telemetry = situation.telemetry
     end = end or telemetry.position
-    if telemetry.battery_percent is None:
-        return (Veto("battery", "the battery's charge is unknown", "wait for battery telemetry"),)
-    if end is None:
+    if telemetry.battery_percent is None or end is None:
         return ()
+    if telemetry.battery_at_s is not None and situation.now_s - telemetry.battery_at_s > BATTERY_STALE_S:
+        return (Veto("battery_stale", "the battery's charge is no longer reported", "check the battery monitor"),)
     left = telemetry.battery_percent - situation.drain_percent_s * flight_s
     needed = battery_to_return_percent(limits, end, situation.drain_percent_s)
     if left - needed >= limits.reserve_percent:
@@ -129,8 +134,14 @@ def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
     return (*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s))
 
 
-def place_vetoes(limits: Limits, situation: Situation, place: GeoPoint, altitude_amsl_m: float) -> tuple[Veto, ...]:
-    """May the vehicle fly straight to `place` and measure there?"""
+def place_vetoes(
+    limits: Limits,
+    situation: Situation,
+    place: GeoPoint,
+    altitude_amsl_m: float,
+    way: Sequence[tuple[float, float]] = (),
+) -> tuple[Veto, ...]:
+    """May the vehicle fly to `place` and measure there? `way`: points in between, m ENU; straight without them."""
     found = list(vehicle_vetoes(situation))
     relative = altitude_amsl_m - limits.home_amsl_m
     low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
@@ -155,10 +166,10 @@ def place_vetoes(limits: Limits, situation: Situation, place: GeoPoint, altitude
     found += _area_vetoes(limits, to, "the place is")
     position = situation.telemetry.position
     if position is not None:
-        at = limits.frame.to_enu(position)
+        path = LineString([limits.frame.to_enu(position), *way, to])
         if not found:
-            found += _path_vetoes(limits, at, to)
-        flight_s = math.dist(at, to) / limits.speed_m_s + limits.measurement_time_s
+            found += _path_vetoes(limits, path)
+        flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
         found += battery_vetoes(limits, situation, flight_s, place)
     return tuple(found)
 
@@ -176,19 +187,16 @@ def _area_vetoes(limits: Limits, at: tuple[float, float], what: str) -> list[Vet
     return found
 
 
-def _path_vetoes(limits: Limits, at: tuple[float, float], to: tuple[float, float]) -> list[Veto]:
-    path = LineString([at, to])
+def _path_vetoes(limits: Limits, path: LineString) -> list[Veto]:
     found = []
     if not limits.fence.buffer(EDGE_TOLERANCE_M).covers(path):
         found.append(
             Veto(
                 "fence",
-                "the straight way there leaves the fence",
+                "the way there leaves the fence",
                 "fly by way of a place in between",
             )
         )
     if any(path.intersection(zone).length > 0.0 for zone in limits.no_fly):
-        found.append(
-            Veto("no_fly", "the straight way there crosses a no-fly zone", "fly by way of a place beside the zone")
-        )
+        found.append(Veto("no_fly", "the way there crosses a no-fly zone", "fly by way of a place beside the zone"))
     return found

@@ -92,8 +92,10 @@ def test_the_pilot_a_lost_link_and_an_old_position_veto_everything() -> None:
             assert rule in [v.rule for v in vetoes]
 
 
-def test_an_unknown_battery_is_no_battery() -> None:
-    assert [v.rule for v in turn_vetoes(LIMITS, situation(battery_percent=None))] == ["battery"]
+def test_a_battery_that_fell_silent_vetoes_one_that_never_spoke_does_not() -> None:
+    assert turn_vetoes(LIMITS, situation(battery_percent=None)) == ()
+    assert turn_vetoes(LIMITS, situation(battery_at_s=990.0)) == ()
+    assert [v.rule for v in turn_vetoes(LIMITS, situation(battery_at_s=960.0))] == ["battery_stale"]
 
 
 @given(charge=st.floats(0, 100), east=st.floats(-40, 390), north=st.floats(110, 190), drain=st.floats(0.01, 1.0))

@@ -1,0 +1,81 @@
+"""What a place would cost, and what a mission may look like before take-off. Synchronous and pure; call in a thread."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from backend.events import BearingMeasured, CandidateFact
+from backend.mission.localization import Localization
+from backend.mission.planning import candidate_facts, cost_of, decide
+from backend.mission.safety import Situation, place_vetoes
+from backend.spec import Place
+from hardware.readings import GeoPoint
+
+
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """allowed False: the vehicle may not go there now, `reason` says why (the times may still be known).
+
+    mean_s: mean time until localized by way of the place; p90_s: not exceeded in 90 % of the rollouts. None: unknown.
+    """
+
+    place: Place
+    allowed: bool
+    reason: str
+    mean_s: float | None
+    std_error_s: float | None
+    p90_s: float | None
+    rollouts: int
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """Where a mission would measure first and how long it may take. times_s: sampled times until localized."""
+
+    start: Place
+    first_place: Place
+    reason: str
+    mean_s: float | None
+    p90_s: float | None
+    times_s: list[float]
+    candidates: list[CandidateFact]
+    rollouts: int
+    plan_ms: float
+
+
+def forecast(
+    task: Localization, measured: Sequence[BearingMeasured], platform: Place, place: Place, situation: Situation | None
+) -> Forecast:
+    """situation None: the vehicle is not asked (before take-off)."""
+    bearings = task.planner_bearings(measured)
+    start, end = (task.frame.to_enu(GeoPoint(p.lat, p.lon)) for p in (platform, place))
+    cost = cost_of(task, task.planning_belief(bearings), bearings, start, end)
+    reason = cost.reason
+    if situation is not None:
+        altitude = task.limits.home_amsl_m + task.mission.flight.altitude_relative_m
+        vetoes = place_vetoes(task.limits, situation, GeoPoint(place.lat, place.lon), altitude)
+        reason = reason or (vetoes[0].detail if vetoes else "")
+    return Forecast(place, not reason, reason, cost.mean_s, cost.std_error_s, cost.p90_s, cost.rollouts)
+
+
+def preview(task: Localization, start: Place, threads: int) -> Preview:
+    """Plan the first place from the prior. Raises PlannerError when no place may be flown to."""
+    began = time.perf_counter()
+    belief = task.planning_belief(())
+    decision = decide(task, belief, (), task.frame.to_enu(GeoPoint(start.lat, start.lon)), threads=threads)
+    times = decision.times
+    return Preview(
+        start=start,
+        first_place=task.place(decision.x, decision.y),
+        reason=decision.reason,
+        mean_s=float(times.mean()) if len(times) else None,
+        p90_s=float(np.quantile(times, 0.9)) if len(times) else None,
+        times_s=[float(t) for t in times],
+        candidates=candidate_facts(task, decision),
+        rollouts=decision.rollouts,
+        plan_ms=1e3 * (time.perf_counter() - began),
+    )

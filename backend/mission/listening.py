@@ -1,0 +1,108 @@
+"""The receiver while a mission runs: opened, drained without pause, and known to be well, silent or gone."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from typing import Literal
+
+from hardware.ports import Clock, HardwareError, Receiver
+from hardware.readings import PowerSample
+
+log = logging.getLogger("crossfix.mission")
+
+KEPT_SAMPLES = 60_000
+REOPEN_S = 1.0
+
+
+class Listening:
+    """Keeps the last samples. A receiver that fails is opened again every second until it answers."""
+
+    def __init__(self, receiver: Receiver, clock: Clock, frequency_hz: float, silent_after_s: float) -> None:
+        self._receiver = receiver
+        self._clock = clock
+        self._frequency_hz = frequency_hz
+        self._silent_after_s = silent_after_s
+        self._samples: deque[PowerSample] = deque(maxlen=KEPT_SAMPLES)
+        self._heard_at_s: float | None = None
+        self._began_at_s = clock.now()
+        self._heard = asyncio.Event()
+        self._fault: str | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        self._began_at_s = self._clock.now()
+        self._task = asyncio.create_task(self._listen())
+
+    async def stop(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+            self._task = None
+        await self._receiver.close()
+
+    async def _listen(self) -> None:
+        while True:
+            try:
+                await self._receiver.open(self._frequency_hz)
+                async for sample in self._receiver.samples():
+                    self._samples.append(sample)
+                    self._heard_at_s = self._clock.now()
+                    self._heard.set()
+                    self._fault = None
+                self._fault = "the receiver was closed"
+            except HardwareError as error:
+                if self._fault is None:
+                    log.warning("receiver: %s", error)
+                self._fault = str(error)
+            await self._clock.sleep(REOPEN_S)
+
+    @property
+    def state(self) -> Literal["ok", "silent", "off", "lost"]:
+        if self._task is None:
+            return "off"
+        if self._fault is not None:
+            return "lost"
+        return "silent" if self._quiet_s() > self._silent_after_s else "ok"
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong, in the operator's words; empty when all is well."""
+        match self.state:
+            case "lost":
+                return self._fault or "the receiver is gone"
+            case "silent":
+                return f"silent for {self._quiet_s():.0f} s"
+            case _:
+                return ""
+
+    def _quiet_s(self) -> float:
+        return self._clock.now() - (self._began_at_s if self._heard_at_s is None else self._heard_at_s)
+
+    @property
+    def last(self) -> PowerSample | None:
+        return self._samples[-1] if self._samples else None
+
+    @property
+    def age_s(self) -> float | None:
+        return None if self._heard_at_s is None else self._clock.now() - self._heard_at_s
+
+    def between(self, begin_s: float, end_s: float) -> list[PowerSample]:
+        """Samples taken in [begin_s, end_s], oldest first."""
+        found = []
+        for sample in reversed(self._samples):
+            if sample.at_s < begin_s:
+                break
+            if sample.at_s <= end_s:
+                found.append(sample)
+        return found[::-1]
+
+    async def first_sample(self, wall_s: float) -> bool:
+        """Whether anything is heard within so many seconds of the wall."""
+        try:
+            async with asyncio.timeout(wall_s):
+                await self._heard.wait()
+        except TimeoutError:
+            return False
+        return True

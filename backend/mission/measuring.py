@@ -1,0 +1,149 @@
+"""One measurement: turn once on the spot, listen, make a sweep of it, find the direction."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from dataclasses import dataclass
+from uuid import uuid4
+
+import numpy as np
+
+from backend.events import BearingMeasured, Peak, SweepRejected
+from backend.mission.equipment import Equipment
+from backend.mission.listening import Listening
+from backend.spec import MissionSpec, Place
+from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
+from hardware.ports import ReceiverError
+from hardware.readings import BearingReading, Sweep
+
+log = logging.getLogger("crossfix.mission")
+
+LATE_SAMPLES_S = 0.7
+"""Samples and headings of the turn's last moment arrive this much later."""
+
+PROGRESS_S = 0.2
+BINS = 180
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """sweep None: the power could not be made into one. fact: what to record."""
+
+    sweep_id: str
+    sweep: Sweep | None
+    fact: BearingMeasured | SweepRejected
+
+
+async def measure(
+    equipment: Equipment, mission: MissionSpec, mission_id: str, listening: Listening, place_number: int, attempt: int
+) -> Measured:
+    """Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all."""
+    began_s = equipment.clock.now()
+    progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, began_s))
+    try:
+        await equipment.vehicle.turn(mission.sensor.turn_rate_deg_s)
+        ended_s = equipment.clock.now()
+        await equipment.clock.sleep(LATE_SAMPLES_S)
+    finally:
+        progress.cancel()
+        await asyncio.gather(progress, return_exceptions=True)
+    samples = listening.between(began_s, ended_s)
+    if not samples:
+        raise ReceiverError("the receiver delivered nothing during the turn; check that it is running and tuned")
+    sweep_id = str(uuid4())
+    telemetry = equipment.vehicle.telemetry()
+    altitude_amsl_m = telemetry.altitude_amsl_m or math.nan
+    try:
+        sweep = assemble_sweep(
+            samples,
+            equipment.vehicle.headings(began_s - 1.0),
+            frequency_hz=mission.emitter.frequency_hz,
+            altitude_amsl_m=altitude_amsl_m,
+            position=None,
+            tag=mission.emitter.label,
+        )
+    except SweepError as error:
+        at = telemetry.position
+        place = Place(lat=at.lat_deg, lon=at.lon_deg) if at is not None else Place(lat=0.0, lon=0.0)
+        nothing: list[float | None] = [None] * BINS
+        fact = _rejected(sweep_id, place_number, attempt, place, 0.0, str(error), nothing, nothing)
+        return Measured(sweep_id, None, fact)
+    reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
+    return Measured(sweep_id, sweep, _fact(mission, sweep_id, sweep, reading, place_number, attempt))
+
+
+def _fact(
+    mission: MissionSpec, sweep_id: str, sweep: Sweep, reading: BearingReading, place_number: int, attempt: int
+) -> BearingMeasured | SweepRejected:
+    place = Place(lat=sweep.position.lat_deg, lon=sweep.position.lon_deg)
+    binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
+    wanted = mission.sensor.minimum_quality
+    if not reading.accepted or reading.quality < wanted:
+        reason = reading.reason or f"quality {reading.quality:.2f} is below {wanted:.2f}"
+        return _rejected(sweep_id, place_number, attempt, place, reading.quality, reason, binned, fitted)
+    return BearingMeasured(
+        bearing_id=str(uuid4()),
+        sweep_id=sweep_id,
+        place_number=place_number,
+        place=place,
+        altitude_amsl_m=sweep.altitude_amsl_m,
+        bearing_deg=reading.bearing_deg,
+        sigma_deg=reading.sigma_deg,
+        quality=reading.quality,
+        peaks=[Peak(bearing_deg=p.bearing_deg, weight=p.weight) for p in reading.peaks],
+        snr_db=reading.snr_db,
+        drift_m=sweep.drift_m,
+        binned_db=binned,
+        fitted_db=fitted,
+    )
+
+
+def _rejected(
+    sweep_id: str,
+    place_number: int,
+    attempt: int,
+    place: Place,
+    quality: float,
+    reason: str,
+    binned_db: list[float | None],
+    fitted_db: list[float | None],
+) -> SweepRejected:
+    return SweepRejected(
+        sweep_id=sweep_id,
+        place_number=place_number,
+        attempt=attempt,
+        quality=quality,
+        reason=reason,
+        place=place,
+        binned_db=binned_db,
+        fitted_db=fitted_db,
+    )
+
+
+def _bins(values: np.ndarray) -> list[float | None]:
+    return [float(v) if math.isfinite(v) else None for v in values]
+
+
+async def _show_progress(
+    equipment: Equipment, mission_id: str, listening: Listening, place_number: int, began_s: float
+) -> None:
+    """The running sweep to whoever watches: antenna heading and power of the samples so far."""
+    offset = equipment.pattern.offset_to_nose_deg
+    while True:
+        await equipment.clock.sleep(PROGRESS_S)
+        await asyncio.sleep(0.05)
+        headings = equipment.vehicle.headings(began_s)
+        samples = listening.between(began_s, equipment.clock.now())
+        if len(headings) < 2 or not samples:
+            continue
+        nose = np.unwrap(np.array([h.heading_deg for h in headings]), period=360.0)
+        at = np.interp([s.at_s for s in samples], [h.at_s for h in headings], nose)
+        equipment.publisher.sweep_progress(
+            mission_id,
+            place_number,
+            [float(h) for h in (at + offset) % 360.0],
+            [s.power_db for s in samples],
+            turned_deg(nose),
+        )

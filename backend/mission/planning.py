@@ -1,0 +1,166 @@
+"""The planner asked in the mission's words: the next place, what a place costs, a preview before take-off.
+
+Everything here is synchronous and pure; the runner calls it in a thread, the kernel releases the interpreter lock.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from backend.events import CandidateFact, PlanChosen
+from backend.mission.localization import Localization
+from backend.spec import Place
+from hardware.readings import GeoPoint
+from planner.belief.grid import GridBelief
+from planner.plan import expected_time_from, plan
+from planner.policy.ellipse import ellipse
+from planner.policy.fisher import fisher
+from planner.travel import travel_path
+from planner.types import Bearing, Decision, PlannerError, Ring
+
+COST_ROLLOUTS = 200
+
+
+def next_place(
+    task: Localization,
+    belief: GridBelief,
+    bearings: Sequence[Bearing],
+    platform: tuple[float, float],
+    place_number: int,
+    avoid: Sequence[Place],
+    threads: int,
+) -> PlanChosen:
+    """The planner's choice as a fact. Raises PlannerError when no place is allowed or reachable."""
+    began = time.perf_counter()
+    without = [task.frame.to_enu(GeoPoint(p.lat, p.lon)) for p in avoid]
+    decision = decide(task, belief, bearings, platform, without, threads)
+    plan_ms = 1e3 * (time.perf_counter() - began)
+    times = decision.times
+    chosen = next((c for c in decision.candidates if (c.x, c.y) == (decision.x, decision.y)), None)
+    mean = float(times.mean()) if len(times) else None if chosen is None else chosen.value
+    return PlanChosen(
+        place_number=place_number,
+        place=task.place(decision.x, decision.y),
+        source="planner",
+        reason=decision.reason,
+        expected_time_s=mean,
+        time_90_s=float(np.quantile(times, 0.9)) if len(times) else None,
+        candidates=candidate_facts(task, decision),
+        rollouts=decision.rollouts,
+        plan_ms=plan_ms,
+    )
+
+
+def decide(
+    task: Localization,
+    belief: GridBelief,
+    bearings: Sequence[Bearing],
+    platform: tuple[float, float],
+    without: Sequence[tuple[float, float]] = (),
+    threads: int = 1,
+) -> Decision:
+    """The planner that the specification names."""
+    wanted = task.mission.planner
+    if wanted.method == "base_policy":
+        return base_policy_decision(task, belief, platform, without)
+    return plan(
+        task.problem,
+        belief,
+        bearings,
+        platform,
+        selection=wanted.selection,
+        sampling=wanted.sampling,
+        base_policy=wanted.base_policy,
+        budget=wanted.budget,
+        seed=wanted.seed,
+        threads=threads,
+        without=without,
+    )
+
+
+def base_policy_decision(
+    task: Localization, belief: GridBelief, platform: tuple[float, float], without: Sequence[tuple[float, float]]
+) -> Decision:
+    """The base policy alone, refused places kept out of the action space."""
+    problem = replace(task.problem, no_fly=(*task.problem.no_fly, *(_around(place) for place in without)))
+    policy = fisher if task.mission.planner.base_policy == "fisher" else ellipse
+    return policy(problem, belief, platform)
+
+
+def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFact]:
+    """The candidates that were simulated at all."""
+    facts = []
+    for c in decision.candidates:
+        if c.rollouts == 0 or not math.isfinite(c.value):
+            continue
+        place = task.place(c.x, c.y)
+        error = c.std_error if math.isfinite(c.std_error) else None
+        facts.append(
+            CandidateFact(
+                lat=place.lat,
+                lon=place.lon,
+                value_s=c.value,
+                std_error_s=error,
+                rollouts=c.rollouts,
+                dropped_in_round=c.dropped_in_round,
+            )
+        )
+    return facts
+
+
+def way_to(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:
+    """Way points (m ENU) after `start`, `end` included: straight, or around what may not be crossed.
+
+    Raises PlannerError when there is no way.
+    """
+    return [(float(x), float(y)) for x, y in travel_path(task.problem, np.array(start), np.array(end))[1:]]
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What measuring at a place next would mean. mean_s and p90_s None: it cannot be reached."""
+
+    mean_s: float | None
+    std_error_s: float | None
+    p90_s: float | None
+    rollouts: int
+    reason: str = ""
+
+
+def cost_of(
+    task: Localization,
+    belief: GridBelief,
+    bearings: Sequence[Bearing],
+    platform: tuple[float, float],
+    place: tuple[float, float],
+    rollouts: int = COST_ROLLOUTS,
+) -> Cost:
+    """Time until localized when the next bearing is taken at `place` (m ENU)."""
+    try:
+        found = expected_time_from(
+            task.problem,
+            belief,
+            bearings,
+            place,
+            platform_xy=platform,
+            base_policy=task.mission.planner.base_policy,
+            rollouts=rollouts,
+            seed=task.mission.planner.seed,
+        )
+    except PlannerError as error:
+        return Cost(None, None, None, 0, str(error))
+    return Cost(found.mean, _finite(found.std_error), found.p90, rollouts)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _around(place: tuple[float, float], radius: float = 5.0) -> Ring:
+    angles = np.arange(8) * np.pi / 4
+    return np.array(place) + radius * np.column_stack([np.cos(angles), np.sin(angles)])

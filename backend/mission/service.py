@@ -1,0 +1,312 @@
+"""The mission room's front door: missions are drafted, edited, checked, commanded, and brought back after a restart.
+
+One mission flies at a time. Commands are idempotent by their id, across restarts too: the answers are facts.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from uuid import uuid4
+
+from backend import commands
+from backend.commands import CommandReply, CommandRequest
+from backend.events import Event, MissionDrafted, PreflightChecked
+from backend.mission import effects, inputs
+from backend.mission.area import centre_of, target_area
+from backend.mission.checklist import checklist, home_of
+from backend.mission.describe import doing, waits_for
+from backend.mission.equipment import Equipment
+from backend.mission.errors import MissionConflict, MissionNotFound
+from backend.mission.forecast import Forecast, Preview, forecast, preview
+from backend.mission.localization import Localization, localization
+from backend.mission.machine import transition
+from backend.mission.ports import Status
+from backend.mission.runner import Runner
+from backend.mission.safety import Veto, battery_to_return_percent
+from backend.mission.state import GROUND, TERMINAL, MissionState, fold
+from backend.spec import MissionSpec, Place
+from hardware.frame import LocalFrame
+from hardware.ports import VehicleUnreachable
+from hardware.readings import Telemetry
+
+log = logging.getLogger("crossfix.mission")
+
+TELEMETRY_S = 0.1
+TICKS_A_STATUS = 10
+CONNECT_AT_START_S = 3.0
+
+
+class MissionService:
+    """Lives on one event loop from `start_up` to `shut_down`."""
+
+    def __init__(self, equipment: Equipment) -> None:
+        self._equipment = equipment
+        self._runner: Runner | None = None
+        self._locks: dict[str, asyncio.Lock] = {}
+        self._one_start = asyncio.Lock()
+        self._tasks: list[asyncio.Task[None]] = []
+
+    # Life
+
+    async def start_up(self) -> None:
+        """Connect the vehicle (goes on in the background) and bring an unfinished mission back into HOLD."""
+        try:
+            await self._equipment.vehicle.connect(CONNECT_AT_START_S)
+        except VehicleUnreachable as error:
+            log.warning("%s", error)
+        unfinished = await self._equipment.journal.unfinished()
+        for mission_id in unfinished[:-1]:
+            log.error("mission %s is unfinished beside a newer one; it stays as it is", mission_id)
+        if unfinished:
+            await self._recover(unfinished[-1])
+        self._tasks = [asyncio.create_task(self._show())]
+
+    async def _recover(self, mission_id: str) -> None:
+        state, last_seq = await self._load(mission_id)
+        if state.home is None or state.phase in TERMINAL:
+            return
+        task = localization(state.mission, state.home, state.home_amsl_m)
+        runner = self._runner = Runner(mission_id, state, last_seq, task, self._equipment)
+        pilot = self._equipment.vehicle.telemetry().controller == "pilot"
+        runner.listening.start()
+        runner.give(inputs.Restarted(pilot=pilot, detail="the server was away and came back"))
+        runner.begin()
+        self._tasks.append(asyncio.create_task(self._let_go(runner)))
+        log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
+
+    async def shut_down(self) -> None:
+        """Stops watching; the vehicle goes on with what it was told and its own failsafe acts."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        if self._runner is not None:
+            await self._runner.close()
+            self._runner = None
+        await self._equipment.vehicle.close()
+
+    async def _let_go(self, runner: Runner) -> None:
+        """When a mission is over and its vehicle down, the next may start."""
+        await runner.finished.wait()
+        await runner.close()
+        if self._runner is runner:
+            self._runner = None
+
+    # Missions
+
+    async def create(self, spec: MissionSpec, by: str) -> str:
+        """Draft a mission. Raises MissionInputError when the specification makes no sense."""
+        self._check_spec(spec)
+        mission_id = str(uuid4())
+        await self._append(mission_id, [MissionDrafted(spec=spec)])
+        log.info("mission %s drafted by %s", mission_id, by)
+        return mission_id
+
+    async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
+        """Raises MissionNotFound, MissionConflict once it has started, MissionInputError."""
+        self._check_spec(spec)
+        async with self._lock(mission_id):
+            state, _ = await self._load(mission_id)
+            if state.phase not in GROUND:
+                raise MissionConflict("the mission has started and can no longer be edited", "draft a new mission")
+            await self._record(mission_id, state, inputs.Edited(spec))
+        log.info("mission %s edited by %s", mission_id, by)
+
+    async def preflight(self, mission_id: str) -> PreflightChecked:
+        """Run the checklist and record it. Raises MissionNotFound."""
+        async with self._lock(mission_id):
+            runner = self._running(mission_id)
+            state = runner.state if runner else (await self._load(mission_id))[0]
+            listening = None if self._runner is None else self._runner.listening
+            checks, _ = await checklist(state.mission, self._equipment, listening)
+            given = inputs.PreflightDone(checks)
+            if runner:
+                runner.give(given)
+                await runner.outbox.flushed()
+            else:
+                await self._record(mission_id, state, given)
+        return PreflightChecked(passed=all(c.ok or not c.blocking for c in checks), checks=list(checks))
+
+    async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
+        """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
+        runner = self._running(mission_id)
+        if runner is not None:
+            return await self._to_runner(runner, request, by)
+        async with self._lock(mission_id):
+            runner = self._running(mission_id)
+            if runner is not None:
+                return await self._to_runner(runner, request, by)
+            state, last_seq = await self._load(mission_id)
+            given = inputs.Commanded(str(request.command_id), by, request.command)
+            if isinstance(request.command, commands.Start) and state.phase in GROUND:
+                if given.command_id not in state.answered:
+                    return await self._start(mission_id, state, last_seq, request, by)
+            elif state.phase in TERMINAL:
+                given = inputs.Commanded(
+                    given.command_id, by, request.command, (Veto("ended", "the mission has ended", "draft a new one"),)
+                )
+            asked, seq = await self._record(mission_id, state, given)
+            return _reply(request, asked, seq or last_seq)
+
+    async def _to_runner(self, runner: Runner, request: CommandRequest, by: str) -> CommandReply:
+        """At once: what moves or stops the vehicle is under way before the journal is waited for."""
+        asked = runner.command(str(request.command_id), by, request.command)
+        await runner.outbox.flushed()
+        return _reply(request, asked, runner.outbox.last_seq)
+
+    async def _start(
+        self, mission_id: str, state: MissionState, last_seq: int, request: CommandRequest, by: str
+    ) -> CommandReply:
+        async with self._one_start:
+            other = self._runner
+            objections: tuple[Veto, ...] = ()
+            if other is not None:
+                detail = f"another mission is still flying ({other.state.mission.name})"
+                objections = (Veto("one_mission", detail, "end it and let the vehicle land first"),)
+            listening = None if other is None else other.listening
+            checks, task = await checklist(state.mission, self._equipment, listening)
+            home, home_amsl_m = home_of(self._equipment.vehicle.telemetry())
+            facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, self._equipment.software)
+            given = inputs.Commanded(str(request.command_id), by, request.command, objections, facts)
+            if task is None or objections:
+                asked, seq = await self._record(mission_id, state, given)
+                return _reply(request, asked, seq or last_seq)
+            runner = Runner(mission_id, state, last_seq, task, self._equipment)
+            self._runner = runner
+            runner.listening.start()
+            asked = runner.give(given)
+            if runner.state.started_at_s is None:
+                self._runner = None
+                await runner.close()
+            else:
+                runner.begin()
+                self._tasks.append(asyncio.create_task(self._let_go(runner)))
+                await runner.outbox.flushed()
+            return _reply(request, asked, runner.outbox.last_seq)
+
+    # What if
+
+    async def expected_time(self, mission_id: str, place: Place) -> Forecast:
+        """The expected time to localization when the vehicle measured at this place next. Raises MissionNotFound."""
+        runner = self._running(mission_id)
+        state = runner.state if runner else (await self._load(mission_id))[0]
+        task = runner.task if runner else self._task(state)
+        telemetry = self._equipment.vehicle.telemetry()
+        situation = runner.watch.situation() if runner else None
+        start = self._platform(telemetry, task) if runner else task.place(0.0, 0.0)
+        return await asyncio.to_thread(forecast, task, state.bearings, start, place, situation)
+
+    async def preview(self, spec: MissionSpec) -> Preview:
+        """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
+        home, home_amsl_m = self._home_for(spec)
+        task = localization(spec, home, home_amsl_m)
+        start = self._platform(self._equipment.vehicle.telemetry(), task)
+        return await asyncio.to_thread(preview, task, start, self._equipment.threads)
+
+    def _task(self, state: MissionState) -> Localization:
+        if state.home is not None:
+            return localization(state.mission, state.home, state.home_amsl_m)
+        return localization(state.mission, *self._home_for(state.mission))
+
+    def _home_for(self, spec: MissionSpec) -> tuple[Place, float]:
+        home, amsl = home_of(self._equipment.vehicle.telemetry())
+        if home is None:
+            middle = centre_of(spec.area)
+            home = Place(lat=middle.lat_deg, lon=middle.lon_deg)
+        return home, amsl or 0.0
+
+    @staticmethod
+    def _platform(telemetry: Telemetry, task: Localization) -> Place:
+        point = telemetry.position
+        return task.place(0.0, 0.0) if point is None else Place(lat=point.lat_deg, lon=point.lon_deg)
+
+    # What is shown
+
+    def telemetry(self) -> Telemetry:
+        return self._equipment.vehicle.telemetry()
+
+    @property
+    def active_mission_id(self) -> str | None:
+        return None if self._runner is None else self._runner.mission_id
+
+    def status(self) -> Status:
+        runner = self._runner
+        if runner is None:
+            detail = "" if self.telemetry().connected else "no vehicle is connected"
+            return Status(
+                None, None, detail or "no mission is flying", None, "off", None, None, None, self._equipment.database()
+            )
+        state, last = runner.state, runner.listening.last
+        situation = runner.watch.situation()
+        position = situation.telemetry.position
+        needed = None
+        if position is not None:
+            needed = battery_to_return_percent(runner.task.limits, position, situation.drain_percent_s)
+        return Status(
+            mission_id=runner.mission_id,
+            phase=state.phase,
+            doing=doing(state),
+            waits_for=waits_for(state),
+            receiver=runner.listening.state,
+            receiver_power_db=None if last is None else last.power_db,
+            receiver_age_s=runner.listening.age_s,
+            battery_to_return_percent=needed,
+            database="lost" if runner.outbox.failing else self._equipment.database(),
+        )
+
+    async def _show(self) -> None:
+        """Telemetry ten times, status once a second of the wall."""
+        publisher, clock = self._equipment.publisher, self._equipment.clock
+        tick = 0
+        while True:
+            publisher.telemetry(self.telemetry(), clock.now())
+            if tick % TICKS_A_STATUS == 0:
+                publisher.status(self.status())
+            tick += 1
+            await asyncio.sleep(TELEMETRY_S)
+
+    # Stored missions
+
+    def _running(self, mission_id: str) -> Runner | None:
+        runner = self._runner
+        started = runner is not None and runner.state.started_at_s is not None
+        return runner if started and runner is not None and runner.mission_id == mission_id else None
+
+    def _lock(self, mission_id: str) -> asyncio.Lock:
+        return self._locks.setdefault(mission_id, asyncio.Lock())
+
+    async def _load(self, mission_id: str) -> tuple[MissionState, int]:
+        recorded = await self._equipment.journal.read(mission_id)
+        if not recorded:
+            raise MissionNotFound(mission_id)
+        return fold(recorded), recorded[-1].seq
+
+    async def _record(
+        self, mission_id: str, state: MissionState, given: inputs.Input
+    ) -> tuple[tuple[effects.Effect, ...], int | None]:
+        """A mission that is not flying: only its facts and its answer matter. The last seq, None without a fact."""
+        _, asked = transition(state, given, self._equipment.clock.now())
+        return asked, await self._append(mission_id, [e.event for e in asked if isinstance(e, effects.Record)])
+
+    async def _append(self, mission_id: str, events: list[Event]) -> int | None:
+        if not events:
+            return None
+        recorded = await self._equipment.journal.append(mission_id, events)
+        self._equipment.publisher.events(recorded)
+        return recorded[-1].seq
+
+    def _check_spec(self, spec: MissionSpec) -> None:
+        """Raises MissionInputError when the areas make no sense, wherever the vehicle is."""
+        home, home_amsl_m = home_of(self.telemetry())
+        if home is not None:
+            localization(spec, home, home_amsl_m or 0.0)
+        else:
+            frame = LocalFrame(centre_of(spec.area))
+            target_area(spec, frame)
+
+
+def _reply(request: CommandRequest, asked: tuple[effects.Effect, ...], seq: int) -> CommandReply:
+    answer = next(e for e in asked if isinstance(e, effects.Reply))
+    return CommandReply(
+        command_id=request.command_id, accepted=answer.accepted, reason=answer.reason, remedy=answer.remedy, seq=seq
+    )

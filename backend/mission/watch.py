@@ -1,0 +1,145 @@
+"""Watches the world while a mission runs and turns what changed into the machine's inputs. Times are the clock's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from backend.mission import inputs
+from backend.mission.equipment import Equipment
+from backend.mission.listening import Listening
+from backend.mission.ports import TrackPoint
+from backend.mission.safety import NOMINAL_DRAIN_PERCENT_S, Limits, Situation, battery_vetoes
+from backend.mission.state import MissionState
+from hardware.readings import Telemetry
+
+TICK_S = 0.2
+TRACK_S = 0.5
+HOME_RADIUS_M = 6.0
+LANDED_FOR_S = 1.0
+MEASURED_DRAIN_AFTER_S = 60.0
+MEASURED_DRAIN_PERCENT = 2.0
+
+
+@dataclass(slots=True)
+class Drain:
+    """Battery used a second of this flight, the nominal rate until enough was used to tell."""
+
+    began: tuple[float, float] | None = None
+    percent_s: float = NOMINAL_DRAIN_PERCENT_S
+
+    def update(self, telemetry: Telemetry, now_s: float) -> None:
+        charge = telemetry.battery_percent
+        if not telemetry.in_air or charge is None:
+            return
+        if self.began is None or charge > self.began[1]:
+            self.began = (now_s, charge)
+        seconds, used = now_s - self.began[0], self.began[1] - charge
+        if seconds >= MEASURED_DRAIN_AFTER_S and used >= MEASURED_DRAIN_PERCENT:
+            self.percent_s = used / seconds
+
+
+@dataclass(slots=True)
+class Watch:
+    """`give` takes the inputs; `state` is asked on every tick. Track points collect in `track` until taken."""
+
+    equipment: Equipment
+    limits: Limits
+    listening: Listening
+    state: Callable[[], MissionState]
+    give: Callable[[inputs.Input], object]
+    drain: Drain = field(default_factory=Drain)
+    track: list[TrackPoint] = field(default_factory=list)
+    _down_since: dict[inputs.Link, float] = field(default_factory=dict)
+    _console_seen: bool = False
+    _battery_told: bool = False
+    _on_ground_since: float | None = None
+    _tracked_at: float = -math.inf
+
+    def situation(self) -> Situation:
+        return Situation(self.equipment.vehicle.telemetry(), self.equipment.clock.now(), self.drain.percent_s)
+
+    async def run(self) -> None:
+        while True:
+            self.tick()
+            await self.equipment.clock.sleep(TICK_S)
+
+    def tick(self) -> None:
+        """One look at everything."""
+        telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
+        self.drain.update(telemetry, now)
+        self.notice_pilot("")
+        self._links(telemetry, now)
+        self._battery(telemetry)
+        self._way_down(telemetry, now)
+        self._track(telemetry, now)
+
+    def notice_pilot(self, line: str) -> None:
+        """Ask the vehicle who has control; also called the moment it says that something changed."""
+        telemetry = self.equipment.vehicle.telemetry()
+        if telemetry.controller == "pilot" and not self.state().pilot_has_control:
+            mode = telemetry.mode or "unknown"
+            self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}"))
+
+    def _links(self, telemetry: Telemetry, now: float) -> None:
+        heard_s = now - telemetry.at_s
+        self._link("vehicle", telemetry.connected, f"nothing heard for {max(heard_s, 0.0):.0f} s", now)
+        trouble = self.listening.trouble
+        self._link("receiver", not trouble, trouble, now)
+        if self.equipment.watch_consoles:
+            watching = self.equipment.publisher.watchers() > 0
+            self._console_seen |= watching
+            if self._console_seen:
+                self._link("console", watching, "no console is connected", now)
+
+    def _link(self, link: inputs.Link, up: bool, detail: str, now: float) -> None:
+        if not up and link not in self._down_since:
+            self._down_since[link] = now
+            self.give(inputs.LinkDown(link, detail))
+        elif up and link in self._down_since:
+            self.give(inputs.LinkUp(link, now - self._down_since.pop(link)))
+
+    def _battery(self, telemetry: Telemetry) -> None:
+        if not telemetry.in_air or telemetry.battery_percent is None:
+            return
+        vetoes = battery_vetoes(self.limits, self.situation())
+        if vetoes and not self._battery_told:
+            self.give(inputs.BatteryLow(vetoes[0].detail))
+        self._battery_told = bool(vetoes)
+
+    def _way_down(self, telemetry: Telemetry, now: float) -> None:
+        state = self.state()
+        if state.phase == "returning" and self._above_home(telemetry):
+            self.give(inputs.HomeReached())
+        if not state.took_off or telemetry.in_air is not False or not telemetry.connected:
+            self._on_ground_since = None
+            return
+        if self._on_ground_since is None:
+            self._on_ground_since = now
+        elif now - self._on_ground_since >= LANDED_FOR_S:
+            self.give(inputs.Landed())
+
+    def _above_home(self, telemetry: Telemetry) -> bool:
+        position = telemetry.position
+        return position is not None and math.hypot(*self.limits.frame.to_enu(position)) < HOME_RADIUS_M
+
+    def _track(self, telemetry: Telemetry, now: float) -> None:
+        position = telemetry.position
+        values = (telemetry.altitude_amsl_m, telemetry.altitude_relative_m, telemetry.heading_deg)
+        if now - self._tracked_at < TRACK_S or position is None or None in values or not telemetry.connected:
+            return
+        amsl, relative, heading = (float(v) for v in values if v is not None)
+        self._tracked_at = now
+        self.track.append(
+            TrackPoint(
+                at_s=now,
+                lat_deg=position.lat_deg,
+                lon_deg=position.lon_deg,
+                altitude_amsl_m=amsl,
+                altitude_relative_m=relative,
+                heading_deg=heading,
+                battery_percent=telemetry.battery_percent,
+                mode=telemetry.mode,
+            )
+        )
