@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from datetime import UTC, datetime
+from functools import lru_cache
+from pathlib import Path as FilePath
+from typing import Annotated, TypeVar
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi.responses import FileResponse
+from starlette.requests import ClientDisconnect
 
 from backend.api.dependencies import PrincipalDep, ServicesDep
-from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
+from backend.maps.coverage import TileSet, coverage
+from backend.maps.drawing import Theme, map_layers
+from backend.maps.folder import MapFolder
+from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
+from backend.maps.refusal import MapRefused, NoRoom, NotStored
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -20,6 +32,8 @@ from backend.wire.maps import (
 )
 
 router = APIRouter(prefix="/api", tags=["maps"], responses=PROBLEM_RESPONSES)
+
+T = TypeVar("T")
 
 ContentId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 Name = Annotated[str, Query(max_length=120, description="What to call it; the file's own name when left out")]
@@ -40,71 +54,151 @@ TILES: dict[int | str, dict[str, object]] = {
 }
 
 
+@lru_cache
+def _map_folder(directory: FilePath, reserve_bytes: int) -> MapFolder:
+    return MapFolder(directory, reserve_bytes)
+
+
+def map_folder(services: ServicesDep) -> MapFolder:
+    settings = services.settings
+    return _map_folder(settings.data_dir / "maps", settings.disk_low_bytes)
+
+
+def overlay_folder(services: ServicesDep) -> OverlayFolder:
+    return OverlayFolder(services.settings.data_dir / "overlays")
+
+
+MapFolderDep = Annotated[MapFolder, Depends(map_folder)]
+OverlayFolderDep = Annotated[OverlayFolder, Depends(overlay_folder)]
+
+
+async def _in_thread(what: str, work: Callable[..., T], *arguments: object) -> T:
+    """Disk work off the event loop; what the map room refuses becomes a problem."""
+    try:
+        return await asyncio.to_thread(work, *arguments)
+    except (NotStored, FileNotFoundError) as error:
+        raise not_found(what, str(error), f"Somebody may have deleted it: reload the list of {what}s.") from error
+    except MapRefused as error:
+        raise _refused(error) from error
+
+
+def _refused(error: MapRefused) -> ApiProblem:
+    if isinstance(error, NoRoom):
+        return ApiProblem(413, "Not enough room", str(error), error.remedy)
+    return ApiProblem(422, "The file or area cannot be used", str(error), error.remedy)
+
+
+def _announced_bytes(request: Request) -> int | None:
+    stated = request.headers.get("content-length", "")
+    return int(stated) if stated.isdigit() else None
+
+
+def _label(name: str, filename: str) -> str:
+    return name.strip() or FilePath(filename.replace("\\", "/")).stem
+
+
 @router.get("/maps")
-async def list_maps(services: ServicesDep) -> MapList:
+async def list_maps(folder: MapFolderDep) -> MapList:
     """The maps on this machine."""
-    raise NotImplementedError
+    packages, unusable = await _in_thread("map", folder.packages)
+    return MapList(maps=packages, room_bytes=await _in_thread("map", folder.room_bytes), unusable=unusable)
 
 
 @router.post("/maps", status_code=201, openapi_extra=RAW_BODY)
 async def upload_map(
-    request: Request, services: ServicesDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
+    request: Request, folder: MapFolderDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
 ) -> MapPackage:
     """Store a PMTiles v3 archive: the request's body is the file itself."""
-    raise NotImplementedError
+    try:
+        label, size = _label(name, filename), _announced_bytes(request)
+        return await folder.store(request.stream(), label, size, datetime.now(UTC))
+    except MapRefused as error:
+        raise _refused(error) from error
+    except ClientDisconnect as error:
+        raise ApiProblem(400, "The upload broke off", "Nothing was kept.", "Upload the file again.") from error
 
 
 @router.post("/maps/coverage")
-async def map_coverage(coverage: CoverageRequest, services: ServicesDep) -> Coverage:
+async def map_coverage(request: CoverageRequest, folder: MapFolderDep) -> Coverage:
     """Which part of an area the maps show, and how finely."""
-    raise NotImplementedError
+
+    def compare() -> Coverage:
+        packages, _ = folder.packages()
+        tile_sets = [
+            TileSet(each.map_id, each.name, each.min_zoom, each.max_zoom, folder.archive(each.map_id).has)
+            for each in packages
+        ]
+        return coverage(request.area, tile_sets)
+
+    return await _in_thread("map", compare)
 
 
 @router.get("/maps/{map_id}")
-async def get_map(map_id: ContentId, services: ServicesDep) -> MapPackage:
+async def get_map(map_id: ContentId, folder: MapFolderDep) -> MapPackage:
     """One map."""
-    raise NotImplementedError
+    return await _in_thread("map", folder.package, map_id)
 
 
 @router.delete("/maps/{map_id}", status_code=204)
-async def delete_map(map_id: ContentId, services: ServicesDep, principal: PrincipalDep) -> None:
+async def delete_map(map_id: ContentId, folder: MapFolderDep, principal: PrincipalDep) -> None:
     """Remove a map from the disk."""
-    raise NotImplementedError
+    await _in_thread("map", folder.delete, map_id)
 
 
 @router.get("/maps/{map_id}/layers")
-async def map_layers(map_id: ContentId, services: ServicesDep, theme: Literal["light", "dark"] = "light") -> MapLayers:
+async def get_map_layers(map_id: ContentId, folder: MapFolderDep, theme: Theme = "light") -> MapLayers:
     """How the page draws this map: a MapLibre source and its layers."""
-    raise NotImplementedError
+
+    def layers() -> MapLayers:
+        return map_layers(folder.package(map_id), theme, folder.archive(map_id).tile_pixels())
+
+    return await _in_thread("map", layers)
 
 
 @router.get("/maps/{map_id}/tiles.pmtiles", response_class=Response, responses=TILES)
-async def map_tiles(map_id: ContentId, request: Request, services: ServicesDep) -> Response:
-    """The archive itself, by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it."""
-    raise NotImplementedError
+async def map_tiles(map_id: ContentId, folder: MapFolderDep) -> Response:
+    """The archive itself, whole or by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it."""
+    path = await _in_thread("map", folder.path, map_id)
+    headers = {"ETag": f'"{map_id}"', "Cache-Control": "private, max-age=0, must-revalidate"}
+    return FileResponse(path, media_type="application/vnd.pmtiles", headers=headers)
 
 
 @router.get("/overlays")
-async def list_overlays(services: ServicesDep) -> OverlayList:
+async def list_overlays(folder: OverlayFolderDep) -> OverlayList:
     """The overlays on this machine."""
-    raise NotImplementedError
+    return OverlayList(overlays=await _in_thread("overlay", folder.overlays))
 
 
 @router.post("/overlays", status_code=201, openapi_extra=RAW_BODY)
 async def upload_overlay(
-    request: Request, services: ServicesDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
+    request: Request, folder: OverlayFolderDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
 ) -> Overlay:
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
-    raise NotImplementedError
+    content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
+    return await _in_thread("overlay", folder.store, content, _label(name, filename), datetime.now(UTC))
+
+
+async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
+    held = bytearray()
+    async for piece in body:
+        held += piece
+        if len(held) > most:
+            raise ApiProblem(
+                413,
+                "Too large",
+                f"An overlay may have at most {most // 10**6} MB.",
+                "Leave out what is not needed, or make a map package (PMTiles) of it.",
+            )
+    return bytes(held)
 
 
 @router.get("/overlays/{overlay_id}")
-async def get_overlay(overlay_id: ContentId, services: ServicesDep) -> OverlayCollection:
+async def get_overlay(overlay_id: ContentId, folder: OverlayFolderDep) -> OverlayCollection:
     """One overlay as a GeoJSON FeatureCollection."""
-    raise NotImplementedError
+    return await _in_thread("overlay", folder.collection, overlay_id)
 
 
 @router.delete("/overlays/{overlay_id}", status_code=204)
-async def delete_overlay(overlay_id: ContentId, services: ServicesDep, principal: PrincipalDep) -> None:
+async def delete_overlay(overlay_id: ContentId, folder: OverlayFolderDep, principal: PrincipalDep) -> None:
     """Remove an overlay."""
-    raise NotImplementedError
+    await _in_thread("overlay", folder.delete, overlay_id)

@@ -404,10 +404,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Map Layers
+         * Get Map Layers
          * @description How the page draws this map: a MapLibre source and its layers.
          */
-        get: operations["map_layers"];
+        get: operations["get_map_layers"];
         put?: never;
         post?: never;
         delete?: never;
@@ -425,7 +425,7 @@ export interface paths {
         };
         /**
          * Map Tiles
-         * @description The archive itself, by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it.
+         * @description The archive itself, whole or by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it.
          */
         get: operations["map_tiles"];
         put?: never;
@@ -647,12 +647,12 @@ export interface components {
             not_yet: string[];
             digest: string;
         };
-        /** @description One candidate next place. `dropped_in_round` None: survived. */
+        /** @description One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none. */
         CandidateFact: {
             lat: number;
             lon: number;
             value_s: number;
-            std_error_s: number;
+            std_error_s: number | null;
             rollouts: number;
             dropped_in_round: number | null;
         };
@@ -2579,7 +2579,7 @@ export interface operations {
             };
         };
     };
-    map_layers: {
+    get_map_layers: {
         parameters: {
             query?: {
                 theme?: "light" | "dark";

@@ -1,0 +1,192 @@
+"""The map folder: PMTiles archives on this machine's disk, each with a small JSON file beside it that names it.
+
+`ID.pmtiles` is the archive, ID the start of its SHA-256. An upload is written to a hidden part file, checked whole, and
+only then renamed: a map is there completely or not at all. What this module does to files is blocking; callers on an
+event loop use threads.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from datetime import datetime
+from functools import lru_cache
+from pathlib import Path
+
+import anyio.to_thread
+
+from backend.maps.archive import HEADER_BYTES, Archive, read_header
+from backend.maps.description import describe
+from backend.maps.refusal import MapRefused, NoRoom, NotStored
+from backend.wire.maps import MapPackage
+
+BLOCK_BYTES = 2**20
+ID_DIGITS = 16
+ABANDONED_S = 6 * 3600.0
+"""A part file not written to for so long is the rest of an upload that died with its server."""
+
+
+@dataclass(frozen=True)
+class MapFolder:
+    """`reserve_bytes`: disk that no upload may take, kept for the journal."""
+
+    directory: Path
+    reserve_bytes: int
+
+    def room_bytes(self) -> int:
+        """How large an upload may be."""
+        self.directory.mkdir(parents=True, exist_ok=True)
+        return max(0, shutil.disk_usage(self.directory).free - self.reserve_bytes)
+
+    def packages(self) -> tuple[list[MapPackage], list[str]]:
+        """All maps by name, and a sentence for each file that is none."""
+        self.directory.mkdir(parents=True, exist_ok=True)
+        found, unusable = [], []
+        for path in sorted(self.directory.glob("*.pmtiles")):
+            if not re.fullmatch(r"[0-9a-f]{16}", path.stem):
+                unusable.append(f"{path.name} was put into the map folder by hand; upload it here instead.")
+                continue
+            try:
+                found.append(self.package(path.stem))
+            except (MapRefused, OSError, ValueError) as error:
+                unusable.append(f"{path.name}: {error}")
+        return sorted(found, key=lambda package: package.name.casefold()), unusable
+
+    def path(self, map_id: str) -> Path:
+        path = self.directory / f"{map_id}.pmtiles"
+        if not path.is_file():
+            raise NotStored(map_id)
+        return path
+
+    def archive(self, map_id: str) -> Archive:
+        return _opened(self.path(map_id))
+
+    def package(self, map_id: str) -> MapPackage:
+        """What is known of one map. NotStored when there is none."""
+        archive = _opened(self.path(map_id))
+        name, added_at = self._label(map_id)
+        return describe(archive, map_id, name, added_at)
+
+    def _label(self, map_id: str) -> tuple[str, datetime]:
+        try:
+            label = json.loads((self.directory / f"{map_id}.json").read_text("utf-8"))
+            return str(label["name"]), datetime.fromisoformat(label["added_at_utc"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise MapRefused("The map's label is missing or damaged.", "Upload the map again.") from error
+
+    def delete(self, map_id: str) -> None:
+        self.path(map_id).unlink()
+        (self.directory / f"{map_id}.json").unlink(missing_ok=True)
+
+    async def store(
+        self, body: AsyncIterator[bytes], name: str, announced_bytes: int | None, now: datetime
+    ) -> MapPackage:
+        """Write an upload to disk block by block, check it, and make it a map. Nothing is left of a refused one.
+
+        Raises MapRefused as soon as the header shows that the file is none, NoRoom when it does not fit.
+        """
+        if announced_bytes is not None:
+            self._must_fit(announced_bytes, self.room_bytes())
+        await anyio.to_thread.run_sync(self._remove_abandoned, now.timestamp())
+        upload = await anyio.to_thread.run_sync(_Upload, self.directory)
+        try:
+            held = bytearray()
+            async for piece in body:
+                held += piece
+                if len(held) >= BLOCK_BYTES:
+                    await anyio.to_thread.run_sync(self._write, upload, bytes(held))
+                    held.clear()
+            await anyio.to_thread.run_sync(self._write, upload, bytes(held))
+            if announced_bytes is not None and upload.size != announced_bytes:
+                raise MapRefused(
+                    f"Only {upload.size} of {announced_bytes} bytes arrived.",
+                    "Upload it again; nothing was kept.",
+                )
+            return await anyio.to_thread.run_sync(self._keep, upload, name, now)
+        finally:
+            upload.discard()
+
+    def _remove_abandoned(self, now_s: float) -> None:
+        for part in self.directory.glob(".upload-*.part"):
+            if now_s - part.stat().st_mtime > ABANDONED_S:
+                part.unlink(missing_ok=True)
+
+    def _write(self, upload: _Upload, block: bytes) -> None:
+        first = upload.size == 0
+        if first:
+            read_header(block[:HEADER_BYTES])
+        self._must_fit(len(block), self.room_bytes())
+        upload.write(block)
+
+    def _must_fit(self, size: int, room: int) -> None:
+        if size > room:
+            raise NoRoom(
+                f"The file does not fit: {size / 1e6:.0f} MB more are needed, {room / 1e6:.0f} MB may be used.",
+                f"Delete maps that are not needed. {self.reserve_bytes / 1e6:.0f} MB stay free for the journal.",
+            )
+
+    def _keep(self, upload: _Upload, name: str, added_at: datetime) -> MapPackage:
+        upload.finish()
+        archive = Archive(upload.path)
+        archive.check()
+        map_id = upload.digest.hexdigest()[:ID_DIGITS]
+        stated = archive.metadata().get("name")
+        label = name.strip() or (str(stated).strip() if isinstance(stated, str) else "") or f"Map {map_id[:6]}"
+        package = describe(archive, map_id, label[:120], added_at)
+        kept = {"name": package.name, "added_at_utc": added_at.isoformat()}
+        _replace_text(self.directory / f"{map_id}.json", json.dumps(kept))
+        os.replace(upload.path, self.directory / f"{map_id}.pmtiles")
+        _sync_directory(self.directory)
+        return package
+
+
+class _Upload:
+    """A part file that is being written, and the digest of what it holds."""
+
+    def __init__(self, directory: Path) -> None:
+        directory.mkdir(parents=True, exist_ok=True)
+        descriptor, path = tempfile.mkstemp(prefix=".upload-", suffix=".part", dir=directory)
+        self.file = os.fdopen(descriptor, "wb")
+        self.path = Path(path)
+        self.digest = hashlib.sha256()
+        self.size = 0
+
+    def write(self, block: bytes) -> None:
+        self.file.write(block)
+        self.digest.update(block)
+        self.size += len(block)
+
+    def finish(self) -> None:
+        self.file.flush()
+        os.fsync(self.file.fileno())
+        self.file.close()
+
+    def discard(self) -> None:
+        self.file.close()
+        self.path.unlink(missing_ok=True)
+
+
+@lru_cache(maxsize=64)
+def _opened(path: Path) -> Archive:
+    """Archives do not change once they have a name made from their content."""
+    return Archive(path)
+
+
+def _replace_text(path: Path, text: str) -> None:
+    part = path.with_suffix(".json.part")
+    part.write_text(text, "utf-8")
+    os.replace(part, path)
+
+
+def _sync_directory(directory: Path) -> None:
+    descriptor = os.open(directory, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,198 @@
+"""KML 2.2 and KMZ as features: placemarks with their names, attributes and plain styles.
+
+Read: Point, LineString, LinearRing, Polygon, MultiGeometry, gx:Track, shared and own styles, ExtendedData.
+Not drawable here, so named in the notes: linked files, pictures on the ground or the screen, models, tours.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+import zlib
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+from xml.etree.ElementTree import Element, ParseError
+
+from defusedxml import DefusedXmlException
+from defusedxml.ElementTree import fromstring
+
+from backend.maps.features import Reading
+from backend.maps.geojson import DEEPEST_COLLECTION, plain_geometries
+from backend.maps.refusal import MapRefused
+
+MOST_KML_BYTES = 100 * 2**20
+NOT_DRAWN = {
+    "NetworkLink": "a link to another file",
+    "GroundOverlay": "a picture on the ground",
+    "ScreenOverlay": "a picture on the screen",
+    "PhotoOverlay": "a photo",
+    "Model": "a 3D model",
+    "Tour": "a tour",
+}
+EXPECTED = "Save the overlay from its program as KML or KMZ with placemarks, or as GeoJSON."
+
+Style = dict[str, Any]
+
+SIMPLESTYLE = {
+    "LineStyle": ("stroke", "stroke-opacity"),
+    "PolyStyle": ("fill", "fill-opacity"),
+    "IconStyle": ("marker-color", ""),
+}
+
+
+def read_kmz(content: bytes) -> Reading:
+    """The main KML file of a KMZ archive: doc.kml, or else the first .kml in it."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            names = [name for name in archive.namelist() if name.casefold().endswith(".kml")]
+            if not names:
+                raise MapRefused("The archive holds no KML file.", EXPECTED)
+            main = "doc.kml" if "doc.kml" in names else names[0]
+            with archive.open(main) as file:
+                kml = file.read(MOST_KML_BYTES + 1)
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
+        raise MapRefused(f"The KMZ archive cannot be unpacked: {error}.", EXPECTED) from error
+    if len(kml) > MOST_KML_BYTES:
+        raise MapRefused("The KML file in the archive is far too large when unpacked.", EXPECTED)
+    reading = read_kml(kml)
+    for other in names:
+        if other != main:
+            reading.note(f"The archive's second file {other} is left out.")
+    return reading
+
+
+def read_kml(content: bytes) -> Reading:
+    """All placemarks. MapRefused when it is no KML; what cannot be drawn is named in `notes`."""
+    try:
+        root = fromstring(content, forbid_dtd=True)
+    except (ParseError, ValueError, LookupError) as error:
+        reason = "it holds a document type definition" if isinstance(error, DefusedXmlException) else str(error)
+        raise MapRefused(f"The file is not valid XML: {reason}.", EXPECTED) from error
+    if _tag(root) != "kml":
+        raise MapRefused(f"The file is XML, but no KML: its first element is <{_tag(root)}>.", EXPECTED)
+    reading = Reading()
+    styles = _shared_styles(root)
+    for number, placemark in enumerate((each for each in root.iter() if _tag(each) == "Placemark"), start=1):
+        name = _text(placemark, "name")
+        where = f'Placemark {number} "{name}"' if name else f"Placemark {number}"
+        try:
+            geometries = [found for child in placemark for found in _geometries(child)]
+            if not geometries:
+                raise MapRefused("it has no geometry that can be drawn.")
+            properties = {**_attributes(placemark), **_style_of(placemark, styles)}
+            for geometry in [plain for found in geometries for plain in plain_geometries(found)]:
+                reading.add(geometry, properties)
+        except MapRefused as error:
+            reading.note(f"{where} is left out: {error}")
+    for tag, count in Counter(_tag(each) for each in root.iter()).items():
+        if tag in NOT_DRAWN:
+            reading.note(f"{NOT_DRAWN[tag][0].upper()}{NOT_DRAWN[tag][1:]} ({tag}, {count} times) is left out.")
+    return reading
+
+
+def _tag(element: Element) -> str:
+    return element.tag.rpartition("}")[2]
+
+
+def _child(element: Element, tag: str) -> Element | None:
+    return next((child for child in element if _tag(child) == tag), None)
+
+
+def _text(element: Element, tag: str) -> str:
+    found = _child(element, tag)
+    return (found.text or "").strip() if found is not None else ""
+
+
+def _geometries(element: Element, depth: int = 0) -> Iterator[dict[str, Any]]:
+    if depth > DEEPEST_COLLECTION:
+        raise MapRefused(f"its geometries are nested more than {DEEPEST_COLLECTION} deep.")
+    match _tag(element):
+        case "Point":
+            positions = _coordinates(element)
+            yield {"type": "Point", "coordinates": positions[0] if positions else None}
+        case "LineString" | "LinearRing":
+            yield {"type": "LineString", "coordinates": _coordinates(element)}
+        case "Polygon":
+            yield {"type": "Polygon", "coordinates": list(_rings(element))}
+        case "MultiGeometry" | "MultiTrack":
+            for child in element:
+                yield from _geometries(child, depth + 1)
+        case "Track":
+            places = [(child.text or "").split() for child in element if _tag(child) == "coord"]
+            yield {"type": "LineString", "coordinates": [_numbers(place) for place in places]}
+
+
+def _rings(polygon: Element) -> Iterator[list[list[float]]]:
+    """The outer ring first, whatever the order in the file."""
+    for boundary in ("outerBoundaryIs", "innerBoundaryIs"):
+        for child in polygon:
+            if _tag(child) == boundary:
+                for ring in child:
+                    yield _coordinates(ring)
+
+
+def _coordinates(element: Element) -> list[list[float]]:
+    """Tuples "lon,lat[,height]" apart by white space; some programs put blanks behind the commas."""
+    text = re.sub(r"\s*,\s*", ",", _text(element, "coordinates"))
+    return [_numbers(part.split(",")) for part in text.split()]
+
+
+def _numbers(parts: list[str]) -> list[float]:
+    try:
+        return [float(part) for part in parts[:2]]
+    except ValueError as error:
+        raise MapRefused(f"its coordinates {','.join(parts)[:60]!r} are not numbers.") from error
+
+
+def _attributes(placemark: Element) -> dict[str, Any]:
+    attributes: dict[str, Any] = {}
+    extended = _child(placemark, "ExtendedData")
+    for data in extended.iter() if extended is not None else ():
+        name = data.get("name")
+        if name and _tag(data) == "Data":
+            attributes[name] = _text(data, "value")
+        elif name and _tag(data) == "SimpleData":
+            attributes[name] = (data.text or "").strip()
+    for name in ("name", "description"):
+        if words := re.sub(r"<[^>]*>", " ", _text(placemark, name)).strip():
+            attributes[name] = words
+    return attributes
+
+
+def _shared_styles(root: Element) -> dict[str, Style]:
+    """Styles by "#id"; a StyleMap stands for its normal state."""
+    styles = {f"#{each.get('id')}": _style(each) for each in root.iter() if _tag(each) == "Style" and each.get("id")}
+    for each in root.iter():
+        if _tag(each) == "StyleMap" and each.get("id"):
+            for pair in each:
+                if _tag(pair) == "Pair" and _text(pair, "key") == "normal":
+                    styles[f"#{each.get('id')}"] = styles.get(_text(pair, "styleUrl"), {})
+    return styles
+
+
+def _style_of(placemark: Element, styles: dict[str, Style]) -> Style:
+    own = _child(placemark, "Style")
+    return {**styles.get(_text(placemark, "styleUrl"), {}), **(_style(own) if own is not None else {})}
+
+
+def _style(element: Element) -> Style:
+    """KML colours (aabbggrr) and widths under their simplestyle names."""
+    style: Style = {}
+    for child in element:
+        tag = _tag(child)
+        if tag not in SIMPLESTYLE:
+            continue
+        colour = _text(child, "color").removeprefix("#")
+        if re.fullmatch(r"[0-9a-fA-F]{8}", colour):
+            alpha, blue, green, red = (colour[i : i + 2] for i in range(0, 8, 2))
+            style[SIMPLESTYLE[tag][0]] = f"#{red}{green}{blue}".lower()
+            if SIMPLESTYLE[tag][1]:
+                style[SIMPLESTYLE[tag][1]] = round(int(alpha, 16) / 255, 3)
+        width = _text(child, "width")
+        if tag == "LineStyle" and re.fullmatch(r"\d+(\.\d+)?", width):
+            style["stroke-width"] = float(width)
+        if tag == "PolyStyle" and _text(child, "fill") == "0":
+            style["fill-opacity"] = 0.0
+    return style

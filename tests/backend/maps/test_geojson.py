@@ -1,0 +1,135 @@
+"""GeoJSON from elsewhere: what can be drawn is drawn, what cannot is named."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from backend.maps.geojson import read_geojson
+from backend.maps.refusal import MapRefused
+
+SQUARE = [[7.0, 50.0], [7.1, 50.0], [7.1, 50.1], [7.0, 50.0]]
+
+
+def read(document: object):
+    return read_geojson(json.dumps(document).encode())
+
+
+def collection(*geometries: object) -> dict[str, object]:
+    features = [
+        {"type": "Feature", "geometry": each, "properties": {"name": f"n{i}"}} for i, each in enumerate(geometries)
+    ]
+    return {"type": "FeatureCollection", "features": features}
+
+
+def test_every_geometry_is_kept_without_its_heights() -> None:
+    geometries = [
+        {"type": "Point", "coordinates": [7.0, 50.0, 321.5]},
+        {"type": "MultiPoint", "coordinates": [[7.0, 50.0], [7.1, 50.1]]},
+        {"type": "LineString", "coordinates": [[7.0, 50.0], [7.1, 50.1]]},
+        {"type": "MultiLineString", "coordinates": [[[7.0, 50.0], [7.1, 50.1]]]},
+        {"type": "Polygon", "coordinates": [SQUARE]},
+        {"type": "MultiPolygon", "coordinates": [[SQUARE]]},
+    ]
+    reading = read(collection(*geometries))
+    assert reading.notes == []
+    assert [feature.geometry["type"] for feature in reading.features] == [each["type"] for each in geometries]
+    assert reading.features[0].geometry["coordinates"] == [7.0, 50.0]
+    assert reading.features[4].geometry["coordinates"] == [SQUARE]
+    assert reading.bounds() == (7.0, 50.0, 7.1, 50.1)
+    assert reading.features[2].properties == {"name": "n2"}
+
+
+def test_bare_geometries_and_features_are_read() -> None:
+    point = {"type": "Point", "coordinates": [7, 50]}
+    assert len(read(point).features) == 1
+    assert len(read({"type": "Feature", "geometry": point, "properties": None}).features) == 1
+
+
+def test_a_geometry_collection_becomes_its_members() -> None:
+    members = [{"type": "Point", "coordinates": [7, 50]}, {"type": "LineString", "coordinates": [[7, 50], [8, 50]]}]
+    reading = read(collection({"type": "GeometryCollection", "geometries": members}))
+    assert [feature.geometry["type"] for feature in reading.features] == ["Point", "LineString"]
+
+
+def test_a_ring_left_open_is_closed() -> None:
+    reading = read(collection({"type": "Polygon", "coordinates": [SQUARE[:-1]]}))
+    assert reading.features[0].geometry["coordinates"] == [SQUARE]
+
+
+@pytest.mark.parametrize(
+    ("geometry", "words"),
+    [
+        (None, "no geometry"),
+        ({"type": "Circle", "coordinates": [7, 50]}, "'Circle' is not known"),
+        ({"type": "Point", "coordinates": [50, 100]}, "swapped"),
+        ({"type": "Point", "coordinates": [3_500_000, 5_600_000]}, "in metres"),
+        ({"type": "Point", "coordinates": ["7", "50"]}, "does not consist of numbers"),
+        ({"type": "Point", "coordinates": [True, False]}, "does not consist of numbers"),
+        ({"type": "Point", "coordinates": [7]}, "not a position"),
+        ({"type": "LineString", "coordinates": [[7, 50]]}, "a line needs at least 2"),
+        ({"type": "Polygon", "coordinates": [[[7, 50], [8, 50], [7, 50]]]}, "three corners"),
+        ({"type": "Polygon", "coordinates": []}, "at least 1 entry"),
+    ],
+)
+def test_what_cannot_be_drawn_is_left_out_and_named(geometry: object, words: str) -> None:
+    reading = read(collection(geometry, {"type": "Point", "coordinates": [7, 50]}))
+    assert len(reading.features) == 1
+    (note,) = reading.notes
+    assert note.startswith('Feature 1 "n0" is left out: ')
+    assert words in note
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"{", "not valid JSON"),
+        (b"[1, 2]", "no GeoJSON"),
+        (b"{}", "no GeoJSON"),
+        (b'{"type": "FeatureCollection"}', "no list of `features`"),
+        (b'{"type": "Point", "coordinates": [NaN, 1]}', "no JSON number"),
+        (b"[" * 100_000, "not valid JSON"),
+        ('{"type": "Punkt\u00e4"'.encode("latin-1"), "not valid JSON"),
+    ],
+)
+def test_other_files_are_refused(content: bytes, words: str) -> None:
+    with pytest.raises(MapRefused, match=words):
+        read_geojson(content)
+
+
+def test_another_coordinate_system_is_refused_by_its_name() -> None:
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}
+    with pytest.raises(MapRefused, match="EPSG::25832', not WGS84"):
+        read({**collection(), "crs": crs})
+    known = {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}
+    assert read({**collection({"type": "Point", "coordinates": [7, 50]}), "crs": known}).features
+
+
+def test_nested_without_end_is_named() -> None:
+    geometry: dict[str, object] = {"type": "Point", "coordinates": [7, 50]}
+    for _ in range(50):
+        geometry = {"type": "GeometryCollection", "geometries": [geometry]}
+    assert "nested" in read(collection(geometry)).notes[0]
+
+
+NAMES = st.sampled_from(["type", "coordinates", "geometry", "geometries", "features", "properties", "crs", "name"])
+KINDS = st.sampled_from(["Point", "LineString", "Polygon", "Feature", "FeatureCollection", "GeometryCollection"])
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(NAMES, inner | KINDS, max_size=5),
+    max_leaves=25,
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(JSON)
+def test_any_json_is_read_or_refused(document: object) -> None:
+    try:
+        reading = read(document)
+    except MapRefused:
+        return
+    for feature in reading.features:
+        feature.model_dump_json()

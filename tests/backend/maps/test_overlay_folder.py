@@ -1,0 +1,50 @@
+"""An overlay is stored as what can be drawn of it."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from backend.maps.overlay_folder import OverlayFolder
+from backend.maps.refusal import MapRefused, NotStored
+
+NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
+GEOJSON = b'\xef\xbb\xbf {"type": "Point", "coordinates": [7.1, 50.2]}'
+KML = b"<kml><Placemark><Point><coordinates>7,50</coordinates></Point></Placemark></kml>"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> OverlayFolder:
+    return OverlayFolder(tmp_path / "overlays")
+
+
+def test_stored_listed_read_and_deleted(folder: OverlayFolder) -> None:
+    assert folder.overlays() == []
+    second = folder.store(KML, "tracks", NOW)
+    first = folder.store(GEOJSON, "Nests", NOW)
+    assert folder.overlays() == [first, second]
+    assert (first.format, first.features, first.bounds) == ("geojson", 1, (7.1, 50.2, 7.1, 50.2))
+    assert second.format == "kml"
+    assert folder.collection(first.overlay_id).features[0].geometry == {"type": "Point", "coordinates": [7.1, 50.2]}
+    folder.delete(first.overlay_id)
+    assert folder.overlays() == [second]
+    with pytest.raises(NotStored):
+        folder.collection(first.overlay_id)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "is empty"),
+        (b"lat,lon", "neither GeoJSON nor KML"),
+        (b'{"type": "FeatureCollection", "features": []}', "nothing that can be drawn"),
+        (b'{"type": "Point", "coordinates": [1000, 2000]}', "not on Earth"),
+        (b"<kml/>", "nothing that can be drawn"),
+    ],
+)
+def test_nothing_is_kept_of_what_cannot_be_drawn(folder: OverlayFolder, content: bytes, words: str) -> None:
+    with pytest.raises(MapRefused, match=words):
+        folder.store(content, "bad", NOW)
+    assert folder.overlays() == []
