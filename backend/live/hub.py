@@ -178,6 +178,10 @@ class Hub:
 
     # Viewers
 
+    def feeds(self) -> int:
+        """How many missions are kept in memory."""
+        return len(self._feeds)
+
     def viewers(self) -> int:
         return len(self._viewers)
 

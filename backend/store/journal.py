@@ -20,7 +20,7 @@ from typing import Any, Literal, TypeVar
 from sqlalchemy import exc, select, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import Event, MissionEnded, Recorded
+from backend.events import Event, Recorded
 from backend.mission.ports import TrackPoint
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
@@ -66,6 +66,14 @@ class DatabaseReport:
     refused: int
 
 
+@dataclass(slots=True)
+class Written:
+    """A mission that was written to: all its events, and what they add up to (None before the first)."""
+
+    recorded: list[Recorded]
+    digest: MissionDigest | None
+
+
 class SqlJournal:
     """backend.mission.ports.Journal on SQLAlchemy, and what the API reads. Use `run` as a background task."""
 
@@ -88,7 +96,7 @@ class SqlJournal:
         self._disk_low_bytes = disk_low_bytes
         self._lock = asyncio.Lock()
         self._pending = deque(decode(payload) for payload in spool.entries())
-        self._written: dict[str, list[Recorded]] = {}
+        self._written: dict[str, Written] = {}
         self._wake = asyncio.Event()
         self._fault: str | None = None
         self._took_s = 0.0
@@ -118,15 +126,16 @@ class SqlJournal:
         if not events:
             return []
         async with self._lock:
-            before = await self._known(mission_id)
+            known = await self._known(mission_id)
             at_utc = datetime.fromtimestamp(self._now(), UTC)
-            rows = tuple(to_row(seq, at_utc, event) for seq, event in enumerate(events, start=len(before) + 1))
+            first = len(known.recorded) + 1
+            rows = tuple(to_row(seq, at_utc, event) for seq, event in enumerate(events, start=first))
             recorded = [to_record(mission_id, row) for row in rows]
-            if not before:
-                fold(None, recorded)
+            after = fold(known.digest, recorded)
             await self._store(EventsEntry(mission_id, rows))
-            before.extend(recorded)
-            self._written[mission_id] = before
+            known.recorded.extend(recorded)
+            known.digest = after
+            self._written[mission_id] = known
             self._forget_ended()
         return recorded
 
@@ -141,10 +150,11 @@ class SqlJournal:
         async with self._lock:
             await self._store(entry)
 
-    async def _known(self, mission_id: str) -> list[Recorded]:
-        """The mission's events so far: the next sequence number is one more than there are."""
+    async def _known(self, mission_id: str) -> Written:
+        """The mission so far: the next sequence number is one more than there are events."""
         if mission_id not in self._written:
-            return await self._read(mission_id)
+            recorded = await self._read(mission_id)
+            return Written(recorded, fold(None, recorded) if recorded else None)
         return self._written[mission_id]
 
     async def _store(self, entry: Entry) -> None:
@@ -241,8 +251,8 @@ class SqlJournal:
         """Memory holds missions in flight only; an ended one is read from the database again."""
         if self._pending:
             return
-        for mission_id, recorded in list(self._written.items()):
-            if any(isinstance(record.event, MissionEnded) for record in recorded):
+        for mission_id, known in list(self._written.items()):
+            if known.digest is not None and known.digest.ended_at_us is not None:
                 del self._written[mission_id]
 
     def report(self) -> DatabaseReport:
@@ -268,7 +278,7 @@ class SqlJournal:
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
         """Events with seq > after, in order; none for an unknown mission. Raises JournalUnavailable."""
         if mission_id in self._written:
-            return self._written[mission_id][after:]
+            return self._written[mission_id].recorded[after:]
         return await self._read(mission_id, after)
 
     async def _read(self, mission_id: str, after: int = 0, kinds: Iterable[str] | None = None) -> list[Recorded]:
@@ -286,7 +296,7 @@ class SqlJournal:
         """The events of some kinds only."""
         wanted = set(kinds)
         if mission_id in self._written:
-            return [record for record in self._written[mission_id] if record.event.kind in wanted]
+            return [record for record in self._written[mission_id].recorded if record.event.kind in wanted]
         return await self._read(mission_id, kinds=wanted)
 
     async def unfinished(self) -> list[str]:
@@ -299,8 +309,8 @@ class SqlJournal:
         return [MissionDigest(**row._mapping) for row in rows]
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
-        if self._written.get(mission_id):
-            return fold(None, self._written[mission_id])
+        if mission_id in self._written:
+            return self._written[mission_id].digest
         rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
         return MissionDigest(**rows[0]._mapping) if rows else None
 
