@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
+from hardware.autopilot.link import STATION_SYSTEM
 from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, set_mode
 
 GUIDED, RTL, LAND, BRAKE, SMART_RTL = 4, 6, 9, 17, 21
@@ -57,6 +58,15 @@ ARDUPILOT = Dialect(
             frozenset({1, 3, 4, 5, 6, 7}),
             1,
             "Set FS_GCS_ENABLE to 1 (RTL): at 0 a vehicle without its station hovers until its battery is empty.",
+        ),
+        FailsafeRule(
+            "MAV_GCS_SYSID",
+            "the ground station that its failsafe watches",
+            frozenset({STATION_SYSTEM}),
+            STATION_SYSTEM,
+            f"Set MAV_GCS_SYSID (SYSID_MYGCS before 4.7) to {STATION_SYSTEM}, Crossfix' MAVLink system id: "
+            "the autopilot does not notice the loss of any other.",
+            formerly="SYSID_MYGCS",
         ),
         FailsafeRule(
             "FENCE_ACTION",

@@ -20,6 +20,7 @@ class ControlLatch:
         self._expected: frozenset[int] | None = None
         self._tolerated: int | None = None
         self._mode: int | None = None
+        self._armed = False
         self._reason: str | None = None
 
     @property
@@ -41,8 +42,10 @@ class ControlLatch:
     def observe(self, mode: int, armed: bool, in_air: bool) -> str | None:
         """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
         self._mode = mode
+        was_armed, self._armed = self._armed, armed
         if not armed:
-            self._expected = None  # on the ground nobody flies; a new flight starts with a command
+            if was_armed:
+                self._expected = None  # the flight has ended; a new one starts with a command
             return None
         if self._reason is not None:
             return None

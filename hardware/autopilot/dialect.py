@@ -21,6 +21,8 @@ class FailsafeRule:
     blocking: bool = True
     bit: int | None = None
     """When given, this bit must be set and `safe` is not looked at."""
+    formerly: str | None = None
+    """The name of the same parameter in older versions."""
 
     def holds(self, value: float) -> bool:
         return bool(int(value) & self.bit) if self.bit is not None else int(value) in self.safe

@@ -10,6 +10,7 @@ import asyncio
 import contextlib
 import json
 import logging
+import socket
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -24,6 +25,9 @@ log = logging.getLogger(__name__)
 _LEVELS = {LogLevel.WARN: logging.INFO, LogLevel.ERROR: logging.WARNING}
 _SCHEMES = ("udpin://", "udpout://", "tcpin://", "tcpout://", "tcp://", "serial://")
 AUTOPILOT_COMPONENT = 1
+STATION_SYSTEM = 255
+"""Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
+SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
 
 Fields = dict[str, Any]
 
@@ -42,6 +46,20 @@ def check_url(url: str) -> str:
             "udpout://HOST:PORT, tcpout://HOST:PORT, tcpin://0.0.0.0:PORT or serial:///dev/ttyUSB0:57600."
         )
     return "tcpout://" + url.removeprefix("tcp://") if url.startswith("tcp://") else url
+
+
+def _refuse_taken_port(url: str) -> None:
+    """MAVSDK binds a port that another program has without a word, and then hears nothing or half."""
+    host, _, port = url.removeprefix("udpin://").rpartition(":")
+    if not url.startswith("udpin://") or not port.isdecimal():
+        return
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind((host.strip("[]"), int(port)))
+        except OSError as error:
+            raise VehicleUnreachable(
+                f"Cannot listen on {url}: {error.strerror}. Another ground station may be using the port."
+            ) from error
 
 
 class MavlinkLink:
@@ -63,7 +81,10 @@ class MavlinkLink:
         """Raises VehicleUnreachable when no autopilot answers within so many wall seconds."""
         loop = asyncio.get_running_loop()
         log_subscribe(_keep_log)
-        mavsdk = self._mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        _refuse_taken_port(self.url)
+        configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
+        configuration.system_id = STATION_SYSTEM
+        mavsdk = self._mavsdk = Mavsdk(configuration)
         try:
             await loop.run_in_executor(self._blocking, mavsdk.add_any_connection_with_handle, self.url)
         except Exception as error:
@@ -112,8 +133,12 @@ class MavlinkLink:
             self._on_message(message.message_name, json.loads(message.fields_json))
 
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
-        """Send one message; `allowed` is asked in the instant before, and False sends nothing. None is sent as NaN."""
-        message = MavlinkMessage(name, 0, 0, self.system_id, AUTOPILOT_COMPONENT, json.dumps(fields))
+        """Send one message to the autopilot; `allowed` is asked in the instant before, False sends nothing.
+
+        None among the fields is sent as NaN. Returns whether it was sent.
+        """
+        addressed = fields | {"target_system": self.system_id, "target_component": AUTOPILOT_COMPONENT}
+        message = MavlinkMessage(name, 0, 0, self.system_id, AUTOPILOT_COMPONENT, json.dumps(addressed))
         return await asyncio.get_running_loop().run_in_executor(self._sender, self._send_now, message, allowed)
 
     def _send_now(self, message: MavlinkMessage, allowed: Callable[[], bool]) -> bool:

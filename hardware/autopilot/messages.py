@@ -22,7 +22,7 @@ ACCEPTED, IN_PROGRESS = 0, 5
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """One command message, ready for the link. `number`: its MAV_CMD, by which the acknowledgement comes."""
+    """One command message, not yet addressed. `number`: its MAV_CMD, by which the acknowledgement comes."""
 
     number: int
     message: str
@@ -32,7 +32,7 @@ class Outgoing:
 def command_long(number: int, *params: float | None) -> Outgoing:
     """Up to seven params; those not given are NaN."""
     values = list(params) + [None] * (7 - len(params))
-    fields: dict[str, Any] = {"target_system": 1, "target_component": 1, "command": number, "confirmation": 0}
+    fields: dict[str, Any] = {"command": number, "confirmation": 0}
     return Outgoing(number, "COMMAND_LONG", fields | {f"param{i}": value for i, value in enumerate(values, 1)})
 
 
@@ -48,8 +48,6 @@ def arm() -> Outgoing:
 def reposition(place: GeoPoint, altitude_amsl_m: float, speed_m_s: float | None, yaw_deg: float | None) -> Outgoing:
     """Fly there; COMMAND_INT keeps 1 cm of latitude. Yaw is radians on the wire; speed None keeps the present one."""
     fields: dict[str, Any] = {
-        "target_system": 1,
-        "target_component": 1,
         "frame": _GLOBAL_INT,
         "command": REPOSITION,
         "current": 0,

@@ -12,7 +12,7 @@ def px4_mode(main: int, sub: int = 0) -> int:
 
 
 _AUTO = 4
-_TAKE_OFF, _LOITER, _MISSION, _RETURN, _LAND = 2, 3, 4, 5, 6
+_TAKE_OFF, _LOITER, _MISSION, _RETURN, _LAND, _PRECISION_LAND = 2, 3, 4, 5, 6, 9
 HOLD, TAKING_OFF = px4_mode(_AUTO, _LOITER), px4_mode(_AUTO, _TAKE_OFF)
 RETURNING, LANDING = px4_mode(_AUTO, _RETURN), px4_mode(_AUTO, _LAND)
 
@@ -40,7 +40,7 @@ PX4 = Dialect(
         RETURNING: "RETURN",
         LANDING: "LAND",
         px4_mode(_AUTO, 8): "FOLLOW",
-        px4_mode(_AUTO, 9): "PRECISION LAND",
+        px4_mode(_AUTO, _PRECISION_LAND): "PRECISION LAND",
         px4_mode(5): "ACRO",
         px4_mode(6): "OFFBOARD",
         px4_mode(7): "STABILIZED",
@@ -49,7 +49,7 @@ PX4 = Dialect(
     calm=frozenset({HOLD, TAKING_OFF}),
     hold=(pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
-    return_home=_order("RETURN", _RETURN, RETURNING, LANDING),
+    return_home=_order("RETURN", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
     land=_order("LAND", _LAND, LANDING),
     before_take_off=_order("HOLD", _LOITER, HOLD, TAKING_OFF),
     take_off=_take_off,

@@ -9,11 +9,13 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from hardware.autopilot.boot_clock import BootClock
+from hardware.autopilot.ground import distance_m
 from hardware.readings import Controller, GeoPoint, HeadingSample, Telemetry
 
 Fields = dict[str, Any]
 
 HISTORY_S = 300.0
+JUMP_M, JUMP_M_S = 5.0, 10.0
 _ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
 _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
 _FIXES = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
@@ -45,6 +47,8 @@ class Snapshot:
     prearm_ok: bool | None = None
     position: GeoPoint | None = None
     position_at_s: float | None = None
+    jumped_m: float | None = None
+    """How far the last position was from where the vehicle could have flown; None when it was plausible."""
     altitude_amsl_m: float | None = None
     altitude_relative_m: float | None = None
     velocity_ned: tuple[float, float, float] | None = None
@@ -117,10 +121,19 @@ class Snapshot:
         lat, lon = fields["lat"] / 1e7, fields["lon"] / 1e7
         if lat == 0.0 and lon == 0.0:
             return  # the autopilot has no position yet
-        self.position = GeoPoint(lat, lon)
-        self.position_at_s = self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
+        place, at = GeoPoint(lat, lon), self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
+        self.jumped_m = self._jump(place, at)
+        self.position, self.position_at_s = place, at
         self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
         self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
+
+    def _jump(self, place: GeoPoint, at_s: float) -> float | None:
+        """How far the position moved when no vehicle could have flown so far since the last one, else None."""
+        if self.position is None or self.position_at_s is None:
+            return None
+        moved = distance_m(self.position, place)
+        possible = JUMP_M + (JUMP_M_S + (self.speed_m_s or 0.0)) * max(0.0, at_s - self.position_at_s)
+        return moved if moved > possible else None
 
     def _battery(self, fields: Fields, heard_at_s: float) -> None:
         percent = fields["battery_remaining"]

@@ -31,7 +31,7 @@ class TurnManoeuvre:
         clock: Clock,
         snapshot: Snapshot,
         news: News,
-        go_on: Callable[[Manoeuvre], None],
+        go_on: Callable[[Manoeuvre], bool],
         dialect: Dialect,
         rate_deg_s: float,
     ) -> None:
@@ -57,7 +57,7 @@ class TurnManoeuvre:
         began, sent = self._clock.now(), 0.0
         stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), 0.0
         while not progress.done:
-            self._go_on(self._manoeuvre)
+            heard = self._go_on(self._manoeuvre)
             target = self._target(method, self._clock.now() - began, progress.turned_deg, sent)
             if target - sent > 1.0:
                 await self._order(self._step(method, progress, target, place, altitude_amsl_m), "the turn")
@@ -65,7 +65,7 @@ class TurnManoeuvre:
             await self._news.wait()
             for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
                 self.turned_deg, seen_at = progress.see(sample.heading_deg), sample.at_s
-            if progress.turned_deg > stuck_from + STUCK_DEG:
+            if not heard or progress.turned_deg > stuck_from + STUCK_DEG:
                 stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), progress.turned_deg
             elif stuck.passed:
                 return False

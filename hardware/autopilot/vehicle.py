@@ -12,7 +12,8 @@ from collections.abc import AsyncIterator, Callable
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.commander import Commander, CommandRefused, Manoeuvre
 from hardware.autopilot.control import ControlLatch
-from hardware.autopilot.dialect import Dialect, ModeOrder
+from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
+from hardware.autopilot.ground import distance_m
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import (
     CHANGE_SPEED,
@@ -47,18 +48,10 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (HOME_POSITION_ID, 0.5),
 )
 LINK_LOST_S, LINK_LOST_WALL_S = 3.0, 1.5
-GIVE_UP_LINK_S = 15.0
+GIVE_UP_LINK_S, GIVE_UP_LINK_WALL_S = 15.0, 5.0
 """A manoeuvre whose vehicle is silent for so long ends with VehicleUnreachable (the vehicle flies on by itself)."""
 ARRIVED_M, SETTLED_M_S, SETTLED_FOR_S = 2.0, 1.0, 1.0
 STUCK_S = 10.0
-_METRES_PER_DEGREE = 111_195.0
-
-
-def _offset(a: GeoPoint, b: GeoPoint) -> tuple[float, float]:
-    """(north, east) metres from a to b on a sphere; for distances of arrival only."""
-    north = (b.lat_deg - a.lat_deg) * _METRES_PER_DEGREE
-    east = math.remainder(b.lon_deg - a.lon_deg, 360.0) * _METRES_PER_DEGREE * math.cos(math.radians(a.lat_deg))
-    return north, east
 
 
 class MavsdkVehicle:
@@ -87,16 +80,21 @@ class MavsdkVehicle:
 
     async def connect(self, timeout_s: float = 30.0) -> None:
         """Open the link and wait for an autopilot (wall seconds). Raises VehicleUnreachable."""
+        try:
+            await self._connect(timeout_s)
+        except BaseException:
+            await self.close()
+            raise
+
+    async def _connect(self, timeout_s: float) -> None:
         started = time.monotonic()
         await self._link.open(timeout_s)
-        while self._snapshot.custom_mode is None:
+        while self._autopilot_number is None:
             if time.monotonic() - started > timeout_s:
-                await self.close()
                 raise VehicleUnreachable(f"An autopilot was there on {self._link.url}, but its heartbeat stopped.")
             await self._news.wait()
-        dialect = DIALECTS.get(self._autopilot_number or -1)
+        dialect = DIALECTS.get(self._autopilot_number)
         if dialect is None:
-            await self.close()
             raise VehicleUnreachable(
                 f"The autopilot on {self._link.url} is neither PX4 nor ArduPilot "
                 f"(MAV_AUTOPILOT {self._autopilot_number})."
@@ -163,6 +161,8 @@ class MavsdkVehicle:
             if name == "HEARTBEAT":
                 self._autopilot_number = int(fields["autopilot"])
             self._snapshot.fold(name, fields, now)
+            if name == "GLOBAL_POSITION_INT" and self._snapshot.jumped_m is not None:
+                self._announce(f"GPS position jumped by {self._snapshot.jumped_m:.0f} m")
             if name in ("HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"):
                 self._on_mode()
         self._news.tell()
@@ -230,20 +230,27 @@ class MavsdkVehicle:
         checks = telemetry_checks(
             self.telemetry(), self._snapshot.prearm_ok, self._latch.reason, self._minimum_battery_percent
         )
-        values = {rule.parameter: await self._link.parameter(rule.parameter) for rule in dialect.failsafes}
+        values = {rule.parameter: (await self._failsafe(rule))[1] for rule in dialect.failsafes}
         return checks + failsafe_checks(dialect, values)
+
+    async def _failsafe(self, rule: FailsafeRule) -> tuple[str, float | None]:
+        """(the name this version has, its value or None)."""
+        value = await self._link.parameter(rule.parameter)
+        if value is None and rule.formerly is not None:
+            return rule.formerly, await self._link.parameter(rule.formerly)
+        return rule.parameter, value
 
     async def mend_failsafes(self) -> list[str]:
         """Set every failsafe parameter that would not act to its remedy. Only on the operator's explicit wish."""
         done: list[str] = []
         for rule in self._speaks().failsafes:
-            value = await self._link.parameter(rule.parameter)
+            name, value = await self._failsafe(rule)
             if value is None or rule.holds(value):
                 continue
             wanted = rule.set_to if rule.bit is None else int(value) | rule.bit
-            if not await self._link.set_parameter(rule.parameter, wanted):
-                raise VehicleError(f"The autopilot did not take {rule.parameter} = {wanted}. {rule.remedy}")
-            done.append(f"{rule.parameter} set from {value:g} to {wanted}")
+            if not await self._link.set_parameter(name, wanted):
+                raise VehicleError(f"The autopilot did not take {name} = {wanted}. {rule.remedy}")
+            done.append(f"{name} set from {value:g} to {wanted}")
             self._announce(done[-1])
         return done
 
@@ -271,12 +278,14 @@ class MavsdkVehicle:
         self._commander.check(manoeuvre)
         return manoeuvre
 
-    def _go_on(self, manoeuvre: Manoeuvre) -> None:
-        """Raises when the manoeuvre may not go on, or its vehicle has been silent for too long."""
+    def _go_on(self, manoeuvre: Manoeuvre) -> bool:
+        """Whether the vehicle is heard now. Raises when the manoeuvre may not go on, or it was silent for too long."""
         self._commander.check(manoeuvre)
         silent = self._clock.now() - (self._snapshot.heard_at_s or -math.inf)
-        if not self._connected and silent > GIVE_UP_LINK_S:
+        silent_wall = time.monotonic() - self._heard_wall
+        if not self._connected and silent > GIVE_UP_LINK_S and silent_wall > GIVE_UP_LINK_WALL_S:
             raise VehicleUnreachable(f"{manoeuvre.name}: nothing heard from the vehicle for {silent:.0f} s.")
+        return self._connected
 
     async def _until(self, manoeuvre: Manoeuvre, deadline: Deadline, happened: Callable[[], bool]) -> bool:
         """True once it happened, False when the deadline passed."""
@@ -444,7 +453,7 @@ class MavsdkVehicle:
         here, amsl = self._snapshot.position, self._snapshot.altitude_amsl_m
         if here is None or amsl is None:
             return math.inf, math.inf
-        return math.hypot(*_offset(here, place)), abs(altitude_amsl_m - amsl)
+        return distance_m(here, place), abs(altitude_amsl_m - amsl)
 
     async def _arrive(self, manoeuvre: Manoeuvre, place: GeoPoint, altitude_amsl_m: float, deadline: Deadline) -> bool:
         """True when arrived and settled; False when no progress was seen for STUCK_S, or the deadline passed."""

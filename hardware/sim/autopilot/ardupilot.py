@@ -35,7 +35,7 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "WPNAV_SPEED": (1000.0, REAL32),
     "ATC_SLEW_YAW": (4500.0, REAL32),
     "WP_YAW_BEHAVIOR": (2, INT8),
-    "SYSID_MYGCS": (255, INT16),
+    "MAV_GCS_SYSID": (255, INT16),
 }
 
 GUIDED_AFTER = 9.0
@@ -199,6 +199,9 @@ class ArduCopter(Firmware):
             return False
         self.flight.sticks(velocity, yaw_rate)
         return True
+
+    def watches_station(self, system_id: int) -> bool:
+        return system_id == self.parameters["MAV_GCS_SYSID"]
 
     def gcs_timeout(self) -> float:
         return self.parameters["FS_GCS_TIMEOUT"]

@@ -234,6 +234,10 @@ class Firmware:
     def landed(self) -> None:
         """After the motors stopped at the end of a landing."""
 
+    def watches_station(self, system_id: int) -> bool:
+        """Whether this ground station's heartbeats count for the failsafe."""
+        return True
+
     def gcs_timeout(self) -> float:
         """Seconds without a ground station's heartbeat that count as lost."""
         raise NotImplementedError

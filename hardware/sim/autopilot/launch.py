@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import socket
+import subprocess
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -79,7 +80,7 @@ class _Answers(asyncio.DatagramProtocol):
 class SimulatedAutopilot:
     """A running simulated autopilot: its address for a ground station, and orders to its pilot (see orders.py)."""
 
-    def __init__(self, connect_port: int, control_port: int, process: asyncio.subprocess.Process | None) -> None:
+    def __init__(self, connect_port: int, control_port: int, process: subprocess.Popen[bytes] | None) -> None:
         self.url = f"udpin://127.0.0.1:{connect_port}"
         self.connect_port = connect_port
         self.control_port = control_port
@@ -114,33 +115,34 @@ class SimulatedAutopilot:
             with contextlib.suppress(SimulatorError):
                 await self.order("stop", timeout_s=1.0)
             return
-        if self._process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                self._process.terminate()
-        await self._process.wait()
+        self._process.terminate()
+        await asyncio.to_thread(self._process.wait)
 
 
 async def launch_simulated(setting: Setting, timeout_s: float = 20.0) -> SimulatedAutopilot:
     """Start one in its own process. Raises SimulatorError with its own words when it does not start."""
     connect_port = setting.connect_port or free_port()
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "hardware.sim.autopilot", *setting.arguments(connect_port),
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.PIPE,
+    process = await asyncio.to_thread(
+        subprocess.Popen,
+        [sys.executable, "-m", "hardware.sim.autopilot", *setting.arguments(connect_port)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         start_new_session=setting.keep_running,
-    )  # fmt: skip
+    )
     assert process.stdout is not None
     assert process.stderr is not None
     try:
         async with asyncio.timeout(timeout_s):
-            line = await process.stdout.readline()
-    except TimeoutError:
+            line = await asyncio.to_thread(process.stdout.readline)
+    except BaseException as error:
         process.kill()
-        raise SimulatorError(f"The simulated autopilot did not start within {timeout_s:g} s.") from None
+        if isinstance(error, TimeoutError):
+            raise SimulatorError(f"The simulated autopilot did not start within {timeout_s:g} s.") from None
+        raise
     if not line:
-        words = (await process.stderr.read()).decode(errors="replace").strip()
-        await process.wait()
+        words = (await asyncio.to_thread(process.stderr.read)).decode(errors="replace").strip()
+        await asyncio.to_thread(process.wait)
         raise SimulatorError(words or "The simulated autopilot ended at once, without a word.")
     return SimulatedAutopilot(connect_port, json.loads(line)["control_port"], process)
 

@@ -83,7 +83,7 @@ class Station:
         firmware = self.firmware
         match message.get_type():
             case "HEARTBEAT":
-                if message.type == mavlink.MAV_TYPE_GCS:
+                if message.type == mavlink.MAV_TYPE_GCS and firmware.watches_station(message.get_srcSystem()):
                     firmware.gcs_heard_at = firmware.time
                 return []
             case "COMMAND_LONG" | "COMMAND_INT":
