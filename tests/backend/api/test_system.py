@@ -1,0 +1,64 @@
+"""Health, defaults and the vehicle, with every part there and without."""
+
+from __future__ import annotations
+
+import math
+
+from backend.mission.localization import localization
+from backend.spec import MissionSpec, Place
+from hardware.readings import GeoPoint, Telemetry
+
+GONE = Telemetry(connected=False, at_s=0.0)
+
+
+async def test_all_is_well(client):
+    health = (await client.get("/api/health")).json()
+    assert health["state"] == "ok"
+    assert health["database"] == {"state": "ok", "kind": "sqlite", "detail": "", "spooled": 0}
+    assert health["vehicle"] == {"connected": True, "autopilot": "px4", "detail": ""}
+
+
+async def test_a_missing_vehicle_is_said_in_words(client, services):
+    services.missions.heard = GONE
+    health = (await client.get("/api/health")).json()
+    assert health["state"] == "degraded"
+    assert "No vehicle" in health["vehicle"]["detail"]
+
+
+async def test_the_suggested_mission_can_be_flown_from_home(client):
+    defaults = (await client.get("/api/defaults")).json()
+    assert defaults["home"] == {"lat": 50.6, "lon": 7.2}
+    spec = MissionSpec.model_validate(defaults["spec"])
+    task = localization(spec, Place(**defaults["home"]), 100.0)
+    x, y = task.problem.area[0].T
+    assert math.isclose(x.min(), -x.max(), abs_tol=0.1)
+    assert abs(y.min()) < 0.1
+    assert (await client.post("/api/missions", json=defaults["spec"])).status_code == 201
+
+
+async def test_without_a_vehicle_the_area_lies_around_the_configured_place(client, services, settings):
+    services.missions.heard = GONE
+    defaults = (await client.get("/api/defaults")).json()
+    assert defaults["home"] is None
+    lon, lat = defaults["spec"]["area"]["coordinates"][0][0]
+    assert abs(lat - settings.home_lat_deg) < 0.01
+    assert abs(lon - settings.home_lon_deg) < 0.01
+
+
+async def test_every_value_has_its_age_and_nan_is_unknown(client, services):
+    services.missions.heard = Telemetry(
+        connected=True,
+        at_s=services.now() - 1,
+        position=GeoPoint(50.6, 7.2),
+        position_at_s=services.now() - 2,
+        heading_deg=math.nan,
+        heading_at_s=services.now() + 1,
+        velocity_north_m_s=3.0,
+        velocity_east_m_s=4.0,
+        velocity_down_m_s=-1.0,
+    )
+    told = (await client.get("/api/vehicle")).json()
+    assert (told["lat"], told["position_age_s"]) == (50.6, 2.0)
+    assert (told["heading_deg"], told["heading_age_s"]) == (None, 0.0)
+    assert (told["ground_speed_m_s"], told["climb_m_s"]) == (5.0, 1.0)
+    assert (told["battery_percent"], told["battery_age_s"]) == (None, None)
