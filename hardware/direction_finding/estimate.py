@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.refine import Fit, PatternCurve, Spread, estimate_spread, fit_pattern
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
-from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep, bin_sweep
+from hardware.direction_finding.sweep import BIN_DEG, BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
 
 PENALTY = 0.3
@@ -33,6 +33,7 @@ SECOND_SOURCE_WEIGHT = 0.12
 SIGMA_FLOOR_DEG = 0.5
 SIGMA_CALIBRATION = 1.0
 MAXIMUM_SIGMA_DEG = 60.0
+CORRELATION_DEG = 40.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,7 @@ class SparseDirectionFinder:
     ) -> BearingReading:
         bearing = float(fit.bearing_deg[0]) % 360.0
         quality = cosine_quality(curve, binned, bearing, noise_db)
-        sigma = sigma_deg(fit)
+        sigma = sigma_deg(fit, binned)
         fitted = _fitted_db(curve, fit, noise_db)
         peaks = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
@@ -125,7 +126,7 @@ class SparseDirectionFinder:
 def unusable(sweep: Sweep, binned: BinnedSweep) -> str:
     """Why no method can use this sweep, in the operator's words; empty when it can be used."""
     samples = sweep.power_db.size
-    finite = int(np.isfinite(sweep.power_db).sum())
+    finite = int((np.abs(sweep.power_db) < IMPLAUSIBLE_DB).sum())
     if samples == 0:
         return "the receiver delivered nothing during the turn; check that it is running and tuned"
     if finite == 0:
@@ -186,7 +187,7 @@ def refine(curve: PatternCurve, binned: BinnedSweep, parts: list[Component], noi
     ratio_db = 10.0 * math.log10(second.weight / parts[0].weight)
     double = _fit_from(curve, binned, [parts[0].bearing_deg, second.bearing_deg], [0.0, ratio_db], noise_db)
     n = single.residual_db.size
-    effective = n / _inflation(single, binned)
+    effective = n / _inflation(single, _kernel(binned))
     gain = effective * math.log(max(single.cost, 1e-12) / max(double.cost, 1e-12)) - 2.0 * math.log(max(effective, 2.0))
     apart = abs((double.bearing_deg[0] - double.bearing_deg[1] + 180.0) % 360.0 - 180.0)
     return double if gain > 4.0 and apart > curve.beam_deg / 4.0 else single
@@ -206,24 +207,37 @@ def _fit_from(
     return fit_pattern(curve, binned, first.bearing_deg, first.level_db, noise_db, spread)
 
 
-def _inflation(fit: Fit, binned: BinnedSweep) -> float:
-    """How many neighbouring residuals say the same: (1 + rho) / (1 - rho) of a first-order process, in [1, 8]."""
-    scaled = np.full(BINS, np.nan)
-    scaled[binned.filled] = fit.residual_db * np.sqrt(fit.weight)
-    pair = scaled * np.roll(scaled, 1)
-    known = np.isfinite(pair)
-    variance = float(np.nanmean(scaled**2))
-    if known.sum() < 20 or variance <= 0:
-        return 1.0
-    rho = min(max(float(pair[known].mean()) / variance, 0.0), 0.78)
-    return (1.0 + rho) / (1.0 - rho)
+def _kernel(binned: BinnedSweep) -> NDArray[np.float64]:
+    """(n, n) triangular kernel of CORRELATION_DEG over the headings of the filled bins (Newey & West 1987)."""
+    heading = binned.heading_deg[binned.filled]
+    apart = np.abs((heading[:, None] - heading[None, :] + 180.0) % 360.0 - 180.0)
+    return np.maximum(1.0 - apart / CORRELATION_DEG, 0.0)
 
 
-def sigma_deg(fit: Fit) -> float:
-    """Standard deviation of the strongest source's bearing from the fit's curvature and the residual's variance."""
-    freedom = max(fit.residual_db.size - 2 * fit.bearing_deg.size, 1)
-    variance = max(fit.cost / freedom, 0.05)
-    return SIGMA_CALIBRATION * math.sqrt(variance * max(float(fit.covariance[0, 0]), 0.0)) + SIGMA_FLOOR_DEG
+def _inflation(fit: Fit, kernel: NDArray[np.float64]) -> float:
+    """By how much neighbouring residuals that err alike raise the variance (1: independent).
+
+    sum_ij K_ij z_i z_j / sum_i z_i^2: fading and a pattern that does not quite fit both show up here.
+    """
+    z = fit.residual_db * np.sqrt(fit.weight)
+    return max(float(z @ kernel @ z) / max(float(z @ z), 1e-12), 1.0)
+
+
+def sigma_deg(fit: Fit, binned: BinnedSweep) -> float:
+    """Standard deviation of the strongest source's bearing, from the fit's curvature C and the residuals.
+
+    The larger of two: C times the residual variance and its correlation; and the sandwich C (sum_ij K_ij s_i s_j) C of
+    the scores s, which sees residuals that are larger where the pattern is steep.
+    """
+    n, parameters = fit.scores.shape
+    freedom = max(n - parameters, 3)
+    kernel = _kernel(binned)
+    even = fit.cost / freedom * _inflation(fit, kernel) * float(fit.covariance[0, 0])
+    sandwich = fit.covariance @ (fit.scores.T @ kernel @ fit.scores) @ fit.covariance
+    uneven = float(sandwich[0, 0]) * n / freedom
+    # n - p residuals know their own variance only so well: variance of Student's t
+    certain = freedom / max(freedom - 2.0, 1.0)
+    return math.hypot(SIGMA_CALIBRATION * math.sqrt(max(even, uneven, 0.0) * certain), SIGMA_FLOOR_DEG)
 
 
 def cosine_quality(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:

@@ -51,7 +51,7 @@ def _plain(table: Table, tag: str | None) -> Recording:
     power_at = 1 if header is None else column_of(header.cells, *_POWER)
     if heading_at is None or power_at is None:
         raise RecordingError(
-            f'{table.where(header or rows[0])}: the header names no heading and power column; '
+            f"{table.where(header or rows[0])}: the header names no heading and power column; "
             "name the columns heading_deg and power_db"
         )
     names = () if header is None else header.cells

@@ -29,8 +29,9 @@ class Fit:
     """A pattern fit with one or two sources.
 
     bearing_deg, level_db: (k,) sources, the strongest first. covariance: (2k, 2k) of (bearings in degrees, levels
-    in dB), for the assumed spread. residual_db: (n,) of the filled bins. weight: (n,) their relative inverse variances.
-    cost: weighted sum of squares, robust.
+    in dB), for the assumed spread. residual_db, predicted_db: (n,) of the filled bins. weight: (n,) their inverse
+    variances. cost: weighted sum of squares, robust; about n when the assumed spread is right. scores: (n, 2k)
+    w_i r_i d(model_i) / d(parameters).
     """
 
     bearing_deg: NDArray[np.float64]
@@ -40,6 +41,7 @@ class Fit:
     predicted_db: NDArray[np.float64]
     weight: NDArray[np.float64]
     cost: float
+    scores: NDArray[np.float64]
 
 
 class PatternCurve:
@@ -139,7 +141,7 @@ def fit_pattern(
         trial_predicted, trial_jacobian = _model(curve, heading, trial, sources, noise)
         trial_cost = _cost(power - trial_predicted, weight, limit)
         if trial_cost <= cost:
-            settled = np.abs(step[:sources]).max() < 1e-4
+            settled = np.abs(step[:sources]).max() < 0.003 or cost - trial_cost < 1e-7 * cost
             theta, jacobian, residual, cost = trial, trial_jacobian, power - trial_predicted, trial_cost
             robust = _huber(residual, weight, limit)
             damping = max(damping * 0.2, 1e-9)
@@ -161,11 +163,14 @@ def fit_pattern(
         power - residual,
         weight,
         cost,
+        ((weight * residual)[:, None] * jacobian)[:, both],
     )
 
 
 def _damped_step(normal: NDArray[np.float64], gradient: NDArray[np.float64], damping: float) -> NDArray[np.float64]:
-    damped = normal + np.diag(damping * np.diag(normal) + 1e-12)
+    damped = normal.copy()
+    damped.flat[:: normal.shape[0] + 1] *= 1.0 + damping
+    damped.flat[:: normal.shape[0] + 1] += 1e-12
     return np.linalg.solve(damped, gradient)
 
 

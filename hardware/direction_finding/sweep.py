@@ -17,6 +17,10 @@ MAXIMUM_HEADING_GAP_S = 1.0
 """Between headings further apart than this the nose's direction is not known, so power heard there is left out."""
 
 
+IMPLAUSIBLE_DB = 400.0
+"""No receiver delivers a power of this many decibels either way: such values are left out like NaN."""
+
+
 class SweepError(ValueError):
     """No sweep can be made of this; the message says why and what to do."""
 
@@ -124,8 +128,8 @@ class BinnedSweep:
 def bin_sweep(
     heading_deg: NDArray[np.float64], power_db: NDArray[np.float64], offset_to_nose_deg: float
 ) -> BinnedSweep:
-    """Average samples into bins of antenna heading = nose heading + offset. Samples not finite are left out."""
-    good = np.isfinite(heading_deg) & np.isfinite(power_db)
+    """Average samples into bins of antenna heading = nose heading + offset. Implausible samples are left out."""
+    good = np.isfinite(heading_deg) & (np.abs(power_db) < IMPLAUSIBLE_DB)
     front = (heading_deg[good] + offset_to_nose_deg) % 360.0 % 360.0
     index = np.minimum((front / BIN_DEG).astype(np.int64), BINS - 1)
     count = np.bincount(index, minlength=BINS)

@@ -85,6 +85,8 @@ def read_rotations(table: Table, tag: str | None = None) -> tuple[list[tuple[Swe
     outside: list[Pulse] = []
     for row in table.rows:
         command = row.cells[0]
+        if row is table.rows[0] and _names(row):
+            continue
         if command == OPEN:
             if current is not None:
                 remarks.append(f"{table.where(row)}: a rotation opens while another is open; the first ends here")
@@ -102,7 +104,7 @@ def read_rotations(table: Table, tag: str | None = None) -> tuple[list[tuple[Swe
                 remarks.append(f"{table.where(row)}: {pulse}")
             elif pulse is not None:
                 (outside if current is None else current.pulses).append(pulse)
-        elif not (row is table.rows[0] and _names(row)):
+        else:
             remarks.append(f'{table.where(row)}: "{row.cells[0]}" is no known kind of row (7, 10 or 11); line left out')
     if current is not None and rotations:
         remarks.append(f"{table.path}: the last rotation was never closed (no row 11); its pulses are used")
@@ -124,7 +126,7 @@ def _names(row: Row) -> bool:
 
 
 def _layout(table: Table) -> _Layout:
-    pulses = [row for row in table.rows if row.cells[0] == PULSE]
+    pulses = [row for row in table.rows if row.cells[0] == PULSE and not _names(row)]
     if not pulses:
         raise RecordingError(f"{table.path}: holds no pulse (no row that starts with 7); is it the right file?")
     header = next((row for row in (*table.rows[:1], *table.comments) if _names(row)), None)

@@ -101,7 +101,7 @@ def test_empty_bins_are_nan_not_zero_and_means_are_of_decibels() -> None:
 def test_every_sample_lands_in_one_bin_and_offset_turns_the_antenna(heading: list[float], offset: float) -> None:
     binned = bin_sweep(np.array(heading), np.zeros(len(heading)), offset)
     assert binned.count.sum() == len(heading)
-    front = (np.array(heading) + offset) % 360.0
+    front = (np.array(heading) + offset) % 360.0 % 360.0
     expected = np.bincount(np.minimum((front / 2.0).astype(int), BINS - 1), minlength=BINS)
     assert (binned.count == expected).all()
 

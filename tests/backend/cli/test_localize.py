@@ -1,0 +1,90 @@
+"""`crossfix localize` at its edge."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+import typer
+from shapely.geometry import Point, shape
+from typer.testing import CliRunner
+
+from backend.cli.localize import localize
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint
+
+APP = typer.Typer()
+APP.command()(localize)
+FRAME = LocalFrame(GeoPoint(50.6, 7.2))
+
+
+def bearing_to(x: float, y: float, east: float, north: float) -> float:
+    return math.degrees(math.atan2(east - x, north - y)) % 360.0
+
+
+def written(tmp_path: Path, rows: list[tuple[float, float, float]], sigma: float = 4.0) -> Path:
+    """rows: east, north, bearing."""
+    lines = ["lat,lon,bearing_deg,sigma_deg"]
+    for east, north, bearing in rows:
+        place = FRAME.to_geo(east, north)
+        lines.append(f"{place.lat_deg},{place.lon_deg},{bearing},{sigma}")
+    path = tmp_path / "bearings.csv"
+    path.write_text("\n".join(lines))
+    return path
+
+
+def test_crossing_bearings_find_the_emitter(tmp_path: Path) -> None:
+    rows = [(x, y, bearing_to(x, y, 120.0, 140.0)) for x, y in ((0, 0), (250, 0), (100, 350), (-80, 150))]
+    result = CliRunner().invoke(APP, [str(written(tmp_path, rows)), "--json"])
+    answer = json.loads(result.stdout)
+    east, north = FRAME.to_enu(GeoPoint(answer["estimate"]["lat"], answer["estimate"]["lon"]))
+    assert result.exit_code == 0
+    assert math.hypot(east - 120.0, north - 140.0) < 6.0
+    assert 0.0 < answer["expected_rmse_m"] < 20.0
+    assert answer["consistent"] is True
+    truth = FRAME.to_geo(120.0, 140.0)
+    assert shape(answer["c95"]).contains(Point(truth.lon_deg, truth.lat_deg))
+
+
+def test_one_bearing_is_answered_honestly(tmp_path: Path) -> None:
+    answer = json.loads(CliRunner().invoke(APP, [str(written(tmp_path, [(0, 0, 45.0)])), "--json"]).stdout)
+    assert answer["expected_rmse_m"] > 100.0
+    assert answer["localized"] is False
+    assert answer["not_yet"]
+
+
+def test_contradicting_bearings_give_no_estimate(tmp_path: Path) -> None:
+    path = written(tmp_path, [(0, 0, 270.0), (300, 0, 90.0)])
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    assert answer["consistent"] is False
+    assert answer["estimate"] is None
+    assert answer["c95"] is None
+    assert "contradict" in CliRunner().invoke(APP, [str(path)]).stdout
+
+
+def test_area_option_bounds_the_estimate(tmp_path: Path) -> None:
+    corners = [FRAME.to_geo(x, y) for x, y in ((50, 50), (150, 50), (150, 150), (50, 150), (50, 50))]
+    polygon = {"type": "Polygon", "coordinates": [[[p.lon_deg, p.lat_deg] for p in corners]]}
+    area = tmp_path / "area.geojson"
+    area.write_text(json.dumps({"type": "Feature", "properties": {}, "geometry": polygon}))
+    path = written(tmp_path, [(0, 0, 45.0)])
+    answer = json.loads(CliRunner().invoke(APP, [str(path), "--area", str(area), "--json"]).stdout)
+    place = answer["estimate"]
+    assert shape(polygon).buffer(1e-6).contains(Point(place["lon"], place["lat"]))
+    assert answer["expected_rmse_m"] < 60.0
+
+
+@pytest.mark.parametrize("arguments", [["missing.csv"], ["bad.csv"], ["tags.csv"], ["good.csv", "--area", "bad.csv"]])
+def test_bad_input_is_one_line_on_stderr_and_exit_code_2(
+    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("x,y\n1,2\n")
+    (tmp_path / "good.csv").write_text("50.1,7.2,10\n")
+    (tmp_path / "tags.csv").write_text("2,a,10,0.5,50.1,7.2,10,200,0,1\n3,a,10,0.5,50.1,7.2,10,200,0,1\n")
+    result = CliRunner().invoke(APP, [*arguments, "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert len(result.stderr.strip().splitlines()) == 1

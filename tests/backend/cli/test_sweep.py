@@ -1,0 +1,87 @@
+"""`crossfix sweep` at its edge: one JSON value on stdout, one clear line and exit code 2 for bad input."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from backend.cli.sweep import sweep
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+
+APP = typer.Typer()
+APP.command()(sweep)
+
+
+def recording(tmp_path: Path, bearing_deg: float, rotations: int = 1) -> Path:
+    pattern = load_pattern(SMALL_YAGI)
+    lines = []
+    for k in range(rotations):
+        lines.append("10,50.1,7.2,300")
+        for heading in np.arange(0.0, 360.0, 5.0):
+            snr = 60.0 + pattern.gain_at(np.array([bearing_deg + 30.0 * k - heading]))[0]
+            lines.append(f"7,3,148e6,1,2,{snr},1,1,1,50,1.0,1,1,50.1,7.2,8,0,0,{heading},0,0")
+        lines.append("11,50.1,7.2,300")
+    path = tmp_path / "rotation.csv"
+    path.write_text("\n".join(lines))
+    return path
+
+
+def test_one_rotation_prints_one_object(tmp_path: Path) -> None:
+    result = CliRunner().invoke(APP, [str(recording(tmp_path, 120.0)), "--json"])
+    answer = json.loads(result.stdout)
+    assert result.exit_code == 0
+    assert answer["bearing_deg"] == pytest.approx(120.0, abs=0.3)
+    assert answer["sigma_deg"] > 0
+    assert answer["quality"] > 0.95
+    assert (answer["tag"], answer["lat"], answer["lon"]) == ("3", 50.1, 7.2)
+
+
+def test_several_rotations_print_one_array(tmp_path: Path) -> None:
+    answers = json.loads(CliRunner().invoke(APP, [str(recording(tmp_path, 120.0, rotations=3)), "--json"]).stdout)
+    assert [answer["bearing_deg"] for answer in answers] == pytest.approx([120.0, 150.0, 180.0], abs=0.3)
+
+
+def test_offset_option_turns_the_answer_and_text_is_a_sentence(tmp_path: Path) -> None:
+    result = CliRunner().invoke(APP, [str(recording(tmp_path, 120.0)), "--offset", "-20"])
+    assert "bearing 100.0" in result.stdout
+
+
+def test_plain_csv_takes_its_place_from_the_option(tmp_path: Path) -> None:
+    pattern = load_pattern(SMALL_YAGI)
+    heading = np.arange(0.0, 360.0, 5.0)
+    path = tmp_path / "plain.csv"
+    path.write_text("\n".join(f"{h},{p}" for h, p in zip(heading, pattern.gain_at(33.0 - heading), strict=True)))
+    unknown = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+    known = json.loads(CliRunner().invoke(APP, [str(path), "--json", "--at", "50.5,7.5"]).stdout)
+    assert (unknown["lat"], unknown["lon"]) == (None, None)
+    assert (known["lat"], known["lon"]) == (50.5, 7.5)
+    assert known["bearing_deg"] == pytest.approx(33.0, abs=0.3)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["missing.csv"],
+        ["bad.csv"],
+        ["good.csv", "--pattern", "missing.json"],
+        ["good.csv", "--pattern", "bad.csv"],
+        ["good.csv", "--at", "somewhere"],
+        ["good.csv", "--tag", "99"],
+    ],
+)
+def test_bad_input_is_one_line_on_stderr_and_exit_code_2(
+    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    recording(tmp_path, 10.0).rename(tmp_path / "good.csv")
+    (tmp_path / "bad.csv").write_text("this,is,no\nrecording,at,all\n")
+    result = CliRunner().invoke(APP, [*arguments, "--json"])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert "Traceback" not in result.stderr

@@ -1,0 +1,69 @@
+"""Bearing files of both kinds; rows not understood are named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, read_bearings
+from hardware.direction_finding.table_file import RecordingError
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "bearings.csv"
+    path.write_text(text)
+    return path
+
+
+def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
+    text = (
+        "2,rotation_example.csv,137.592747,0.061582,35.178241,-111.656587,9.569501,2107.248081,1684766889.8,1684767153.8\n"
+        "2,'Rot1.csv',-45,0.5,35.177870,-111.656956,10,2050,0,30\n"
+    )
+    first, second = read_bearings(written(tmp_path, text)).bearings
+    assert (first.bearing_deg, first.tag) == (137.592747, "2")
+    assert (first.place.lat_deg, first.place.lon_deg) == (35.178241, -111.656587)
+    assert first.sigma_deg == DEFAULT_SIGMA_DEG
+    assert second.bearing_deg == 315.0
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "lat,lon,bearing_deg,sigma_deg\n50.1,7.2,10,3\n50.2,7.3,20,\n",
+        "50.1,7.2,10,3\n50.2,7.3,20\n",
+        "bearing;longitude;latitude;sigma\n10;7.2;50.1;3\n20;7.3;50.2;\n",
+        "# lat, lon, bearing_deg, sigma_deg\n50.1,7.2,10,3\n\n50.2,7.3,20\n",
+    ],
+)
+def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) -> None:
+    first, second = read_bearings(written(tmp_path, text), sigma_deg=5.0).bearings
+    assert (first.place.lat_deg, first.place.lon_deg, first.bearing_deg, first.sigma_deg) == (50.1, 7.2, 10.0, 3.0)
+    assert (second.bearing_deg, second.sigma_deg) == (20.0, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        ("50.1,7.2,north", 'the bearing is "north"'),
+        ("150.1,7.2,3", "latitude 150.1"),
+        ("50.1,720,3", "longitude 720"),
+        ("50.1,7.2,999", "bearing 999"),
+        ("50.1,7.2,3,-4", "sigma"),
+        ("50.1,7.2", "bearing"),
+        ("nan,7.2,3", "latitude"),
+    ],
+)
+def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, words: str) -> None:
+    recorded = read_bearings(written(tmp_path, f"50.1,7.2,10\n{row}\n"))
+    assert len(recorded.bearings) == 1
+    (remark,) = recorded.remarks
+    assert "bearings.csv:2: " in remark
+    assert words in remark
+
+
+@pytest.mark.parametrize("text", ["", "a,b\n", "lat,lon,angle\n1,2,3\n", "x,y,z,w,v\n", "50.1,7.2,north\n"])
+def test_useless_files_are_refused_with_their_name(tmp_path: Path, text: str) -> None:
+    with pytest.raises(RecordingError, match=r"bearings\.csv"):
+        read_bearings(written(tmp_path, text))
