@@ -1,1 +1,282 @@
-export function EditPage() { return null; }
+// A new mission, or a draft edited: map on the left, the specification as a form on the right.
+import type { ComponentType } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { go, missionAddress, type Route } from "../app/route";
+import { sourceFor } from "../app/sourceFor";
+import { open, source } from "../app/store";
+import { asProblem } from "../commands/send";
+import { AreaSection, importFile, importProblem } from "../edit/AreaSection";
+import { draft, forget, storedDraft, update } from "../edit/draft";
+import { what } from "../edit/drawing";
+import { sections, type NumberField } from "../edit/fields";
+import { FormField, TextField } from "../edit/FormField";
+import { PreviewCard } from "../edit/PreviewCard";
+import { clearPreview } from "../edit/preview";
+import { presetNames, withPreset, type PresetName } from "../edit/presets";
+import { t } from "../i18n";
+import { ProblemText } from "../panels/ProblemNote";
+import * as api from "../sources/api";
+import { RequestFailed } from "../sources/problem";
+import type { MissionSpec, Problem } from "../wire";
+
+type EditRoute = Extract<Route, { page: "new" | "edit" }>;
+
+const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : "new");
+
+async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; hasArea: boolean }> {
+  if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, hasArea: true };
+  if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, hasArea: true };
+  return { spec: (await api.defaults()).spec as MissionSpec, hasArea: false };
+}
+
+function EditMapArea({ onFile }: { onFile: (file: File) => void }) {
+  const [state, setState] = useState<"loading" | "none" | { Map: ComponentType<{ onFile: (file: File) => void }> }>("loading");
+  useEffect(() => {
+    void import("../map/createMap").then(
+      async ({ hasWebgl }) => {
+        if (!hasWebgl()) setState("none");
+        else {
+          const { EditMap } = await import("../map/EditMap");
+          setState({ Map: EditMap });
+        }
+      },
+      () => setState("none"),
+    );
+  }, []);
+  return (
+    <div class="map-area">
+      {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
+      {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
+      {typeof state === "object" && <state.Map onFile={onFile} />}
+    </div>
+  );
+}
+
+const FREQUENCY: NumberField = { kind: "number", path: "emitter.frequency_hz", label: "edit.frequency", unit: "MHz", scale: 1e6 };
+
+function NameSection({ failed }: { failed: RequestFailed | null }) {
+  return (
+    <fieldset class="panel">
+      <legend>{t("edit.section.name")}</legend>
+      <TextField path="name" label={t("edit.name")} failed={failed} />
+      <div class="field">
+        <label for="preset">{t("edit.preset")}</label>
+        <select
+          id="preset"
+          data-testid="preset"
+          value=""
+          onChange={(e) => {
+            const now = draft.peek();
+            const name = e.currentTarget.value as PresetName | "";
+            if (now && name) update({ ...now, spec: withPreset(now.spec, name) });
+          }}
+        >
+          <option value="">–</option>
+          {presetNames.map((name) => (
+            <option value={name} key={name}>
+              {t(`edit.preset.${name}`)}
+            </option>
+          ))}
+        </select>
+      </div>
+      <TextField path="emitter.label" label={t("edit.label")} failed={failed} />
+      <FormField field={FREQUENCY} failed={failed} />
+      <FormField
+        field={{
+          kind: "choice",
+          path: "emitter.kind",
+          label: "edit.kind",
+          options: [
+            { value: "carrier", label: "edit.kind.carrier" },
+            { value: "pulsed", label: "edit.kind.pulsed" },
+          ],
+        }}
+        failed={failed}
+      />
+    </fieldset>
+  );
+}
+
+function Motion({ failed }: { failed: RequestFailed | null }) {
+  const { motion } = draft.value!.spec.planner;
+  const choose = (kind: string) => {
+    const now = draft.peek()!;
+    const speed = now.spec.flight.speed_m_s;
+    const fresh =
+      kind === "linear"
+        ? { kind, speed_m_s: speed }
+        : kind === "full"
+          ? { kind, turn_rate_deg_s: 30, acceleration_m_s2: 1, speed_m_s: 8, constant_s: 3 }
+          : { kind: "linear_constant", speed_m_s: speed, constant_s: 11.2 };
+    update({ ...now, spec: { ...now.spec, planner: { ...now.spec.planner, motion: fresh as typeof motion } } });
+  };
+  return (
+    <>
+      <div class="field">
+        <label for="motion-kind">{t("edit.motion")}</label>
+        <select id="motion-kind" value={motion.kind} onChange={(e) => choose(e.currentTarget.value)}>
+          <option value="linear">{t("edit.motion.linear")}</option>
+          <option value="linear_constant">{t("edit.motion.linear_constant")}</option>
+          <option value="full">{t("edit.motion.full")}</option>
+        </select>
+      </div>
+      <FormField field={{ kind: "number", path: "planner.motion.speed_m_s", label: "edit.speed", unit: "m/s" }} failed={failed} />
+      {motion.kind !== "linear" && (
+        <FormField field={{ kind: "number", path: "planner.motion.constant_s", label: "edit.motion.constant", unit: "s" }} failed={failed} />
+      )}
+      {motion.kind === "full" && (
+        <>
+          <FormField field={{ kind: "number", path: "planner.motion.acceleration_m_s2", label: "edit.motion.acceleration", unit: "m/s²" }} failed={failed} />
+          <FormField field={{ kind: "number", path: "planner.motion.turn_rate_deg_s", label: "edit.turnRate", unit: "°/s" }} failed={failed} />
+        </>
+      )}
+    </>
+  );
+}
+
+function Sections({ failed }: { failed: RequestFailed | null }) {
+  return (
+    <>
+      {sections.map((section) => {
+        const more = section.fields.filter((f) => f.more);
+        const isOpen = more.some((f) => draft.value!.text[f.path] !== undefined || failed?.fieldMessage(f.path));
+        return (
+          <fieldset class="panel" key={section.title}>
+            <legend>{t(section.title)}</legend>
+            {section.fields
+              .filter((f) => !f.more)
+              .map((field) => (
+                <FormField field={field} failed={failed} key={field.path} />
+              ))}
+            {more.length > 0 && (
+              <details class="more" open={isOpen}>
+                <summary>{t("edit.more")}</summary>
+                {more.map((field) => (
+                  <FormField field={field} failed={failed} key={field.path} />
+                ))}
+                {section.title === "edit.section.planner" && <Motion failed={failed} />}
+              </details>
+            )}
+          </fieldset>
+        );
+      })}
+    </>
+  );
+}
+
+export function EditPage({ route }: { route: EditRoute }) {
+  const key = keyOf(route);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const [failed, setFailed] = useState<RequestFailed | null>(null);
+  const [told, setTold] = useState<readonly string[]>([]);
+  const [saving, setSaving] = useState(false);
+  const [restored, setRestored] = useState(false);
+
+  const load = () => {
+    setProblem(null);
+    specFor(route).then(
+      ({ spec, hasArea }) => update({ key, spec, hasArea, text: {} }),
+      (error: unknown) => setProblem(asProblem(error)),
+    );
+  };
+  useEffect(() => {
+    if (source.peek()?.missionId !== null) open(sourceFor(null));
+    clearPreview();
+    const kept = route.page === "new" && route.from !== null ? null : storedDraft(key);
+    setRestored(kept !== null);
+    if (kept) update(kept);
+    else {
+      draft.value = null;
+      load();
+    }
+    return clearPreview;
+  }, [key]);
+
+  const onFile = (file: File) => {
+    importFile(file, what.peek()).then(
+      (notes) => setTold(notes),
+      (error: unknown) => setTold([importProblem(file.name, error)]),
+    );
+  };
+
+  const save = async () => {
+    const now = draft.peek();
+    if (!now) return;
+    setFailed(null);
+    setProblem(null);
+    const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
+    if (local) {
+      setProblem({ type: "about:blank", title: t("edit.titleNew"), status: 0, detail: local, remedy: "", errors: [], incident: null });
+      return;
+    }
+    setSaving(true);
+    try {
+      const saved = route.page === "edit" ? await api.editMission(route.missionId, now.spec) : await api.draftMission(now.spec);
+      forget(key);
+      go(missionAddress(saved.mission_id));
+    } catch (error) {
+      setProblem(asProblem(error));
+      if (error instanceof RequestFailed) setFailed(error);
+    } finally {
+      setSaving(false);
+    }
+  };
+
+  const now = draft.value;
+  return (
+    <div class="edit" data-testid="edit-page">
+      <EditMapArea onFile={onFile} />
+      <form class="side" onSubmit={(e) => {
+        e.preventDefault();
+        void save();
+      }}>
+        <div class="panel edit-head">
+          <h1>{t(route.page === "edit" ? "edit.title" : "edit.titleNew")}</h1>
+          {restored && (
+            <span class="muted">
+              {t("edit.restored")}{" "}
+              <button
+                type="button"
+                data-testid="discard"
+                onClick={() => {
+                  forget(key);
+                  setRestored(false);
+                  load();
+                }}
+              >
+                {t("edit.discard")}
+              </button>
+            </span>
+          )}
+        </div>
+        <div class="edit-scroll">
+          {now && (
+            <>
+              <NameSection failed={failed} />
+              <AreaSection failed={failed} told={told} onTold={setTold} onFile={onFile} />
+              <PreviewCard />
+              <Sections failed={failed} />
+            </>
+          )}
+        </div>
+        <div class="panel edit-foot">
+          {problem && (
+            <div class="problem" role="alert" data-testid="edit-problem">
+              <div>
+                <ProblemText problem={problem} />
+              </div>
+            </div>
+          )}
+          <div class="start-row">
+            <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
+              {t("edit.cancel")}
+            </a>
+            <button type="submit" class="primary" data-testid="save" disabled={saving || !now}>
+              {t(saving ? "edit.saving" : "edit.save")}
+            </button>
+          </div>
+        </div>
+      </form>
+    </div>
+  );
+}

@@ -1,1 +1,151 @@
-export function MapsPage() { return null; }
+// Offline maps and overlays on this server: add, choose, check, remove. Nothing comes from outside.
+import { useEffect, useState } from "preact/hooks";
+import { sourceFor } from "../app/sourceFor";
+import { open, source } from "../app/store";
+import { asProblem } from "../commands/send";
+import { t } from "../i18n";
+import { basemap, chooseBasemap } from "../map/basemap";
+import { overlayIds, showOverlay } from "../map/overlays";
+import { ProblemText } from "../panels/ProblemNote";
+import * as maps from "../sources/mapsApi";
+import { upload } from "../sources/upload";
+import type { Problem } from "../wire";
+
+type Target = "maps" | "overlays";
+
+function Upload({ target, accept, label, onDone, onProblem }: { target: Target; accept: string; label: string; onDone: () => void; onProblem: (p: Problem | null) => void }) {
+  const [progress, setProgress] = useState<{ name: string; percent: number } | null>(null);
+  return (
+    <>
+      <label class="button primary">
+        {label}
+        <input
+          class="visually-hidden"
+          type="file"
+          accept={accept}
+          data-testid={`upload-${target}`}
+          onChange={(e) => {
+            const file = e.currentTarget.files?.[0];
+            e.currentTarget.value = "";
+            if (!file) return;
+            onProblem(null);
+            setProgress({ name: file.name, percent: 0 });
+            upload(`/${target}?filename=${encodeURIComponent(file.name)}`, file, (share) => setProgress({ name: file.name, percent: Math.round(100 * share) }))
+              .then(onDone, (error: unknown) => onProblem(asProblem(error)))
+              .finally(() => setProgress(null));
+          }}
+        />
+      </label>
+      {progress && (
+        <span role="status">
+          {t("maps.uploading", progress)} <progress max={100} value={progress.percent} aria-label={progress.name} />
+        </span>
+      )}
+    </>
+  );
+}
+
+function Packages({ list, onChange }: { list: maps.MapList; onChange: () => void }) {
+  return (
+    <ul class="cards">
+      <li class="card">
+        <label class="check">
+          <input type="radio" name="basemap" checked={basemap.value === null} onChange={() => chooseBasemap(null)} />
+          {t("maps.plain")}
+        </label>
+      </li>
+      {list.maps.map((map) => (
+        <li class="card" key={map.map_id} data-testid="map-package">
+          <label class="check">
+            <input type="radio" name="basemap" checked={basemap.value === map.map_id} onChange={() => chooseBasemap(map.map_id)} />
+            <strong>{map.name}</strong>
+          </label>
+          <span class="muted">
+            {t("maps.size", { size: (map.size_bytes / 1e6).toFixed(1), minimum: map.min_zoom, maximum: map.max_zoom })} {map.attribution}
+          </span>
+          <button
+            onClick={() => {
+              if (basemap.peek() === map.map_id) chooseBasemap(null);
+              void maps.deleteMap(map.map_id).then(onChange, onChange);
+            }}
+          >
+            {t("maps.remove")}
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Overlays({ list, onChange }: { list: maps.OverlayList; onChange: () => void }) {
+  return (
+    <ul class="cards">
+      {list.overlays.map((one) => (
+        <li class="card" key={one.overlay_id} data-testid="overlay">
+          <label class="check">
+            <input type="checkbox" checked={overlayIds.value.includes(one.overlay_id)} onChange={(e) => showOverlay(one.overlay_id, e.currentTarget.checked)} />
+            <strong>{one.name}</strong>
+          </label>
+          <span class="muted">
+            {t("maps.features", { count: one.features })} {one.notes.join(" ")}
+          </span>
+          <button
+            onClick={() => {
+              showOverlay(one.overlay_id, false);
+              void maps.deleteOverlay(one.overlay_id).then(onChange, onChange);
+            }}
+          >
+            {t("maps.remove")}
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+export function MapsPage() {
+  const [packages, setPackages] = useState<maps.MapList | null>(null);
+  const [overlays, setOverlays] = useState<maps.OverlayList | null>(null);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const read = () => {
+    Promise.all([maps.listMaps(), maps.listOverlays()]).then(
+      ([listed, drawn]) => {
+        setPackages(listed);
+        setOverlays(drawn);
+      },
+      (error: unknown) => setProblem(asProblem(error)),
+    );
+  };
+  useEffect(() => {
+    if (source.peek()?.missionId !== null) open(sourceFor(null));
+    read();
+  }, []);
+  return (
+    <div class="page" data-testid="maps-page">
+      <div class="page-head">
+        <h1>{t("maps.title")}</h1>
+        <Upload target="maps" accept=".pmtiles" label={t("maps.upload")} onDone={read} onProblem={setProblem} />
+      </div>
+      <p>{t("maps.explain")}</p>
+      {problem && (
+        <div class="problem" role="alert">
+          <div>
+            <ProblemText problem={problem} />
+          </div>
+        </div>
+      )}
+      {packages && <Packages list={packages} onChange={read} />}
+      {packages?.unusable.map((line) => (
+        <p class="refused" key={line}>
+          {line}
+        </p>
+      ))}
+      <div class="page-head">
+        <h1>{t("maps.overlays")}</h1>
+        <Upload target="overlays" accept=".geojson,.json,.kml,.kmz" label={t("maps.uploadOverlay")} onDone={read} onProblem={setProblem} />
+      </div>
+      <p>{t("maps.overlaysExplain")}</p>
+      {overlays && <Overlays list={overlays} onChange={read} />}
+    </div>
+  );
+}

@@ -60,7 +60,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
               </button>
             </td>
             <td>{formatDuration(candidate.value_s)}</td>
-            <td>{candidate.std_error_s.toFixed(1)}</td>
+            <td>{candidate.std_error_s?.toFixed(1) ?? "–"}</td>
             <td>{candidate.rollouts}</td>
             <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
           </tr>

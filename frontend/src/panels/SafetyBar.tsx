@@ -224,7 +224,7 @@ function UrgentNote() {
 
 export function SafetyBar() {
   return (
-    <header class="safety" aria-label={t("bar.label")}>
+    <header class="safety" data-tour="1" aria-label={t("bar.label")}>
       <div class="safety-row">
         <div class="urgents" role="group" aria-label={t("bar.label")}>
           <UrgentButton kind="abort" />

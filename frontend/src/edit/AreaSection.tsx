@@ -1,0 +1,225 @@
+// Where it may be: drawn, imported or typed; fence and no-fly areas beside it.
+import { useState } from "preact/hooks";
+import { settings } from "../app/settings";
+import { t } from "../i18n";
+import * as api from "../sources/api";
+import { RequestFailed } from "../sources/problem";
+import { NotAPlan, readPlan } from "../sources/qgcPlan";
+import { areaM2, cornerCount, cornersFromText, polygonsOf } from "../state/areas";
+import { formatArea } from "../units/quantities";
+import type { Area } from "../wire";
+import { change, draft } from "./draft";
+import { add, remove, tool, what, type What } from "./drawing";
+import type { NumberField } from "./fields";
+import { FormField, PlaceField } from "./FormField";
+
+const MARGIN: NumberField = { kind: "number", path: "flight.fence_margin_m", label: "edit.fence.marginValue", unit: "m", min: 0 };
+
+/** Reads a dropped or chosen file into the draft; returns what to tell. Throws a sentence when it cannot be read. */
+export async function importFile(file: File, kind: What): Promise<string[]> {
+  const text = await file.text();
+  if (/\.plan$/i.test(file.name)) {
+    const { inclusions, exclusions } = readPlan(text);
+    if (inclusions.length > 0) add(kind === "area" && !draft.peek()?.hasArea ? "area" : "fence", inclusions);
+    if (exclusions.length > 0) add("noFly", exclusions);
+    return [];
+  }
+  const imported = await api.importArea(text, file.name);
+  add(kind, polygonsOf(imported.area as Area));
+  return imported.notes;
+}
+
+export const importProblem = (name: string, error: unknown): string => {
+  const reason = error instanceof RequestFailed ? `${error.problem.detail} ${error.problem.remedy}`.trim() : error instanceof NotAPlan ? error.message : String(error);
+  return t("edit.importFailed", { name, reason });
+};
+
+function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
+  const [text, setText] = useState("");
+  const use = () => {
+    if (/^\s*[{[]/.test(text)) {
+      void api.importArea(text, "pasted.geojson").then(
+        (imported) => {
+          add(what.peek(), polygonsOf(imported.area as Area));
+          setText("");
+          onTold(imported.notes);
+        },
+        (error: unknown) => onTold([importProblem("GeoJSON", error)]),
+      );
+      return;
+    }
+    const found = cornersFromText(text);
+    if ("ring" in found) {
+      add(what.peek(), [[found.ring]]);
+      setText("");
+      onTold([]);
+    } else if ("unreadable" in found) onTold([`${found.unreadable.line}: ${found.unreadable.text}. ${t("edit.notPlace")}`]);
+    else onTold([t("edit.tooFew")]);
+  };
+  return (
+    <details class="more">
+      <summary>{t("edit.area.paste")}</summary>
+      <label class="visually-hidden" for="paste-area">
+        {t("edit.area.typed")}
+      </label>
+      <textarea id="paste-area" data-testid="paste-area" rows={5} value={text} placeholder={"50.73400 N 7.09800 E\n50.73400 N 7.10200 E\n50.73550 N 7.10200 E"} onInput={(e) => setText(e.currentTarget.value)} />
+      <button type="button" data-testid="paste-apply" disabled={text.trim() === ""} onClick={use}>
+        {t("edit.area.pasteApply")}
+      </button>
+    </details>
+  );
+}
+
+function Prior({ failed }: { failed: RequestFailed | null }) {
+  const { prior } = draft.value!.spec;
+  const centre = () => {
+    const corners = polygonsOf(draft.peek()!.spec.area as Area).flat(2);
+    const mean = (i: 0 | 1) => corners.reduce((sum, p) => sum + p[i], 0) / corners.length;
+    return { lat: mean(1), lon: mean(0) };
+  };
+  const choose = (kind: string) => {
+    if (kind === "gaussian") change("prior", { kind, centre: centre(), sigma_major_m: 50, sigma_minor_m: 50, major_axis_deg: 0 });
+    else if (kind === "ring") change("prior", { kind, centre: centre(), inner_m: 30, outer_m: 300 });
+    else change("prior", { kind: "uniform" });
+  };
+  const metres = (path: string, label: NumberField["label"]): NumberField => ({ kind: "number", path, label, unit: "m" });
+  return (
+    <>
+      <div class="field">
+        <label for="prior-kind">{t("edit.prior")}</label>
+        <select id="prior-kind" value={prior.kind} onChange={(e) => choose(e.currentTarget.value)}>
+          <option value="uniform">{t("edit.prior.uniform")}</option>
+          <option value="gaussian">{t("edit.prior.gaussian")}</option>
+          <option value="ring">{t("edit.prior.ring")}</option>
+        </select>
+      </div>
+      {prior.kind !== "uniform" && <PlaceField path="prior.centre" label={t("edit.prior.centre")} failed={failed} />}
+      {prior.kind === "gaussian" && (
+        <>
+          <FormField field={metres("prior.sigma_major_m", "edit.prior.sigmaMajor")} failed={failed} />
+          <FormField field={metres("prior.sigma_minor_m", "edit.prior.sigmaMinor")} failed={failed} />
+          <FormField field={{ kind: "number", path: "prior.major_axis_deg", label: "edit.prior.axis", unit: "°" }} failed={failed} />
+        </>
+      )}
+      {prior.kind === "ring" && (
+        <>
+          <FormField field={metres("prior.inner_m", "edit.prior.inner")} failed={failed} />
+          <FormField field={metres("prior.outer_m", "edit.prior.outer")} failed={failed} />
+        </>
+      )}
+    </>
+  );
+}
+
+const KINDS: readonly { what: What; label: "edit.draw.area" | "edit.draw.fence" | "edit.draw.noFly" }[] = [
+  { what: "area", label: "edit.draw.area" },
+  { what: "fence", label: "edit.draw.fence" },
+  { what: "noFly", label: "edit.draw.noFly" },
+];
+
+function DrawTools({ onFile }: { onFile: (file: File) => void }) {
+  const flip = (chosen: typeof tool.value) => (tool.value = tool.value === chosen ? "none" : chosen);
+  return (
+    <div class="draw-tools">
+      <label class="field-inline">
+        {t("edit.draw.what")}
+        <select data-testid="draw-what" value={what.value} onChange={(e) => {
+          tool.value = "none";
+          what.value = e.currentTarget.value as What;
+        }}>
+          {KINDS.map((k) => (
+            <option value={k.what} key={k.what}>
+              {t(k.label)}
+            </option>
+          ))}
+        </select>
+      </label>
+      <button type="button" data-testid="draw-polygon" aria-pressed={tool.value === "polygon"} onClick={() => flip("polygon")}>
+        {t("edit.area.draw")}
+      </button>
+      <button type="button" data-testid="draw-rectangle" aria-pressed={tool.value === "rectangle"} onClick={() => flip("rectangle")}>
+        {t("edit.area.rectangle")}
+      </button>
+      <button type="button" data-testid="draw-corners" aria-pressed={tool.value === "corners"} onClick={() => flip("corners")}>
+        {t("edit.area.edit")}
+      </button>
+      <label class="button">
+        {t("edit.area.import")}
+        <input
+          class="visually-hidden"
+          type="file"
+          data-testid="import-file"
+          accept=".geojson,.json,.kml,.plan"
+          onChange={(e) => {
+            const file = e.currentTarget.files?.[0];
+            e.currentTarget.value = "";
+            if (file) onFile(file);
+          }}
+        />
+      </label>
+    </div>
+  );
+}
+
+interface Properties {
+  failed: RequestFailed | null;
+  told: readonly string[];
+  onTold: (lines: string[]) => void;
+  onFile: (file: File) => void;
+}
+
+export function AreaSection({ failed, told, onTold, onFile }: Properties) {
+  const now = draft.value!;
+  const units = settings.value.units;
+  const fence = now.spec.flight.fence as Area | null;
+  return (
+    <fieldset class="panel" data-testid="area-section">
+      <legend>{t("edit.section.area")}</legend>
+      <DrawTools onFile={onFile} />
+      <p class="muted">{tool.value === "none" ? t("edit.area.importHint") : t("edit.area.drawing")}</p>
+      {told.map((line) => (
+        <p class="field-message" role="alert" data-testid="area-message" key={line}>
+          {line}
+        </p>
+      ))}
+      <div class="area-row">
+        <span data-testid="area-size" data-has={now.hasArea}>
+          <strong>{t("edit.area")}:</strong>{" "}
+          {now.hasArea
+            ? t("edit.area.have", { area: formatArea(areaM2(now.spec.area as Area), units), corners: cornerCount(now.spec.area as Area) })
+            : t("edit.area.none")}
+        </span>
+        {now.hasArea && (
+          <button type="button" data-testid="area-clear" onClick={() => remove("area")}>
+            {t("edit.area.clear")}
+          </button>
+        )}
+      </div>
+      {(failed?.fieldMessage("area") || failed?.fieldMessage("area.coordinates")) && (
+        <p class="field-message" role="alert">{failed.fieldMessage("area") ?? failed.fieldMessage("area.coordinates")}</p>
+      )}
+      <div class="area-row">
+        <span>
+          <strong>{t("edit.fence")}:</strong> {fence ? t("edit.fence.own", { area: formatArea(areaM2(fence), units) }) : t("edit.fence.margin")}
+        </span>
+        {fence && <button type="button" onClick={() => remove("fence")}>{t("edit.fence.remove")}</button>}
+      </div>
+      {!fence && <FormField field={MARGIN} failed={failed} />}
+      {(now.spec.flight.no_fly as Area[]).map((area, i) => (
+        <div class="area-row" key={i}>
+          <span>
+            <strong>
+              {t("edit.noFly")} {i + 1}:
+            </strong>{" "}
+            {formatArea(areaM2(area), units)}
+          </span>
+          <button type="button" aria-label={t("edit.noFly.remove", { number: i + 1 })} onClick={() => remove("noFly", i)}>
+            {t("edit.area.clear")}
+          </button>
+        </div>
+      ))}
+      <Paste onTold={onTold} />
+      <Prior failed={failed} />
+    </fieldset>
+  );
+}

@@ -1,0 +1,139 @@
+// One row of the form: label, input, unit, and what is wrong with it.
+import { settings } from "../app/settings";
+import { t } from "../i18n";
+import type { RequestFailed } from "../sources/problem";
+import { formatPlace, parsePlace } from "../units/coordinates";
+import type { Place } from "../wire";
+import { change, draft, type } from "./draft";
+import { shownUnit, shownValue, typedNumber, type ChoiceField, type Field, type NumberField } from "./fields";
+import { get } from "./path";
+
+interface Properties<F> {
+  field: F;
+  failed: RequestFailed | null;
+}
+
+const idOf = (path: string) => `field-${path.replaceAll(".", "-")}`;
+
+function Message({ id, text }: { id: string; text: string | null }) {
+  return text ? (
+    <div class="field-message" id={`${id}-message`} role="alert">
+      {text}
+    </div>
+  ) : null;
+}
+
+function NumberInput({ field, failed }: Properties<NumberField>) {
+  const now = draft.value!;
+  const { unit, scale } = shownUnit(field, settings.value.units);
+  const raw = now.text[field.path];
+  const stored = get(now.spec, field.path);
+  const id = idOf(field.path);
+  const message = raw !== undefined ? t("edit.notNumber") : (failed?.fieldMessage(field.path) ?? null);
+  return (
+    <div class="field">
+      <label for={id}>{t(field.label)}</label>
+      <span class="field-input">
+        <input
+          id={id}
+          data-testid={id}
+          inputMode="decimal"
+          value={raw ?? (typeof stored === "number" ? shownValue(stored, scale) : "")}
+          aria-invalid={message !== null}
+          aria-describedby={message ? `${id}-message` : undefined}
+          onChange={(e) => {
+            const value = typedNumber(e.currentTarget.value);
+            if (value === null) type(field.path, e.currentTarget.value);
+            else {
+              type(field.path, null);
+              change(field.path, Number((value * scale).toPrecision(12)));
+            }
+          }}
+        />
+        <span class="unit">{unit}</span>
+      </span>
+      <Message id={id} text={message} />
+    </div>
+  );
+}
+
+function Choice({ field, failed }: Properties<ChoiceField>) {
+  const id = idOf(field.path);
+  return (
+    <div class="field">
+      <label for={id}>{t(field.label)}</label>
+      <select id={id} data-testid={id} value={String(get(draft.value!.spec, field.path))} onChange={(e) => change(field.path, e.currentTarget.value)}>
+        {field.options.map((o) => (
+          <option value={o.value} key={o.value}>
+            {o.label ? t(o.label) : o.value}
+          </option>
+        ))}
+      </select>
+      <Message id={id} text={failed?.fieldMessage(field.path) ?? null} />
+    </div>
+  );
+}
+
+export function FormField({ field, failed }: Properties<Field>) {
+  if (field.kind === "number") return <NumberInput field={field} failed={failed} />;
+  if (field.kind === "choice") return <Choice field={field} failed={failed} />;
+  return (
+    <label class="check field-switch">
+      <input
+        type="checkbox"
+        data-testid={idOf(field.path)}
+        checked={Boolean(get(draft.value!.spec, field.path))}
+        onChange={(e) => change(field.path, e.currentTarget.checked)}
+      />
+      {t(field.label)}
+    </label>
+  );
+}
+
+export function TextField({ path, label, failed }: { path: string; label: string; failed: RequestFailed | null }) {
+  const id = idOf(path);
+  const message = failed?.fieldMessage(path) ?? null;
+  return (
+    <div class="field">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        data-testid={id}
+        maxLength={120}
+        value={String(get(draft.value!.spec, path) ?? "")}
+        aria-invalid={message !== null}
+        onInput={(e) => change(path, e.currentTarget.value)}
+      />
+      <Message id={id} text={message} />
+    </div>
+  );
+}
+
+/** A place in any notation. */
+export function PlaceField({ path, label, failed }: { path: string; label: string; failed: RequestFailed | null }) {
+  const now = draft.value!;
+  const id = idOf(path);
+  const raw = now.text[path];
+  const place = get(now.spec, path) as Place | undefined;
+  const message = raw !== undefined ? t("edit.notPlace") : (failed?.fieldMessage(path) ?? null);
+  return (
+    <div class="field">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        data-testid={id}
+        value={raw ?? (place ? formatPlace(place, settings.value.coordinates) : "")}
+        aria-invalid={message !== null}
+        onChange={(e) => {
+          const found = parsePlace(e.currentTarget.value);
+          if (!found) type(path, e.currentTarget.value);
+          else {
+            type(path, null);
+            change(path, found);
+          }
+        }}
+      />
+      <Message id={id} text={message} />
+    </div>
+  );
+}

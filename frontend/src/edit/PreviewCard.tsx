@@ -1,0 +1,62 @@
+import { settings } from "../app/settings";
+import { t } from "../i18n";
+import { ProblemText } from "../panels/ProblemNote";
+import { formatPlace } from "../units/coordinates";
+import { formatDuration } from "../units/quantities";
+import { draft } from "./draft";
+import { askPreview, histogram, preview } from "./preview";
+
+function Histogram({ times }: { times: readonly number[] }) {
+  const { fromS, toS, counts } = histogram(times, 24);
+  const top = Math.max(...counts);
+  return (
+    <figure class="histogram">
+      <svg viewBox="0 0 24 10" preserveAspectRatio="none" role="img" aria-label={t("preview.histogram", { count: times.length })}>
+        {counts.map((count, i) => (
+          <rect x={i + 0.05} width={0.9} y={10 - (10 * count) / top} height={(10 * count) / top} key={i} />
+        ))}
+      </svg>
+      <figcaption>
+        <span>{formatDuration(fromS)}</span>
+        <span>{t("preview.histogram", { count: times.length })}</span>
+        <span>{formatDuration(toS)}</span>
+      </figcaption>
+    </figure>
+  );
+}
+
+export function PreviewCard() {
+  const state = preview.value;
+  const found = state?.found;
+  return (
+    <section class="panel" aria-label={t("preview.title")} data-testid="preview">
+      <h2>
+        {t("preview.title")}
+        <button type="button" data-testid="preview-run" disabled={state?.running || !draft.value?.hasArea} onClick={() => void askPreview(draft.peek()!.spec)}>
+          {t(state?.running ? "preview.running" : "preview.run")}
+        </button>
+      </h2>
+      {state?.problem && (
+        <div class="problem" role="alert">
+          <div>
+            <ProblemText problem={state.problem} />
+          </div>
+        </div>
+      )}
+      {found && (
+        <>
+          {found.expected_time_s !== null && (
+            <p>
+              <strong data-testid="preview-time">{t("preview.expected", { time: formatDuration(found.expected_time_s) })}</strong>
+              {found.time_90_s !== null && `, ${t("preview.in90", { time: formatDuration(found.time_90_s) })}`}
+            </p>
+          )}
+          {found.times_s.length > 1 && <Histogram times={found.times_s} />}
+          <p class="muted">
+            {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: found.reason })}
+          </p>
+        </>
+      )}
+    </section>
+  );
+}

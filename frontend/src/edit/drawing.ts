@@ -1,0 +1,54 @@
+// What the pointer draws on the map now: search area, fence or no-fly area, as polygon or rectangle, or corners moved.
+import { signal } from "@preact/signals";
+import { areaOf, polygonsOf, type Rings } from "../state/areas";
+import type { Area } from "../wire";
+import { draft, update } from "./draft";
+import { set } from "./path";
+
+export type What = "area" | "fence" | "noFly";
+export type Tool = "none" | "polygon" | "rectangle" | "corners";
+
+export const what = signal<What>("area");
+export const tool = signal<Tool>("none");
+
+/** Puts polygons into the draft: they replace the suggested area, else they are added. */
+export function add(kind: What, polygons: readonly Rings[]): void {
+  const now = draft.peek();
+  if (!now || polygons.length === 0) return;
+  const { area, flight } = now.spec;
+  if (kind === "area") {
+    const joined = areaOf(now.hasArea ? [...polygonsOf(area), ...polygons] : polygons)!;
+    update({ ...now, hasArea: true, spec: { ...now.spec, area: joined } });
+  } else if (kind === "fence") {
+    update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
+  } else {
+    const more = polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings }));
+    update({ ...now, spec: set(now.spec, "flight.no_fly", [...flight.no_fly, ...more]) });
+  }
+}
+
+export function remove(kind: What, index = 0): void {
+  const now = draft.peek();
+  if (!now) return;
+  if (kind === "area") update({ ...now, hasArea: false });
+  else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", null) });
+  else update({ ...now, spec: set(now.spec, "flight.no_fly", now.spec.flight.no_fly.filter((_, i) => i !== index)) });
+}
+
+/** Replaces all polygons of a kind after their corners were moved. */
+export function replace(kind: What, polygons: readonly Rings[]): void {
+  const now = draft.peek();
+  const joined = areaOf(polygons);
+  if (!now || !joined) return;
+  if (kind === "area") update({ ...now, spec: { ...now.spec, area: joined } });
+  else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
+  else update({ ...now, spec: set(now.spec, "flight.no_fly", polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings }))) });
+}
+
+export function polygonsOfKind(kind: What): Rings[] {
+  const now = draft.peek();
+  if (!now) return [];
+  if (kind === "area") return now.hasArea ? polygonsOf(now.spec.area) : [];
+  if (kind === "fence") return now.spec.flight.fence ? polygonsOf(now.spec.flight.fence as Area) : [];
+  return (now.spec.flight.no_fly as Area[]).flatMap(polygonsOf);
+}

@@ -1,0 +1,42 @@
+// What to expect of the mission before take-off, asked of the planner.
+import { signal } from "@preact/signals";
+import * as api from "../sources/api";
+import { asProblem } from "../commands/send";
+import type { MissionSpec, Preview, Problem } from "../wire";
+
+export interface PreviewState {
+  running: boolean;
+  found: Preview | null;
+  problem: Problem | null;
+}
+
+export const preview = signal<PreviewState | null>(null);
+
+let asking: AbortController | null = null;
+
+export function clearPreview(): void {
+  asking?.abort();
+  preview.value = null;
+}
+
+export async function askPreview(spec: MissionSpec): Promise<void> {
+  asking?.abort();
+  asking = new AbortController();
+  const { signal: aborted } = asking;
+  preview.value = { running: true, found: null, problem: null };
+  try {
+    const found = await api.preview(spec, aborted);
+    if (!aborted.aborted) preview.value = { running: false, found, problem: null };
+  } catch (error) {
+    if (!aborted.aborted) preview.value = { running: false, found: null, problem: asProblem(error) };
+  }
+}
+
+/** Counts of `times` in equal classes from the least to the largest. */
+export function histogram(times: readonly number[], classes: number): { fromS: number; toS: number; counts: number[] } {
+  const [low, high] = [Math.min(...times), Math.max(...times)];
+  const width = Math.max(1e-9, (high - low) / classes);
+  const counts = new Array<number>(classes).fill(0);
+  for (const time of times) counts[Math.min(classes - 1, Math.floor((time - low) / width))]! += 1;
+  return { fromS: low, toS: high, counts };
+}

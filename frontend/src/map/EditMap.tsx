@@ -1,0 +1,180 @@
+// The map of the editor: areas are drawn and their corners moved with Terra Draw; files may be dropped on it.
+import { effect } from "@preact/signals";
+import type { GeoJSONSource, Map as GlMap } from "maplibre-gl";
+import { useEffect, useRef } from "preact/hooks";
+import { TerraDraw, TerraDrawPolygonMode, TerraDrawRectangleMode, TerraDrawSelectMode, type GeoJSONStoreFeatures } from "terra-draw";
+import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
+import { settings } from "../app/settings";
+import { vehicle } from "../app/store";
+import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
+import { draft } from "../edit/draft";
+import { preview } from "../edit/preview";
+import { t } from "../i18n";
+import { boundsOf, lonLat } from "../state/geometry";
+import { emptyMission } from "../state/mission";
+import type { Rings } from "../state/areas";
+import type { LonLat } from "../wire/beliefFrame";
+import { addBasemap, basemap } from "./basemap";
+import { createMap, fit } from "./createMap";
+import { areaPoints, candidateFeatures, collection, planFeatures } from "./features";
+import { missionLayers, SOURCES } from "./layers";
+import { palettes, type Palette } from "./palette";
+
+type Hex = `#${string}`;
+
+function makeDraw(map: GlMap, colours: Palette): TerraDraw {
+  const accent = colours.accent as Hex;
+  const styles = { fillColor: accent, fillOpacity: 0.15, outlineColor: accent, outlineWidth: 3 };
+  return new TerraDraw({
+    adapter: new TerraDrawMapLibreGLAdapter({ map }),
+    modes: [
+      new TerraDrawPolygonMode({ styles: { ...styles, closingPointColor: accent, closingPointWidth: 7 }, pointerDistance: 20 }),
+      new TerraDrawRectangleMode({ styles }),
+      new TerraDrawSelectMode({
+        flags: { polygon: { feature: { draggable: true, coordinates: { midpoints: true, draggable: true, deletable: true } } } },
+        styles: { selectedPolygonColor: accent, selectedPolygonOutlineColor: accent, selectionPointWidth: 8, selectionPointColor: accent },
+      }),
+    ],
+  });
+}
+
+const ringsOf = (feature: GeoJSONStoreFeatures): Rings =>
+  feature.geometry.type === "Polygon" ? (feature.geometry.coordinates as Rings) : [];
+
+/** Carries the chosen tool into Terra Draw, and what was drawn back into the draft. */
+function bindTools(draw: TerraDraw): () => void {
+  let moving = false;
+  const takeMoved = () => {
+    if (!moving) return;
+    moving = false;
+    const rings = draw.getSnapshot().filter((f) => f.properties["mode"] === "polygon").map(ringsOf);
+    draw.clear();
+    replace(what.peek(), rings);
+  };
+  draw.on("finish", (id, context) => {
+    if (context.action !== "draw") return;
+    const drawn = draw.getSnapshotFeature(id);
+    if (!drawn) return;
+    add(what.peek(), [ringsOf(drawn)]);
+    // Terra Draw still works on the feature while it tells of it.
+    setTimeout(() => {
+      draw.clear();
+      tool.value = "none";
+    });
+  });
+  const stop = effect(() => {
+    const chosen = tool.value;
+    takeMoved();
+    if (chosen === "corners") {
+      const simple = polygonsOfKind(what.value).filter((rings) => rings.length === 1);
+      draw.setMode("select");
+      const added = draw.addFeatures(
+        simple.map((coordinates) => ({ type: "Feature", properties: { mode: "polygon" }, geometry: { type: "Polygon", coordinates } })),
+      );
+      const first = added[0]?.id;
+      if (first !== undefined) draw.selectFeature(first);
+      moving = true;
+    } else draw.setMode(chosen === "none" ? "static" : chosen);
+  });
+  return () => {
+    takeMoved();
+    stop();
+  };
+}
+
+const FALLBACK_START: LonLat = [7.1, 50.73];
+let framed: string | null = null;
+
+export function EditMap({ onFile }: { onFile: (file: File) => void }) {
+  const box = useRef<HTMLDivElement>(null);
+  const theme = settings.value.theme;
+  const units = settings.value.units;
+  useEffect(() => {
+    const colours = palettes[theme];
+    const spec = draft.peek()?.spec;
+    const map = createMap(box.current!, colours, units, (spec && areaPoints(spec.area)[0]) ?? vehicle.peek().at ?? FALLBACK_START);
+    map.doubleClickZoom.disable();
+    const stops: (() => void)[] = [];
+    map.on("load", () => {
+      for (const name of SOURCES) map.addSource(name, { type: "geojson", data: collection([]) });
+      for (const layer of missionLayers(colours)) map.addLayer(layer);
+      const put = (name: string, data: GeoJSON.FeatureCollection) => map.getSource<GeoJSONSource>(name)?.setData(data);
+      stops.push(
+        effect(() => {
+          const now = draft.value;
+          const shown = now ? planFeatures(now.spec) : collection([]);
+          put("plan", now?.hasArea ? shown : collection(shown.features.filter((f) => f.properties?.["what"] !== "area")));
+        }),
+        effect(() => {
+          const at = vehicle.value.at;
+          put("home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: at } }] : []));
+        }),
+        effect(() => {
+          const found = preview.value?.found;
+          put(
+            "candidates",
+            found
+              ? candidateFeatures(
+                  {
+                    ...emptyMission,
+                    plan: {
+                      seq: 0,
+                      at: "",
+                      fact: {
+                        kind: "plan_chosen",
+                        place_number: 1,
+                        place: found.first_place,
+                        source: "planner",
+                        reason: found.reason,
+                        expected_time_s: found.expected_time_s,
+                        time_90_s: found.time_90_s,
+                        candidates: found.candidates,
+                        rollouts: found.rollouts,
+                        plan_ms: found.plan_ms,
+                        by: null,
+                      },
+                    },
+                  },
+                  null,
+                )
+              : collection([]),
+          );
+        }),
+      );
+      const draw = makeDraw(map, colours);
+      draw.start();
+      stops.push(bindTools(draw), () => draw.stop());
+      void addBasemap(map, theme === "indoor" ? "dark" : "light", "no-fly").catch(() => undefined);
+      box.current?.setAttribute("data-ready", "true");
+    });
+    stops.push(
+      effect(() => {
+        const now = draft.value;
+        if (!now || framed === now.key) return;
+        framed = now.key;
+        const at = vehicle.peek().at;
+        const bounds = boundsOf([...areaPoints(now.spec.area), ...(at ? [lonLat({ lon: at[0], lat: at[1] })] : [])]);
+        if (bounds) fit(map, bounds, false);
+      }),
+    );
+    return () => {
+      stops.toReversed().forEach((stop) => stop());
+      map.remove();
+      tool.value = "none";
+    };
+  }, [theme, units, basemap.value]);
+  return (
+    <div
+      class={`map tool-${tool.value}`}
+      ref={box}
+      data-testid="edit-map"
+      aria-label={t("map.label")}
+      onDragOver={(e) => e.preventDefault()}
+      onDrop={(e) => {
+        e.preventDefault();
+        const file = e.dataTransfer?.files[0];
+        if (file) onFile(file);
+      }}
+    />
+  );
+}

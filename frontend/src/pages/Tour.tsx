@@ -1,0 +1,59 @@
+// One minute through the screen: each step marks a part of it and says what it is for.
+import { useEffect, useState } from "preact/hooks";
+import { overlay } from "../app/overlay";
+import { change } from "../app/settings";
+import { t, type MessageKey } from "../i18n";
+
+const STEPS = [1, 2, 3, 4, 5, 6] as const;
+const CARD = { width: 380, height: 190 };
+
+function placeCard(box: DOMRect): { left: number; top: number } {
+  const left = box.right + 12 + CARD.width < innerWidth ? box.right + 12 : box.left - CARD.width - 12;
+  const inside = left >= 8;
+  const below = box.bottom + 12 + CARD.height < innerHeight ? box.bottom + 12 : box.top - CARD.height - 12;
+  return {
+    left: inside ? left : Math.max(8, Math.min(innerWidth - CARD.width - 8, box.left + 8)),
+    top: Math.max(8, Math.min(innerHeight - CARD.height - 8, inside ? box.top : below)),
+  };
+}
+
+export function Tour() {
+  const [index, setIndex] = useState(0);
+  const [box, setBox] = useState<DOMRect | null>(null);
+  const step = STEPS[index]!;
+  useEffect(() => {
+    const mark = document.querySelector(`[data-tour="${step}"]`);
+    setBox(mark?.getBoundingClientRect() ?? null);
+  }, [step]);
+  const end = () => {
+    change("tourSeen", true);
+    overlay.value = null;
+  };
+  const at = box ? placeCard(box) : { left: innerWidth / 2 - CARD.width / 2, top: innerHeight / 2 - CARD.height / 2 };
+  return (
+    <>
+      {box && <div class="tour-mark" style={{ left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` }} />}
+      <div class="tour" role="dialog" aria-label={t("menu.tour")} data-testid="tour" style={{ left: `${at.left}px`, top: `${at.top}px` }}>
+        <p>{t(`tour.${step}` satisfies MessageKey)}</p>
+        <div class="start-row">
+          <button disabled={index === 0} onClick={() => setIndex(index - 1)}>
+            {t("tour.back")}
+          </button>
+          {index < STEPS.length - 1 ? (
+            <button class="primary" data-testid="tour-next" onClick={() => setIndex(index + 1)}>
+              {t("tour.next")}
+            </button>
+          ) : (
+            <button class="primary" data-testid="tour-end" onClick={end}>
+              {t("tour.end")}
+            </button>
+          )}
+        </div>
+        <div class="start-row">
+          <span class="muted">{t("tour.step", { step: index + 1, count: STEPS.length })}</span>
+          {index < STEPS.length - 1 && <button onClick={end}>{t("tour.end")}</button>}
+        </div>
+      </div>
+    </>
+  );
+}
