@@ -1,0 +1,201 @@
+"""`crossfix study`: Monte Carlo studies of the planners, beside the figures of the thesis."""
+
+from __future__ import annotations
+
+import sys
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from backend.cli.edge import print_json, remark, stop
+from planner.types import PlannerError
+
+if TYPE_CHECKING:
+    from planner.study.cell import Cell
+    from planner.study.table import Summary
+
+app = typer.Typer(
+    name="study",
+    help="Fly simulated missions by the thousand: compare planners, scenarios and settings, with 95 % intervals.",
+    no_args_is_help=True,
+)
+
+DEFAULT_DIRECTORY = Path("study-results")
+
+Directory = Annotated[
+    Path, typer.Option("--results", help="Where results are kept (Parquet); a study broken off goes on from there.")
+]
+
+
+@app.command()
+def run(
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="1: uniform prior, eleven targets in a row. 2: Gaussian prior. 3: ring around the start. "
+            "field: the flown system's area. May be repeated, like --config, --planner and --seed.",
+        ),
+    ] = None,
+    config: Annotated[
+        list[str] | None, typer.Option(help="fast, medium or slow: a bearing takes 2, 10 or 40 s.")
+    ] = None,
+    planner: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="base, fisher, entpp, entpp8, sopt, vander_hook, tokekar_subset, tokekar_worst_case, tokekar_tree, "
+            "lookahead, lookahead_myopic, or rollout.",
+        ),
+    ] = None,
+    selection: Annotated[
+        str, typer.Option(help="rollout: sequential_halving, uniform, quadrant, sgd or bfgs.")
+    ] = "sequential_halving",
+    sampling: Annotated[
+        str, typer.Option(help="rollout: crn (common random numbers), pmc (independent) or deterministic.")
+    ] = "crn",
+    budget: Annotated[int, typer.Option(help="rollout: simulated flights a decision.")] = 3600,
+    actions: Annotated[
+        str | None, typer.Option(help="Grid of places compared, columns x rows. Default: the scenario's, 20x20.")
+    ] = None,
+    estimator: Annotated[
+        str | None, typer.Option(help="map, expected_value or geometric_median. Default: the scenario's.")
+    ] = None,
+    base_policy: Annotated[
+        str | None, typer.Option(help="rollout: followed after the first place; ellipse, or fisher (field's default).")
+    ] = None,
+    measurement_time: Annotated[
+        float | None, typer.Option(help="Seconds a bearing takes, instead of the configuration's.")
+    ] = None,
+    runs: Annotated[int, typer.Option(help="Missions for each cell of the table.")] = 1000,
+    seed: Annotated[
+        list[int] | None, typer.Option(help="Mission k has the same target and noise for all planners. Default: 1.")
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes on this machine.")] = 2,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler to fly on instead, for instance tcp://host:8786.")
+    ] = None,
+    results: Directory = DEFAULT_DIRECTORY,
+    json_: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object; a list of them when several cells were asked for.")
+    ] = False,
+) -> None:
+    """Fly missions and print the mean time until localization beside the thesis' figure.
+
+    Example: crossfix study run --scenario 2 --planner base --planner entpp --config medium --runs 1000
+    """
+    study = _modules()
+    try:
+        cells = [
+            study.Cell(
+                scenario=s,
+                config=c,
+                planner=p,
+                selection=selection,
+                sampling=sampling,
+                budget=budget,
+                actions=actions,
+                estimator=estimator,
+                base_policy=base_policy,
+                measurement_time=measurement_time,
+                seed=number,
+            )
+            for s, p, c, number in product(
+                scenario or ["2"], planner or ["base"], config or ["medium"], seed if seed else [1]
+            )
+        ]
+        if runs < 1 or workers < 1:
+            raise PlannerError(f"--runs and --workers must be 1 or more, got {runs} and {workers}")
+        summaries = _fly(study, cells, runs, results, workers, scheduler)
+    except PlannerError as error:
+        stop(error)
+    except KeyboardInterrupt:
+        remark(f"broken off; what was flown is in {results}, the same command goes on from there")
+        raise typer.Exit(130) from None
+    if json_:
+        answers = [summary.json() for summary in summaries]
+        print_json(answers[0] if len(answers) == 1 else answers)
+    else:
+        _print_table(study, summaries)
+
+
+@app.command()
+def report(
+    results: Annotated[Path, typer.Argument(help="Directory that `crossfix study run --results` filled.")],
+    figures: Annotated[Path, typer.Option(help="Directory for the drawings (PNG).")] = Path("study-figures"),
+    markdown: Annotated[Path | None, typer.Option(help="Also write the table to this Markdown file.")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object: cells and files drawn.")] = False,
+) -> None:
+    """Draw the thesis' figures from stored results and print the table beside the thesis.
+
+    Example: crossfix study report study-results --figures study-figures
+    """
+    study = _modules()
+    try:
+        summaries, drawn = study.report(results, figures, remark)
+        if markdown is not None:
+            markdown.write_text(study.table.markdown(summaries) + "\n", encoding="utf-8")
+    except PlannerError as error:
+        stop(error)
+    except OSError as error:
+        stop(f"{error.filename}: {error.strerror}")
+    if json_:
+        print_json({"cells": [s.json() for s in summaries], "figures": [str(path) for path in drawn]})
+        return
+    _print_table(study, summaries)
+    for path in drawn:
+        typer.echo(f"drew {path}", err=True)
+
+
+class _Study:
+    """The study's modules, imported when they are needed: they bring pandas, and drawing brings matplotlib."""
+
+    def __init__(self) -> None:
+        from planner.study import cell, runner, table
+        from planner.study.report import report
+
+        self.Cell, self.run_cell, self.table, self.report = cell.Cell, runner.run_cell, table, report
+
+
+def _modules() -> _Study:
+    try:
+        return _Study()
+    except ImportError as error:
+        stop(f"studies need more packages ({error}): pip install 'crossfix[study]'")
+
+
+def _fly(
+    study: _Study, cells: list[Cell], runs: int, results: Path, workers: int, scheduler: str | None
+) -> list[Summary]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    summaries = []
+    with Progress(*columns, console=Console(file=sys.stderr)) as bars:
+        for cell in cells:
+            fields = cell.fields()
+            task = bars.add_task(f"{fields['scenario']} {fields['config']} {study.table.label(fields)}", total=runs)
+            missions = study.run_cell(
+                cell,
+                runs,
+                results,
+                workers=workers,
+                scheduler=scheduler,
+                progress=lambda done, task=task: bars.advance(task, done),
+            )
+            summaries.append(study.table.summarize(cell, missions))
+    return summaries
+
+
+def _print_table(study: _Study, summaries: list[Summary]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*study.table.HEADER)
+    for summary in summaries:
+        table.add_row(*study.table.row(summary))
+    console = Console(width=None if sys.stdout.isatty() else 160)
+    console.print(table)
+    if any(summary.within is False for summary in summaries):
+        console.print(study.table.FOOTNOTE)

@@ -1,0 +1,119 @@
+"""Policy rollout over a continuous action space: quadrant search, gradient descent or BFGS choose the place (ch. 5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from planner.belief.grid import GridBelief
+from planner.policy.actions import flight_window
+from planner.policy.allowed import nearest_allowed
+from planner.policy.ellipse import ellipse
+from planner.policy.fisher import fisher
+from planner.policy.rollout import RolloutSampler, clock
+from planner.policy.simulation import HORIZON, BasePolicy, KernelName, simulate
+from planner.sampling import Sampling
+from planner.selection.bfgs import bfgs
+from planner.selection.continuous import PlacesResult, Rectangle, SamplePlaces
+from planner.selection.quadrant import quadrant_search
+from planner.selection.sgd import sgd
+from planner.types import Candidate, Decision, PlannerError, Problem
+
+ContinuousSelection = Literal["quadrant", "sgd", "bfgs"]
+
+NO_WAY = 1e6
+"""s, the cost of a place without a way to it: a gradient cannot use infinity."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContinuousRollout:
+    """The rollout policy in the tripled belief rectangle, cut with the flight area's, as a `Policy`.
+
+    levels: L of the quadrant search; its R follows from the budget N = R (9 + 5 L). paths: R of the descents. With
+    deterministic sampling there are as many paths as the selection needs for a place, a power of two.
+    """
+
+    selection: ContinuousSelection = "quadrant"
+    sampling: Sampling = "crn"
+    base_policy: BasePolicy = "ellipse"
+    budget: int = 3600
+    threads: int = 1
+    horizon: int = HORIZON
+    kernel: KernelName = "compiled"
+    levels: int = 4
+    paths: int = 8
+
+    def __call__(
+        self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
+    ) -> Decision:
+        """PlannerError when the budget does not reach for one look at every place the selection needs."""
+        simulation = simulate(
+            problem,
+            belief,
+            platform,
+            base_policy=self.base_policy,
+            horizon=self.horizon,
+            threads=self.threads,
+            kernel=self.kernel,
+        )
+        sampling = "deterministic" if self.selection == "bfgs" else self.sampling
+        if sampling == "deterministic" and self.selection == "sgd":
+            raise PlannerError("gradient descent takes new sample paths every step: use crn or pmc sampling")
+        budget, paths = self.budget, self.paths
+        if sampling == "deterministic" and self.selection == "quadrant":
+            places = 9 + 5 * self.levels
+            if budget < places:
+                raise PlannerError(f"quadrant search looks at {places} places: give a budget of {places} or more")
+            paths = 2 ** int(np.log2(budget // places))
+            budget = paths * places
+        sampler = RolloutSampler(simulation, belief, sampling, rng, paths=paths)
+
+        def sample(places, path_from, path_to):
+            costs = sampler.anywhere(places, path_from, path_to)
+            return np.minimum(costs, NO_WAY)
+
+        base = (ellipse if self.base_policy == "ellipse" else fisher)(problem, belief, platform, rng)
+        result = self._select(sample, _rectangle(problem, belief), (base.x, base.y), budget)
+        wanted = result.places[result.best]
+        x, y = nearest_allowed(problem, belief, wanted)
+        return Decision(
+            float(x),
+            float(y),
+            reason=f"localized in about {clock(result.means[result.best])} by way of this place, found by "
+            f"{self.selection.replace('_', ' ')}",
+            candidates=_candidates(result),
+            rollouts=sampler.used,
+        )
+
+    def _select(
+        self, sample: SamplePlaces, rectangle: Rectangle, start: tuple[float, float], budget: int
+    ) -> PlacesResult:
+        match self.selection:
+            case "quadrant":
+                return quadrant_search(sample, rectangle, budget, levels=self.levels)
+            case "sgd":
+                return sgd(sample, rectangle, start, budget, paths=self.paths)
+            case "bfgs":
+                return bfgs(sample, rectangle, start, budget, paths=self.paths)
+
+
+def _rectangle(problem: Problem, belief: GridBelief) -> Rectangle:
+    x_min, y_min, x_max, y_max = belief.bounds
+    width, height = x_max - x_min, y_max - y_min
+    window = flight_window(problem)
+    left, right = max(x_min - width, window[0]), min(x_max + width, window[2])
+    bottom, top = max(y_min - height, window[1]), min(y_max + height, window[3])
+    if left >= right or bottom >= top:
+        left, bottom, right, top = window
+    return Rectangle(float(left), float(bottom), float(right), float(top))
+
+
+def _candidates(result: PlacesResult) -> tuple[Candidate, ...]:
+    return tuple(
+        Candidate(float(x), float(y), float(mean), float(error), int(count), None)
+        for (x, y), mean, error, count in zip(
+            result.places, result.means, result.std_errors, result.counts, strict=True
+        )
+    )

@@ -1,0 +1,67 @@
+"""Study results on disk: one tidy Parquet file a cell, one row a mission, rewritten whole so that it is never torn."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import asdict, fields
+from pathlib import Path
+
+import pandas as pd
+
+from planner.study.cell import Cell
+from planner.study.mission import Mission
+from planner.types import PlannerError
+
+COLUMNS = [field.name for field in fields(Mission)]
+
+
+class Results:
+    """The missions of one cell flown so far. A study that was broken off goes on with those that are missing."""
+
+    def __init__(self, directory: Path, cell: Cell) -> None:
+        self.path = directory / f"{cell.name()}.parquet"
+        self._cell = cell
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            self._frame = pd.read_parquet(self.path) if self.path.exists() else pd.DataFrame(columns=COLUMNS)
+        except (OSError, ValueError) as error:
+            raise PlannerError(f"{self.path}: cannot hold results ({error}); choose another directory") from error
+        if missing := sorted(set(COLUMNS) - set(self._frame.columns)):
+            raise PlannerError(f"{self.path}: lacks the columns {', '.join(missing)}; move it away to start afresh")
+
+    def missing(self, runs: int) -> list[int]:
+        """Run numbers 0 .. runs - 1 that have not been flown."""
+        have = set(self._frame["run"].astype(int)) if len(self._frame) else set()
+        return [run for run in range(runs) if run not in have]
+
+    def add(self, missions: Iterable[Mission]) -> None:
+        """Add rows and write the file."""
+        rows = pd.DataFrame([asdict(mission) for mission in missions], columns=COLUMNS)
+        for key, value in self._cell.fields().items():
+            rows[key] = value
+        known = [self._frame] if len(self._frame) else []
+        self._frame = pd.concat([*known, rows], ignore_index=True).sort_values("run", ignore_index=True)
+        partial = self.path.with_suffix(f".{os.getpid()}.partial")
+        self._frame.to_parquet(partial, index=False)
+        partial.replace(self.path)
+
+    def frame(self, runs: int) -> pd.DataFrame:
+        """The rows of the first `runs` runs, by run number."""
+        return self._frame.loc[self._frame["run"] < runs].reset_index(drop=True)
+
+
+def read_results(directory: Path) -> pd.DataFrame:
+    """All cells in a directory, one row a mission. PlannerError when there are none."""
+    files = sorted(directory.glob("*.parquet"))
+    if not files:
+        raise PlannerError(f"{directory}: holds no study results; make some with `crossfix study run`")
+    try:
+        return pd.concat([_labelled(file) for file in files], ignore_index=True)
+    except (OSError, ValueError, KeyError) as error:
+        raise PlannerError(f"{directory}: a results file cannot be read ({error})") from error
+
+
+def _labelled(file: Path) -> pd.DataFrame:
+    frame = pd.read_parquet(file)
+    return frame.astype({"scenario": str}).assign(cell=file.stem)
