@@ -153,9 +153,11 @@ class TimerExpired:
 
 @dataclass(frozen=True, slots=True)
 class Restarted:
-    """The server came back. `pilot`: the vehicle is in a mode that a pilot chose."""
+    """The server came back. `pilot`: the vehicle is in a mode that a pilot chose. `going_home`: in the autopilot's own
+    return or landing, which its failsafe began while nobody commanded it; it is not interrupted."""
 
     pilot: bool
+    going_home: bool
     detail: str
 
 

@@ -295,6 +295,15 @@ def _restarted(step: Step, given: Restarted) -> None:
     if given.pilot:
         step.record(ControlTaken(mode="unknown", detail="the pilot had control when the server came back"))
         step.go("manual", "the pilot had control when the server came back")
+    elif given.going_home:
+        alert(
+            step,
+            "vehicle",
+            "caution",
+            "the autopilot is on its own way home: its failsafe acted while the server was away",
+            "resume to go on searching, or let it land",
+        )
+        step.go("hold", "the server restarted; the autopilot's failsafe is bringing the vehicle home")
     else:
         step.do(HoldVehicle())
         step.go("hold", "the server restarted")

@@ -159,8 +159,8 @@ def _resume(step: Step, by: str) -> None:
     step.record(ResumeOrdered(by=by))
     if state.pilot_has_control:
         step.record(ControlReleased(by=by))
-        step.do(ReleasePilotLatch())
-    clear_alerts(step, "pilot", "failure", "safety")
+    step.do(ReleasePilotLatch())
+    clear_alerts(step, "pilot", "failure", "safety", "vehicle")
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     go_on(step, f"resumed by {by}")

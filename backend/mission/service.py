@@ -21,6 +21,7 @@ from backend.mission.errors import MissionConflict, MissionNotFound
 from backend.mission.forecast import Forecast, Preview, forecast, preview
 from backend.mission.localization import Localization, localization
 from backend.mission.machine import transition
+from backend.mission.patient_vehicle import PatientVehicle
 from backend.mission.ports import Status
 from backend.mission.runner import Runner
 from backend.mission.safety import Veto, battery_to_return_percent
@@ -35,6 +36,8 @@ log = logging.getLogger("crossfix.mission")
 TELEMETRY_S = 0.1
 TICKS_A_STATUS = 10
 CONNECT_AT_START_S = 3.0
+GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
+"""Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
 
 
 class MissionService:
@@ -68,9 +71,14 @@ class MissionService:
             return
         task = localization(state.mission, state.home, state.home_amsl_m)
         runner = self._runner = Runner(mission_id, state, last_seq, task, self._equipment)
-        pilot = self._equipment.vehicle.telemetry().controller == "pilot"
+        telemetry = self._equipment.vehicle.telemetry()
+        uncommanded = telemetry.controller == "pilot"
+        going_home = uncommanded and telemetry.mode in GOING_HOME
+        if going_home:
+            runner.watch.tolerated_mode = telemetry.mode
         runner.listening.start()
-        runner.give(inputs.Restarted(pilot=pilot, detail="the server was away and came back"))
+        pilot = uncommanded and not going_home
+        runner.give(inputs.Restarted(pilot, going_home, "the server was away and came back"))
         runner.begin()
         self._tasks.append(asyncio.create_task(self._let_go(runner)))
         log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
@@ -224,6 +232,11 @@ class MissionService:
 
     def telemetry(self) -> Telemetry:
         return self._equipment.vehicle.telemetry()
+
+    def vehicle_detail(self) -> str:
+        """Why there is no vehicle; empty when there is one."""
+        vehicle = self._equipment.vehicle
+        return vehicle.detail if isinstance(vehicle, PatientVehicle) else ""
 
     @property
     def active_mission_id(self) -> str | None:

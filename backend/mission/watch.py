@@ -42,13 +42,17 @@ class Drain:
 
 @dataclass(slots=True)
 class Watch:
-    """`give` takes the inputs; `state` is asked on every tick. Track points collect in `track` until taken."""
+    """`give` takes the inputs; `state` is asked on every tick. Track points collect in `track` until taken.
+
+    tolerated_mode: the autopilot's own return or landing found after a restart; no pilot's, until it changes.
+    """
 
     equipment: Equipment
     limits: Limits
     listening: Listening
     state: Callable[[], MissionState]
     give: Callable[[inputs.Input], object]
+    tolerated_mode: str | None = None
     drain: Drain = field(default_factory=Drain)
     track: list[TrackPoint] = field(default_factory=list)
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
@@ -78,8 +82,11 @@ class Watch:
     def notice_pilot(self, line: str) -> None:
         """Ask the vehicle who has control; also called the moment it says that something changed."""
         telemetry = self.equipment.vehicle.telemetry()
+        mode = telemetry.mode or "unknown"
+        if mode == self.tolerated_mode and self.state().phase == "hold":
+            return
+        self.tolerated_mode = None
         if telemetry.controller == "pilot" and not self.state().pilot_has_control:
-            mode = telemetry.mode or "unknown"
             self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}"))
 
     def _links(self, telemetry: Telemetry, now: float) -> None:

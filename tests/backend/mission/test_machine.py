@@ -283,7 +283,7 @@ def test_a_pilot_landing_ends_the_mission() -> None:
 def test_a_restart_in_flight_holds_and_rebuilds_the_belief() -> None:
     for phase in IN_FLIGHT:
         walk = walk_in(phase)
-        effects = walk.give(inputs.Restarted(pilot=False, detail="back"))
+        effects = walk.give(inputs.Restarted(pilot=False, going_home=False, detail="back"))
         assert walk.state.phase == "hold"
         assert not moves(effects)
         assert asked.UpdateBelief() in effects
@@ -294,9 +294,19 @@ def test_a_restart_in_flight_holds_and_rebuilds_the_belief() -> None:
 
 def test_a_restart_does_not_touch_a_vehicle_that_a_pilot_flies() -> None:
     for walk, pilot in ((Walk().to("flying"), True), (Walk().to("manual"), False)):
-        effects = walk.give(inputs.Restarted(pilot=pilot, detail="back"))
+        effects = walk.give(inputs.Restarted(pilot=pilot, going_home=False, detail="back"))
         assert not any(isinstance(e, VEHICLE) for e in effects)
         assert walk.state.phase == "manual"
+
+
+def test_a_restart_does_not_interrupt_the_failsafe_that_brings_the_vehicle_home() -> None:
+    walk = Walk().to("flying")
+    effects = walk.give(inputs.Restarted(pilot=False, going_home=True, detail="back"))
+    assert walk.state.phase == "hold"
+    assert not any(isinstance(e, VEHICLE) for e in effects)
+    effects = walk.command(commands.Resume())
+    assert asked.ReleasePilotLatch() in effects
+    assert not walk.state.open_alerts
 
 
 def test_a_lost_console_holds_and_then_returns_by_timers() -> None:

@@ -1,0 +1,99 @@
+"""A server inside this process: bound, opened, told when it answers. Shared by `serve` and `demo`."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, nullcontext
+from dataclasses import dataclass
+from typing import Any
+
+import uvicorn
+from pydantic import ValidationError
+
+from backend.api.services import Services
+from backend.main import create_app, server_config
+from backend.settings import Settings
+from backend.wiring import EmitterAroundHome, open_simulation
+
+
+class CannotServe(RuntimeError):
+    """The server cannot start; the message says why and what to try."""
+
+
+def settings_of(**given: Any) -> Settings:
+    """Settings from the environment, overruled by what is not None. Raises ValueError with one sentence."""
+    try:
+        return Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(str(part) for part in first["loc"])
+        raise ValueError(f"{name}: {first['msg']}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class RunningServer:
+    """url: of the page, without a trailing slash. stop: ends it politely. gone: when it has ended."""
+
+    url: str
+    services: Services
+    receiver: EmitterAroundHome
+    server: uvicorn.Server
+    gone: asyncio.Task[None]
+
+    def stop(self) -> None:
+        self.server.should_exit = True
+
+
+class _Server(uvicorn.Server):
+    """Says when it answers."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.ready = asyncio.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.ready.set()
+
+
+@asynccontextmanager
+async def running_server(settings: Settings) -> AsyncIterator[RunningServer]:
+    """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError."""
+    bound = _bind(settings.host, settings.port)
+    try:
+        async with open_simulation(settings) as (services, receiver):
+            app = create_app(settings, lambda _: nullcontext(services))
+            server = _Server(server_config(settings, app))
+            gone = asyncio.create_task(server.serve(sockets=[bound]))
+            ready = asyncio.create_task(server.ready.wait())
+            await asyncio.wait({gone, ready}, return_when=asyncio.FIRST_COMPLETED)
+            ready.cancel()
+            if gone.done():
+                raise CannotServe("the server stopped while it started")
+            host = f"[{settings.host}]" if ":" in settings.host else settings.host
+            shown = "127.0.0.1" if host in ("0.0.0.0", "[::]") else host
+            running = RunningServer(f"http://{shown}:{bound.getsockname()[1]}", services, receiver, server, gone)
+            try:
+                yield running
+            finally:
+                running.stop()
+                await asyncio.gather(gone, return_exceptions=True)
+    finally:
+        bound.close()
+
+
+def _bind(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    bound = socket.socket(family, socket.SOCK_STREAM)
+    bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        bound.bind((host, port))
+    except OSError as error:
+        bound.close()
+        raise CannotServe(
+            f"cannot listen on {host} port {port}: {error.strerror}; choose another with --port"
+        ) from error
+    bound.set_inheritable(False)
+    return bound

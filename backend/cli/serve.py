@@ -1,0 +1,68 @@
+"""`crossfix serve`: the server with its page, for a simulated vehicle or a real one."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from backend.cli.edge import print_json, stop
+from backend.cli.running import CannotServe, running_server, settings_of
+from backend.settings import Settings
+from backend.store.opening import DatabaseUnusable
+from hardware.ports import HardwareError
+
+
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on. Default: 127.0.0.1.")] = None,
+    port: Annotated[int | None, typer.Option(min=0, max=65535, help="Port; 0: any free one. Default: 8600.")] = None,
+    database: Annotated[
+        str | None, typer.Option(help="sqlite:///FILE or postgresql://... Default: SQLite in the data directory.")
+    ] = None,
+    data_dir: Annotated[Path | None, typer.Option(help="Where database, spool and maps live. Default: ./data.")] = None,
+    vehicle: Annotated[
+        str | None,
+        typer.Option(help="Real vehicle: udpin://0.0.0.0:14540, tcpout://HOST:PORT, serial:///dev/ttyUSB0:57600."),
+    ] = None,
+    flavour: Annotated[str | None, typer.Option(help="Simulated autopilot: px4 or ardupilot. Default: px4.")] = None,
+    speedup: Annotated[
+        float | None, typer.Option(help="Seconds of simulated time a second of the wall. Default: 1.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of the simulated world: where the emitter stands.")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object when the server answers.")] = False,
+) -> None:
+    """Start the server and say where the page is. Without --vehicle it flies a simulated one. Ctrl-C stops it.
+
+    Example: crossfix serve --port 8600 --speedup 5
+    """
+    try:
+        settings = settings_of(
+            host=host,
+            port=port,
+            database_url=database,
+            data_dir=data_dir,
+            vehicle_url=vehicle,
+            simulate=flavour,
+            time_factor=speedup,
+            seed=seed,
+        )
+    except ValueError as error:
+        stop(error)
+    try:
+        asyncio.run(_serve(settings, json_))
+    except (CannotServe, DatabaseUnusable, HardwareError, ValueError) as error:
+        stop(error)
+    except KeyboardInterrupt:
+        raise typer.Exit(0) from None
+
+
+async def _serve(settings: Settings, json_: bool) -> None:
+    async with running_server(settings) as running:
+        what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
+        if json_:
+            print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})
+        else:
+            typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
+        await running.gone

@@ -1,0 +1,209 @@
+"""The only place that names concrete adapters: settings in, the parts of a running server out."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from backend.api.services import Services
+from backend.api.suggestion import HEIGHT_M, WIDTH_M, suggested_mission
+from backend.live.hub import Hub
+from backend.mission.equipment import Equipment
+from backend.mission.forecast import preview
+from backend.mission.localization import localization
+from backend.mission.patient_vehicle import PatientVehicle
+from backend.mission.service import MissionService
+from backend.settings import Settings
+from backend.spec import EmitterSpec, Place
+from backend.store.journal import SqlJournal
+from backend.store.opening import open_journal
+from backend.version import VERSION
+from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.clock import ScaledClock
+from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.frame import LocalFrame
+from hardware.ports import ReceiverError, Vehicle
+from hardware.readings import GeoPoint, PowerSample
+from hardware.sim.autopilot.geodesy import HomeFrame
+from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, find_simulated, launch_simulated
+from hardware.sim.receiver import SimulatedReceiver
+from hardware.sim.world import Emitter, World
+
+log = logging.getLogger("crossfix")
+
+HOME_AMSL_M = 120.0
+EDGE_M = 10.0
+"""The simulated emitter stays so far inside the suggested area."""
+
+
+def emitter_place(seed: int, home: GeoPoint) -> GeoPoint:
+    """Where the simulated emitter stands: anywhere in the area that is suggested around `home`, by the seed."""
+    rng = np.random.default_rng([seed, 868])
+    east = rng.uniform(-WIDTH_M / 2 + EDGE_M, WIDTH_M / 2 - EDGE_M)
+    north = rng.uniform(EDGE_M, HEIGHT_M - EDGE_M)
+    return LocalFrame(home).to_geo(float(east), float(north))
+
+
+class EmitterAroundHome:
+    """The Receiver port: a simulated world made around the vehicle's home once that is known.
+
+    truth: where the simulated emitter stands, None until then.
+    """
+
+    def __init__(self, vehicle: Vehicle, clock: ScaledClock, seed: int) -> None:
+        self._vehicle = vehicle
+        self._clock = clock
+        self._seed = seed
+        self._receiver: SimulatedReceiver | None = None
+        self.truth: GeoPoint | None = None
+
+    async def open(self, frequency_hz: float) -> None:
+        if self._receiver is None:
+            telemetry = self._vehicle.telemetry()
+            home = telemetry.home or telemetry.position
+            if home is None:
+                raise ReceiverError("the simulated emitter stands around the vehicle's home, which is not known yet")
+            self.truth = emitter_place(self._seed, home)
+            world = World((Emitter(self.truth, EmitterSpec().frequency_hz),), seed=self._seed)
+            ground = telemetry.home_amsl_m or 0.0
+            self._receiver = SimulatedReceiver(world, self._vehicle.telemetry, self._clock, ground_amsl_m=ground)
+        await self._receiver.open(frequency_hz)
+
+    async def close(self) -> None:
+        if self._receiver is not None:
+            await self._receiver.close()
+
+    async def samples(self) -> AsyncIterator[PowerSample]:
+        if self._receiver is None:
+            raise ReceiverError("the receiver is not open")
+        async for sample in self._receiver.samples():
+            yield sample
+
+
+@dataclass(frozen=True, slots=True)
+class Hangar:
+    """Remembers the simulated vehicle in a file, so that it flies on when the server is killed and is found again."""
+
+    settings: Settings
+
+    @property
+    def _register(self) -> Path:
+        return self.settings.data_dir / "simulated_vehicle.json"
+
+    def _key(self) -> dict[str, object]:
+        s = self.settings
+        return {
+            "flavour": s.simulate,
+            "time_factor": s.time_factor,
+            "seed": s.seed,
+            "home": [s.home_lat_deg, s.home_lon_deg],
+        }
+
+    async def enter(self, in_flight: bool) -> SimulatedAutopilot:
+        """The vehicle that an unfinished mission left in the air, else a new one."""
+        left = await self._left_behind()
+        if left is not None:
+            found, same = left
+            if in_flight and same:
+                log.warning("the simulated vehicle is still flying, it is taken over")
+                return found
+            await found.stop()
+        s = self.settings
+        started = await launch_simulated(
+            Setting(
+                flavour=s.simulate,
+                home=HomeFrame(s.home_lat_deg, s.home_lon_deg, HOME_AMSL_M),
+                speedup=s.time_factor,
+                seed=s.seed,
+                wind=(3.0, 240.0, 1.0),
+                keep_running=True,
+            )
+        )
+        ports = {"connect_port": started.connect_port, "control_port": started.control_port}
+        self._register.parent.mkdir(parents=True, exist_ok=True)
+        self._register.write_text(json.dumps(self._key() | ports))
+        return started
+
+    async def _left_behind(self) -> tuple[SimulatedAutopilot, bool] | None:
+        try:
+            kept = json.loads(self._register.read_text())
+            found = await find_simulated(int(kept["connect_port"]), int(kept["control_port"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        same = all(kept.get(name) == value for name, value in self._key().items())
+        return None if found is None else (found, same)
+
+    async def leave(self, vehicle: SimulatedAutopilot) -> None:
+        await vehicle.stop()
+        with suppress(OSError):
+            self._register.unlink()
+
+
+async def _latest_utc_s(journal: SqlJournal) -> float | None:
+    """Time of the last fact of an unfinished mission: a sped-up clock must not run behind it."""
+    journals = [await journal.read(mission_id) for mission_id in await journal.unfinished()]
+    return max((recorded[-1].at_utc.timestamp() for recorded in journals if recorded), default=None)
+
+
+def _warm_up() -> None:
+    """Compile the planner's kernels before anybody waits for them in the air."""
+    home = Place(lat=0.0, lon=0.0)
+    spec = suggested_mission(home)
+    preview(localization(spec, home, 0.0), home, threads=2)
+
+
+@asynccontextmanager
+async def open_services(settings: Settings) -> AsyncIterator[Services]:
+    """Everything of a running server; taken down in the opposite order."""
+    async with open_simulation(settings) as (services, _):
+        yield services
+
+
+@asynccontextmanager
+async def open_simulation(settings: Settings) -> AsyncIterator[tuple[Services, EmitterAroundHome]]:
+    """The same, with the simulated emitter's truth beside it (for whoever grades the answer)."""
+    clock = ScaledClock(factor=settings.time_factor)
+    warming = asyncio.create_task(asyncio.to_thread(_warm_up))
+    async with open_journal(settings, lambda: clock.now()) as journal:
+        unfinished = await journal.unfinished()
+        latest = await _latest_utc_s(journal)
+        if latest is not None and latest > clock.now():
+            clock = ScaledClock(latest, settings.time_factor)
+        hangar, simulated = Hangar(settings), None
+        if settings.vehicle_url is None:
+            simulated = await hangar.enter(bool(unfinished))
+        url = simulated.url if simulated is not None else settings.vehicle_url or ""
+        vehicle = PatientVehicle(lambda: MavsdkVehicle(url, clock), clock, url)
+        hub = Hub(journal.read, clock.now)
+        receiver = EmitterAroundHome(vehicle, clock, settings.seed)
+        missions = MissionService(
+            Equipment(
+                vehicle=vehicle,
+                receiver=receiver,
+                finder=SparseDirectionFinder(),
+                pattern=load_pattern(SMALL_YAGI),
+                journal=journal,
+                publisher=hub,
+                clock=clock,
+                software=VERSION,
+                database=lambda: journal.report().state,
+            )
+        )
+        try:
+            await missions.start_up()
+            await warming
+            services = Services(missions=missions, journal=journal, hub=hub, settings=settings, now=clock.now)
+            yield services, receiver
+        finally:
+            await asyncio.gather(warming, return_exceptions=True)
+            await missions.shut_down()
+            if simulated is not None:
+                await hangar.leave(simulated)
