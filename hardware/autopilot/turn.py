@@ -8,14 +8,14 @@ from collections.abc import Callable
 from hardware.autopilot.commander import Commander, Manoeuvre
 from hardware.autopilot.dialect import Dialect, TurnMethod
 from hardware.autopilot.messages import CONDITION_YAW, Outgoing, command_long, reposition
-from hardware.autopilot.patience import Deadline, News
+from hardware.autopilot.patience import News
 from hardware.autopilot.snapshot import Snapshot
 from hardware.autopilot.turning import FULL_CIRCLE, TOLERANCE, TurnProgress, next_target, step_size
 from hardware.ports import Clock
 from hardware.readings import GeoPoint
 
 STUCK_S = 6.0
-"""Seconds without at least STUCK_DEG of turning after which a way of turning has failed."""
+"""Seconds (of the headings seen) without at least STUCK_DEG of turning after which a way of turning has failed."""
 STUCK_DEG = 4.0
 LEG_DEG = 90.0
 _NUDGE_DEG = 9e-6  # one metre of latitude
@@ -31,7 +31,7 @@ class TurnManoeuvre:
         clock: Clock,
         snapshot: Snapshot,
         news: News,
-        go_on: Callable[[Manoeuvre], bool],
+        go_on: Callable[[Manoeuvre], None],
         dialect: Dialect,
         rate_deg_s: float,
     ) -> None:
@@ -55,9 +55,9 @@ class TurnManoeuvre:
             return False
         progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
         began, sent = self._clock.now(), 0.0
-        stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), 0.0
+        progress_at, progress_deg = seen_at, 0.0
         while not progress.done:
-            heard = self._go_on(self._manoeuvre)
+            self._go_on(self._manoeuvre)
             target = self._target(method, self._clock.now() - began, progress.turned_deg, sent)
             if target - sent > 1.0:
                 await self._order(self._step(method, progress, target, place, altitude_amsl_m), "the turn")
@@ -65,9 +65,9 @@ class TurnManoeuvre:
             await self._news.wait()
             for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
                 self.turned_deg, seen_at = progress.see(sample.heading_deg), sample.at_s
-            if not heard or progress.turned_deg > stuck_from + STUCK_DEG:
-                stuck, stuck_from = Deadline(self._clock, STUCK_S, 1.5), progress.turned_deg
-            elif stuck.passed:
+            if progress.turned_deg > progress_deg + STUCK_DEG:
+                progress_at, progress_deg = seen_at, progress.turned_deg
+            elif seen_at - progress_at > STUCK_S:
                 return False
         return True
 

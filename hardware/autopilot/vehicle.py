@@ -74,7 +74,7 @@ class MavsdkVehicle:
         self._connected = False
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
-        self._watch: asyncio.Task[None] | None = None
+        self._tasks: list[asyncio.Task[None]] = []
 
     # -- life ------------------------------------------------------------------------------------------------------
 
@@ -108,15 +108,17 @@ class MavsdkVehicle:
         first = Deadline(self._clock, 5.0, 3.0)
         while self._snapshot.position is None and not first.passed:
             await self._news.wait()
-        self._watch = asyncio.create_task(self._watch_link(), name="vehicle-link-watch")
+        self._tasks = [
+            asyncio.create_task(self._watch_link(), name="vehicle-link-watch"),
+            asyncio.create_task(self._keep_streams(), name="vehicle-streams"),
+        ]
 
     async def close(self) -> None:
         """Idempotent. The vehicle goes on with what it was told."""
-        if self._watch is not None:
-            self._watch.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await self._watch
-            self._watch = None
+        tasks, self._tasks = self._tasks, []
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
         self._connected = False
         await self._link.close()
         self._announcer.end()
@@ -127,8 +129,15 @@ class MavsdkVehicle:
                 log.info("the autopilot does not stream MAVLink message %d", message_id)
         await self._commander.ask(request_message(HOME_POSITION_ID))
 
+    async def _keep_streams(self) -> None:
+        """Ask for the telemetry rates again when they have ceased: an autopilot that rebooted forgot them."""
+        while True:
+            await asyncio.sleep(1.0)
+            attitude = self._snapshot.attitude_heard_at_s
+            if self._connected and (attitude is None or self._clock.now() - attitude > LINK_LOST_S):
+                await self._request_streams()
+
     async def _watch_link(self) -> None:
-        asked = Deadline(self._clock, 5.0, 3.0)
         while True:
             await asyncio.sleep(0.1)
             silent = self._clock.now() - (self._snapshot.heard_at_s or -math.inf)
@@ -142,11 +151,6 @@ class MavsdkVehicle:
                 outage = self._clock.now() - (self._lost_at_s or self._clock.now())
                 self._announce(f"vehicle link restored after {outage:.1f} s")
                 self._news.tell()
-            attitude = self._snapshot.attitude_heard_at_s
-            stale = attitude is None or self._clock.now() - attitude > LINK_LOST_S
-            if self._connected and stale and asked.passed:
-                await self._request_streams()
-                asked = Deadline(self._clock, 5.0, 3.0)
 
     # -- what is heard ---------------------------------------------------------------------------------------------
 
@@ -278,14 +282,13 @@ class MavsdkVehicle:
         self._commander.check(manoeuvre)
         return manoeuvre
 
-    def _go_on(self, manoeuvre: Manoeuvre) -> bool:
-        """Whether the vehicle is heard now. Raises when the manoeuvre may not go on, or it was silent for too long."""
+    def _go_on(self, manoeuvre: Manoeuvre) -> None:
+        """Raises when the manoeuvre may not go on, or its vehicle has been silent for too long."""
         self._commander.check(manoeuvre)
         silent = self._clock.now() - (self._snapshot.heard_at_s or -math.inf)
         silent_wall = time.monotonic() - self._heard_wall
         if not self._connected and silent > GIVE_UP_LINK_S and silent_wall > GIVE_UP_LINK_WALL_S:
             raise VehicleUnreachable(f"{manoeuvre.name}: nothing heard from the vehicle for {silent:.0f} s.")
-        return self._connected
 
     async def _until(self, manoeuvre: Manoeuvre, deadline: Deadline, happened: Callable[[], bool]) -> bool:
         """True once it happened, False when the deadline passed."""
@@ -456,25 +459,26 @@ class MavsdkVehicle:
         return distance_m(here, place), abs(altitude_amsl_m - amsl)
 
     async def _arrive(self, manoeuvre: Manoeuvre, place: GeoPoint, altitude_amsl_m: float, deadline: Deadline) -> bool:
-        """True when arrived and settled; False when no progress was seen for STUCK_S, or the deadline passed."""
-        nearest = sum(self._distance(place, altitude_amsl_m))
-        stuck = Deadline(self._clock, STUCK_S, 2.0)
+        """True when arrived and settled; False when no progress was seen for STUCK_S, or the deadline passed.
+
+        Both are measured in the time of the positions seen, so that a silent link is no lack of progress.
+        """
+        nearest, progress_at = sum(self._distance(place, altitude_amsl_m)), self._snapshot.position_at_s or 0.0
         settled_since: float | None = None
         while not deadline.passed:
             self._go_on(manoeuvre)
             distance, climb = self._distance(place, altitude_amsl_m)
-            speed, now = self._snapshot.speed_m_s, self._clock.now()
+            speed, seen_at = self._snapshot.speed_m_s, self._snapshot.position_at_s or 0.0
             inside = distance < ARRIVED_M and climb < ARRIVED_M
-            if inside and speed is not None and speed < SETTLED_M_S and self._connected:
-                settled_since = now if settled_since is None else settled_since
-                if now - settled_since >= SETTLED_FOR_S:
+            if inside and speed is not None and speed < SETTLED_M_S:
+                settled_since = seen_at if settled_since is None else settled_since
+                if seen_at - settled_since >= SETTLED_FOR_S:
                     return True
             else:
                 settled_since = None
-            if inside or not self._connected or distance + climb < nearest - 1.0:
-                nearest = min(nearest, distance + climb)
-                stuck = Deadline(self._clock, STUCK_S, 2.0)
-            if stuck.passed:
+            if inside or distance + climb < nearest - 1.0:
+                nearest, progress_at = min(nearest, distance + climb), seen_at
+            if seen_at - progress_at > STUCK_S:
                 return False
             await self._news.wait()
         return False

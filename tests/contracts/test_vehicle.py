@@ -13,6 +13,7 @@ import os
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import pytest
 
@@ -140,7 +141,7 @@ async def test_the_snapshot_says_where_and_how_the_vehicle_is(rig: Rig) -> None:
     since = rig.clock.now() - 1.5
     headings = rig.vehicle.headings(since)
     assert len(headings) >= 10
-    assert all(since <= a.at_s < b.at_s <= rig.clock.now() for a, b in zip(headings, headings[1:], strict=False))
+    assert all(since <= a.at_s < b.at_s <= rig.clock.now() for a, b in pairwise(headings))
 
 
 async def test_a_ready_vehicle_passes_its_checklist_and_each_bad_failsafe_refuses_with_a_remedy(rig: Rig) -> None:
@@ -175,7 +176,7 @@ async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: 
     await vehicle.turn(30.0)
     took = rig.clock.now() - began
     headings = [sample.heading_deg for sample in vehicle.headings(began)]
-    turned = sum(math.remainder(b - a, 360.0) for a, b in zip(headings, headings[1:], strict=False))
+    turned = sum(math.remainder(b - a, 360.0) for a, b in pairwise(headings))
     assert turned >= 350.0
     assert {int(heading // 20) for heading in headings} == set(range(18))
     assert 8.0 < took < 30.0
@@ -351,7 +352,7 @@ async def test_a_refusal_reaches_the_caller_in_words(rig: Rig) -> None:
     await rig.airborne()
     await rig.sim.order("fault", kind="refuse", count=1)
 
-    with pytest.raises(VehicleError, match="refused.*denied"):
+    with pytest.raises(VehicleError, match=r"refused.*denied"):
         await rig.vehicle.goto(rig.place(0.0, 20.0), rig.amsl(), 5.0)
 
 
