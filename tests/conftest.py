@@ -1,4 +1,4 @@
-"""Fixtures for every room: a temporary PostgreSQL where its programs are installed."""
+"""Fixtures for every room: a temporary PostgreSQL where its programs are installed, a journal on either database."""
 
 from __future__ import annotations
 
@@ -7,16 +7,24 @@ import glob
 import os
 import pwd
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from uuid import uuid4
 
 import asyncpg
+import psutil
 import pytest
+
+from backend.settings import Settings
+from backend.store.engine import make_engine, migrate
+from backend.store.journal import SqlJournal
+from backend.store.spool import Spool
 
 
 class PostgresCluster:
@@ -29,20 +37,21 @@ class PostgresCluster:
             self.port = free.getsockname()[1]
         self.process: subprocess.Popen[bytes] | None = None
 
-    def _as_user(self, *command: str) -> list[str]:
-        return ["runuser", "-u", self.user, "--", *command] if self.user else list(command)
+    def _run(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
+        command = [str(self.programs / program), "-D", str(self.folder / "data"), *arguments]
+        as_user = {"user": self.user, "group": pwd.getpwnam(self.user).pw_gid, "extra_groups": []} if self.user else {}
+        return subprocess.Popen(command, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **as_user)
 
     def create(self) -> None:
-        initdb = self._as_user(str(self.programs / "initdb"), "-D", str(self.folder / "data"), "-U", "crossfix")
         options = ["--auth=trust", "--no-sync", "--encoding=UTF8", "--locale=C"]
-        subprocess.run([*initdb, *options], check=True, capture_output=True, cwd="/")
+        if self._run("initdb", "-U", "crossfix", *options).wait(timeout=120):
+            raise RuntimeError(f"initdb made no cluster in {self.folder}")
 
     def start(self) -> None:
         options = {"port": self.port, "listen_addresses": "127.0.0.1", "fsync": "off", "shared_buffers": "16MB"}
         options["unix_socket_directories"] = str(self.folder)
         flags = [part for name, value in options.items() for part in ("-c", f"{name}={value}")]
-        command = self._as_user(str(self.programs / "postgres"), "-D", str(self.folder / "data"), *flags)
-        self.process = subprocess.Popen(command, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = self._run("postgres", *flags)
         deadline = time.monotonic() + 30
         while True:
             try:
@@ -53,15 +62,26 @@ class PostgresCluster:
                     raise
                 time.sleep(0.05)
 
-    def _pid(self) -> int:
-        return int((self.folder / "data" / "postmaster.pid").read_text().splitlines()[0])
-
     def stop(self) -> None:
         """At once, as when the machine loses its power."""
         if self.process is not None:
-            os.kill(self._pid(), 3)
+            self.process.send_signal(signal.SIGQUIT)
             self.process.wait(timeout=20)
             self.process = None
+
+    def _all(self) -> list[psutil.Process]:
+        assert self.process is not None
+        postmaster = psutil.Process(self.process.pid)
+        return [postmaster, *postmaster.children(recursive=True)]
+
+    def pause(self) -> None:
+        """As when the machine hangs: connections stay open and nothing answers."""
+        for process in self._all():
+            process.suspend()
+
+    def resume(self) -> None:
+        for process in self._all():
+            process.resume()
 
     async def _ask(self, statement: str) -> None:
         connection = await asyncpg.connect(self.url("postgres"), timeout=5)
@@ -118,3 +138,47 @@ def postgresql_url(request: pytest.FixtureRequest) -> str:
     """An empty PostgreSQL database: CROSSFIX_TEST_POSTGRESQL_URL, or a new one in the temporary cluster."""
     given = os.environ.get("CROSSFIX_TEST_POSTGRESQL_URL")
     return given or request.getfixturevalue("postgres_cluster").new_database()
+
+
+@dataclass
+class JournalBench:
+    """Opens journals on one database and one spool, as restarts of one server do."""
+
+    url: str
+    folder: Path
+    now_s: float = 1_700_000_000.0
+    timeout_s: float = 1.0
+    opened: list[SqlJournal] = field(default_factory=list)
+
+    async def open(self, spool: str = "journal.spool") -> SqlJournal:
+        engine = make_engine(self.url, self.timeout_s)
+        kept = Spool(self.folder / spool, 256 * 1024)
+        journal = SqlJournal(engine, kept, lambda: self.now_s, timeout_s=self.timeout_s)
+        self.opened.append(journal)
+        return journal
+
+    async def close(self) -> None:
+        for journal in self.opened:
+            await journal.close()
+        self.opened.clear()
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """An empty database, with its driver in the URL."""
+    if request.param == "sqlite":
+        return Settings(data_dir=tmp_path).async_database_url
+    return Settings(database_url=request.getfixturevalue("postgresql_url")).async_database_url
+
+
+@pytest.fixture
+async def bench(database_url: str, tmp_path: Path) -> AsyncIterator[JournalBench]:
+    await migrate(database_url)
+    opened = JournalBench(database_url, tmp_path)
+    yield opened
+    await opened.close()
+
+
+@pytest.fixture
+async def journal(bench: JournalBench) -> SqlJournal:
+    return await bench.open()

@@ -14,7 +14,7 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from backend.api.services import Services
 from backend.live.hub import Hub, Viewer
 from backend.live.viewer import ViewerStalled, serve
-from backend.store.journal import JournalUnavailable
+from backend.store.reading import JournalUnavailable
 from backend.version import VERSION
 from backend.wire.messages import Hello
 

@@ -12,7 +12,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
-from backend.store.journal import JournalUnavailable
+from backend.store.reading import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem
 from planner.types import PlannerError
 

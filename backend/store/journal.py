@@ -15,9 +15,10 @@ from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import islice
 from typing import Any, Literal, TypeVar
 
-from sqlalchemy import exc, select, text
+from sqlalchemy import exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, Recorded
@@ -25,19 +26,17 @@ from backend.mission.ports import TrackPoint
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
     Entry,
-    EventRow,
     EventsEntry,
     JournalConflict,
     SweepEntry,
     TrackEntry,
     decode,
-    sweep_columns,
     sweep_entry,
     to_record,
     to_row,
 )
+from backend.store.reading import JournalUnavailable, StoredFacts, why
 from backend.store.spool import Spool, SpoolFull
-from backend.store.tables import events, missions, sweeps, track
 from hardware.readings import Sweep
 
 log = logging.getLogger("crossfix.store")
@@ -46,10 +45,10 @@ T = TypeVar("T")
 
 RETRY_FIRST_S, RETRY_LAST_S = 0.25, 5.0
 PROBE_S = 1.0
+DRAIN_BATCH = 64
 
-
-class JournalUnavailable(RuntimeError):
-    """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
+REFUSED = (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingError)
+"""The database answered, and will never take this entry."""
 
 
 class DatabaseAway(RuntimeError):
@@ -88,6 +87,7 @@ class SqlJournal:
         disk_low_bytes: int = 0,
     ) -> None:
         self._engine = engine
+        self._stored = StoredFacts(engine, 2 * timeout_s)
         self._writer = engine.execution_options(write=True)
         self._spool = spool
         self._now = now
@@ -153,7 +153,7 @@ class SqlJournal:
     async def _known(self, mission_id: str) -> Written:
         """The mission so far: the next sequence number is one more than there are events."""
         if mission_id not in self._written:
-            recorded = await self._read(mission_id)
+            recorded = await self._stored.read(mission_id)
             return Written(recorded, fold(None, recorded) if recorded else None)
         return self._written[mission_id]
 
@@ -161,7 +161,7 @@ class SqlJournal:
         """To the database, or behind what already waits in the spool."""
         if not self._pending and self._fault is None:
             try:
-                await self._write(entry)
+                await self._write([entry])
             except DatabaseAway as error:
                 self._lost(error)
             else:
@@ -173,15 +173,17 @@ class SqlJournal:
         self._pending.append(entry)
         self._wake.set()
 
-    async def _write(self, entry: Entry) -> None:
+    async def _write(self, entries: Sequence[Entry]) -> None:
+        """All in one transaction. Raises DatabaseAway, and what `REFUSED` names."""
         began = time.monotonic()
         try:
             async with asyncio.timeout(self._timeout_s), self._writer.begin() as connection:
-                await entry.write(connection)
-        except (exc.IntegrityError, exc.DataError, exc.ProgrammingError):
+                for entry in entries:
+                    await entry.write(connection)
+        except REFUSED:
             raise
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(_why(error)) from error
+            raise DatabaseAway(why(error)) from error
         finally:
             self._took_s = time.monotonic() - began
 
@@ -222,7 +224,7 @@ class SqlJournal:
             async with asyncio.timeout(self._timeout_s), self._engine.connect() as connection:
                 await connection.execute(text("SELECT 1"))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(_why(error)) from error
+            raise DatabaseAway(why(error)) from error
         self._took_s = time.monotonic() - began
 
     async def drain(self) -> None:
@@ -230,15 +232,15 @@ class SqlJournal:
         await self._probe()
         drained = 0
         while self._pending:
-            entry = self._pending[0]
+            batch = list(islice(self._pending, DRAIN_BATCH))
             try:
-                await self._write(entry)
-                drained += 1
-            except (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingError) as error:
-                log.error("the database refuses a spooled entry, it is kept aside: %s", error)
-                await asyncio.to_thread(self._spool.keep_aside, entry.encode())
-                self._refused += 1
-            self._pending.popleft()
+                await self._write(batch)
+            except REFUSED:
+                del batch[1:]
+                await self._write_or_keep_aside(batch[0])
+            drained += len(batch)
+            for _ in batch:
+                self._pending.popleft()
         async with self._lock:
             if not self._pending:
                 await asyncio.to_thread(self._spool.clear)
@@ -246,6 +248,14 @@ class SqlJournal:
                     log.warning("database back, %d spooled entries stored", drained)
                 self._fault = None
                 self._forget_ended()
+
+    async def _write_or_keep_aside(self, entry: Entry) -> None:
+        try:
+            await self._write([entry])
+        except REFUSED as error:
+            log.error("the database refuses a spooled entry, it is kept aside: %s", error)
+            await asyncio.to_thread(self._spool.keep_aside, entry.encode())
+            self._refused += 1
 
     def _forget_ended(self) -> None:
         """Memory holds missions in flight only; an ended one is read from the database again."""
@@ -273,72 +283,36 @@ class SqlJournal:
         self._spool.close()
         await self._engine.dispose()
 
-    # Reading
+    # Reading: missions in flight from memory, the rest from the database
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
         """Events with seq > after, in order; none for an unknown mission. Raises JournalUnavailable."""
         if mission_id in self._written:
             return self._written[mission_id].recorded[after:]
-        return await self._read(mission_id, after)
-
-    async def _read(self, mission_id: str, after: int = 0, kinds: Iterable[str] | None = None) -> list[Recorded]:
-        query = (
-            select(events.c.seq, events.c.at_us, events.c.kind, events.c.body)
-            .where(events.c.mission_id == mission_id, events.c.seq > after)
-            .order_by(events.c.seq)
-        )
-        if kinds is not None:
-            query = query.where(events.c.kind.in_(list(kinds)))
-        rows = await self._fetch(query)
-        return [to_record(mission_id, EventRow(*row)) for row in rows]
+        return await self._stored.read(mission_id, after)
 
     async def read_kinds(self, mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
         """The events of some kinds only."""
         wanted = set(kinds)
         if mission_id in self._written:
             return [record for record in self._written[mission_id].recorded if record.event.kind in wanted]
-        return await self._read(mission_id, kinds=wanted)
-
-    async def unfinished(self) -> list[str]:
-        started = missions.c.started_at_us.is_not(None) & missions.c.ended_at_us.is_(None)
-        return [row[0] for row in await self._fetch(select(missions.c.mission_id).where(started))]
-
-    async def missions(self) -> list[MissionDigest]:
-        """All missions, newest first."""
-        rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
-        return [MissionDigest(**row._mapping) for row in rows]
+        return await self._stored.read(mission_id, kinds=wanted)
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
         if mission_id in self._written:
             return self._written[mission_id].digest
-        rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
-        return MissionDigest(**rows[0]._mapping) if rows else None
+        return await self._stored.mission(mission_id)
+
+    async def missions(self) -> list[MissionDigest]:
+        """All missions, newest first."""
+        return await self._stored.missions()
+
+    async def unfinished(self) -> list[str]:
+        """Missions that were started and have not ended, oldest start first."""
+        return await self._stored.unfinished()
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
-        columns = [sweeps.c[name] for name in sweep_columns()]
-        rows = await self._fetch(
-            select(*columns).where(sweeps.c.mission_id == mission_id, sweeps.c.sweep_id == sweep_id)
-        )
-        return SweepEntry(**rows[0]._mapping) if rows else None
+        return await self._stored.sweep(mission_id, sweep_id)
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
-        rows = await self._fetch(
-            select(*[column for column in track.c if column.name != "mission_id"])
-            .where(track.c.mission_id == mission_id)
-            .order_by(track.c.at_us)
-        )
-        return [TrackPoint(row[0] / 1e6, *row[1:]) for row in rows]
-
-    async def _fetch(self, query) -> list:
-        try:
-            async with asyncio.timeout(2 * self._timeout_s), self._engine.connect() as connection:
-                return list(await connection.execute(query))
-        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise JournalUnavailable(f"The database does not answer: {_why(error)}.") from error
-
-
-def _why(error: BaseException) -> str:
-    if isinstance(error, TimeoutError | exc.TimeoutError):
-        return "no answer in time"
-    cause = error.orig if isinstance(error, exc.DBAPIError) and error.orig else error
-    return str(cause).splitlines()[0] if str(cause) else type(cause).__name__
+        return await self._stored.track(mission_id)

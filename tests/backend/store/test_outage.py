@@ -1,0 +1,287 @@
+"""The database goes away in flight: nothing waits long, nothing is lost, everything is stored exactly once."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import sqlite3
+import subprocess
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sqlalchemy import make_url
+
+from backend.events import HoldOrdered, MissionDrafted, MissionStarted
+from backend.mission.ports import TrackPoint
+from backend.settings import Settings
+from backend.spec import MissionSpec, Place, Polygon
+from backend.store.engine import migrate
+from backend.store.journal import SqlJournal
+from backend.store.opening import DatabaseUnusable, open_journal
+from backend.store.reading import JournalUnavailable
+from hardware.readings import GeoPoint, Sweep
+
+SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
+DRAFT = MissionDrafted(spec=SPEC)
+STARTED = MissionStarted(by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0")
+SWEEP = Sweep(np.arange(3.0), np.arange(3.0), np.arange(3.0), 868e6, GeoPoint(50.6, 7.2), 140.0)
+
+
+def hold(n: int) -> HoldOrdered:
+    return HoldOrdered(by="operator", reason=str(n))
+
+
+@asynccontextmanager
+async def watched(journal: SqlJournal) -> AsyncIterator[None]:
+    task = asyncio.create_task(journal.run())
+    yield
+    task.cancel()
+    with suppress(asyncio.CancelledError):
+        await task
+
+
+async def until(journal: SqlJournal, state: str) -> None:
+    async with asyncio.timeout(30):
+        while journal.report().state != state:  # noqa: ASYNC110 (the report is polled by its users too)
+            await asyncio.sleep(0.02)
+
+
+class Flight:
+    """Writes what a flight writes, and knows what was acknowledged."""
+
+    def __init__(self, journal: SqlJournal) -> None:
+        self.journal = journal
+        self.count = 0
+
+    async def begin(self) -> None:
+        await self.journal.append("m", [DRAFT, STARTED])
+
+    async def go_on(self, steps: int) -> None:
+        for _ in range(steps):
+            n = self.count
+            await self.journal.append("m", [hold(n)])
+            await self.journal.save_sweep("m", f"s{n}", 1, 1, SWEEP)
+            point = TrackPoint(1.7e9 + n, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)
+            await self.journal.save_track("m", [point])
+            self.count += 1
+
+    async def check(self, stored: SqlJournal) -> None:
+        read = await stored.read("m")
+        assert [record.seq for record in read] == list(range(1, self.count + 3))
+        assert [record.event.reason for record in read[2:]] == [str(n) for n in range(self.count)]
+        assert len(await stored.track("m")) == self.count
+        for n in range(self.count):
+            assert await stored.sweep("m", f"s{n}") is not None
+
+
+@pytest.fixture
+def outage(request: pytest.FixtureRequest, bench):
+    """Takes the database away in the way the parameter names, and brings it back."""
+    return request.param(bench, request)
+
+
+class Locked:
+    """SQLite: another program holds the file for writing."""
+
+    stops_reading = False
+
+    def __init__(self, bench, _request) -> None:
+        self.path = make_url(bench.url).database
+
+    def begin(self) -> None:
+        self.other = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
+        self.other.execute("BEGIN EXCLUSIVE")
+
+    def end(self) -> None:
+        self.other.execute("ROLLBACK")
+        self.other.close()
+
+
+class Stopped:
+    """PostgreSQL: its machine lost its power."""
+
+    stops_reading = True
+
+    def __init__(self, _bench, request) -> None:
+        self.cluster = request.getfixturevalue("postgres_cluster")
+
+    def begin(self) -> None:
+        self.cluster.stop()
+
+    def end(self) -> None:
+        self.cluster.start()
+
+
+class Hanging(Stopped):
+    """PostgreSQL: connections stay, nothing answers."""
+
+    def begin(self) -> None:
+        self.cluster.pause()
+
+    def end(self) -> None:
+        self.cluster.resume()
+
+
+@pytest.mark.skipif("CROSSFIX_TEST_POSTGRESQL_URL" in os.environ, reason="a given PostgreSQL is not ours to stop")
+@pytest.mark.parametrize(
+    ("database_url", "outage"),
+    [("sqlite", Locked), ("postgresql", Stopped), ("postgresql", Hanging)],
+    indirect=True,
+    ids=["locked", "stopped", "hanging"],
+)
+async def test_flight_goes_on_while_the_database_is_away(bench, outage):
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    async with watched(journal):
+        for _ in range(2):
+            await flight.go_on(3)
+            await asyncio.to_thread(outage.begin)
+            try:
+                await flight.go_on(4)
+                assert journal.report().state == "lost"
+                assert journal.report().detail
+                assert journal.report().spooled == 12
+                assert len(await journal.read("m")) == flight.count + 2
+                if outage.stops_reading:
+                    with pytest.raises(JournalUnavailable):
+                        await journal.read("another")
+            finally:
+                await asyncio.to_thread(outage.end)
+            await until(journal, "ok")
+        await flight.go_on(2)
+    await flight.check(await bench.open("other.spool"))
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_a_server_killed_in_the_outage_drains_the_spool_at_its_next_start(bench, tmp_path):
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    outage = Locked(bench, None)
+    outage.begin()
+    await flight.go_on(3)
+    outage.end()
+    await bench.close()
+    async with open_journal(Settings(data_dir=tmp_path, database_url=bench.url), lambda: 0.0) as again:
+        assert again.report().spooled == 0
+        await flight.check(again)
+        assert (await again.append("m", [hold(99)]))[0].seq == flight.count + 3
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_an_entry_the_database_refuses_is_kept_aside_and_blocks_nothing(bench, tmp_path):
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    outage = Locked(bench, None)
+    outage.begin()
+    await journal.save_track("no such mission", [TrackPoint(1.7e9, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)])
+    await flight.go_on(1)
+    outage.end()
+    async with watched(journal):
+        await until(journal, "ok")
+    assert journal.report().refused == 1
+    assert "no such mission" in (tmp_path / "journal.refused").read_text()
+    await flight.check(journal)
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path):
+    """A file system of 2 MB of its own."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", folder], capture_output=True)
+    if mounted.returncode:
+        pytest.skip("a small file system cannot be mounted here: " + mounted.stderr.decode().strip())
+    yield folder
+    subprocess.run(["umount", "-l", folder], check=True)
+
+
+async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
+    settings = Settings(data_dir=small_disk, spool_reserve_bytes=256 * 1024, disk_low_bytes=0)
+    async with open_journal(settings, lambda: 1.7e9) as journal:
+        flight = Flight(journal)
+        await flight.begin()
+        filler = small_disk / "filler"
+        with suppress(OSError), filler.open("wb", buffering=0) as file:
+            while True:
+                file.write(bytes(4096))
+        await flight.go_on(60)
+        assert journal.report().state == "lost"
+        assert "full" in journal.report().detail
+        with pytest.raises(JournalUnavailable, match="the disk is full"):
+            await flight.go_on(1000)
+        filler.unlink()
+        await until(journal, "ok")
+        filled = flight.count
+    async with open_journal(settings, lambda: 1.7e9) as journal:
+        read = await journal.read("m")
+        assert [record.seq for record in read] == list(range(1, len(read) + 1))
+        assert filled <= len(read) - 2 <= filled + 1
+    assert sqlite3.connect(small_disk / "crossfix.sqlite").execute("PRAGMA integrity_check").fetchall() == [("ok",)]
+
+
+async def test_a_disk_that_fills_up_is_told_before_it_is_full(tmp_path):
+    async with open_journal(Settings(data_dir=tmp_path, disk_low_bytes=2**60), lambda: 1.7e9) as journal:
+        await until(journal, "slow")
+        assert "left on the disk" in journal.report().detail
+
+
+WRITER = """
+import asyncio, sys
+from pathlib import Path
+from backend.events import HoldOrdered
+from backend.settings import Settings
+from backend.store.opening import open_journal
+
+async def main(folder, url):
+    async with open_journal(Settings(data_dir=Path(folder), database_url=url), lambda: 1.7e9) as journal:
+        while True:
+            (record,) = await journal.append("m", [HoldOrdered(by="operator", reason="r")])
+            print(record.seq, flush=True)
+
+asyncio.run(main(*sys.argv[1:]))
+"""
+
+
+async def test_what_was_acknowledged_survives_kill_9(bench, tmp_path):
+    journal = await bench.open("first.spool")
+    await journal.append("m", [DRAFT, STARTED])
+    await bench.close()
+    wait = random.Random(7)
+    acknowledged = 2
+    for _ in range(3):
+        writer = await asyncio.create_subprocess_exec(
+            sys.executable, "-c", WRITER, tmp_path, bench.url, stdout=subprocess.PIPE
+        )
+        acknowledged = int(await writer.stdout.readline())
+        await asyncio.sleep(wait.uniform(0.0, 0.2))
+        writer.kill()
+        rest = (await writer.stdout.read()).split()
+        await writer.wait()
+        acknowledged = int(rest[-1]) if rest else acknowledged
+        stored = await (await bench.open("check.spool")).read("m")
+        await bench.close()
+        assert [record.seq for record in stored] == list(range(1, len(stored) + 1))
+        assert acknowledged <= len(stored) <= acknowledged + 1
+
+
+async def test_migrating_again_changes_nothing(bench):
+    journal = await bench.open()
+    written = await journal.append("m", [DRAFT])
+    await migrate(bench.url)
+    await migrate(bench.url)
+    assert await (await bench.open("other.spool")).read("m") == written
+
+
+@pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "sqlite:////proc/none/x.sqlite"])
+async def test_a_database_that_cannot_be_used_is_named_with_what_to_try(tmp_path, url):
+    with pytest.raises(DatabaseUnusable, match="CROSSFIX_DATABASE_URL"):
+        async with open_journal(Settings(data_dir=tmp_path, database_url=url), lambda: 0.0):
+            pass
