@@ -40,10 +40,12 @@ def gaussian_likelihood(error: FloatArray, sigma: float) -> FloatArray:
 def hard_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> FloatArray:
     """Likelihood at cell centres (x, y), zero outside the +-4 sigma wedge widened by `margin` m.
 
-    A cell that the wedge touches although its centre lies outside keeps the likelihood of the wedge's edge.
+    A cell that the wedge touches although its centre lies outside keeps the likelihood of the wedge's edge, as does the
+    one in whose centre the sensor stands.
     """
     half = WEDGE_SIGMAS * bearing.sigma
     error = np.minimum(np.abs(wrap(expected_bearing(bearing.x, bearing.y, x, y) - bearing.angle)), half)
+    error = np.where((x == bearing.x) & (y == bearing.y), half, error)
     return np.where(inside_wedge(bearing, x, y, margin), gaussian_likelihood(error, bearing.sigma), 0.0)
 
 

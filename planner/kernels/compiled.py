@@ -39,6 +39,7 @@ from planner.kernels.reference import (
     DEEPEST_DOUBLING,
     HISTOGRAM_BINS,
     HISTOGRAM_SHIFT,
+    LIGHT,
     MEDIAN_STEPS,
     NEARLY,
 )
@@ -48,26 +49,30 @@ from planner.types import FloatArray
 _jit = njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
 _INDEX_MASK = (1 << TIE_BITS) - 1
 _BLOCK = 128
+_PAD = 16
 _ALIGN = 1e-9
 
 
 class _Workspace(NamedTuple):
     """Scratch of one call. weight: (2, n), used in turn, as are offset, low, high: (2, r) and hull: (2, v, 2).
 
-    along, across: (n,) m, cell centres in the bearing's frame. histogram: (b,). gain, clearance: (l,) of the places.
-    chain: (4 r, 2) corners of the 95 % cells' rows.
+    first, first_offset: the starting belief without the cells outside low..high. along, across: (n,) m, cell centres in
+    the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (l,) of the places. chain: (4 r, 2) corners.
+    Arrays of cells have _PAD cells more, because whole blocks are written and the next row overwrites the excess.
     """
 
+    first: FloatArray
+    first_offset: NDArray[np.int64]
     weight: FloatArray
     along: FloatArray
     across: FloatArray
+    ramp: FloatArray
     offset: NDArray[np.int64]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
     hull: FloatArray
     histogram: FloatArray
     gain: FloatArray
-    clearance: FloatArray
     chain: FloatArray
 
 
@@ -81,34 +86,100 @@ def _bits(typingctx, value):
     return types.int64(types.float64), codegen
 
 
+def _lanes(context, builder, array_type, array, index):
+    """Pointer to _PAD neighbouring doubles of an array, as one LLVM vector."""
+    data = context.make_array(array_type)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [index]), ir.VectorType(ir.DoubleType(), _PAD).as_pointer())
+
+
+@intrinsic
+def _store_ramp(typingctx, target, index, start, step):
+    """target[index + i] = start + i * step for a whole block."""
+
+    def codegen(context, builder, signature, arguments):
+        lanes = ir.VectorType(ir.DoubleType(), _PAD)
+        spread = ir.Constant(ir.VectorType(ir.IntType(32), _PAD), [0] * _PAD)
+
+        def everywhere(value):
+            single = builder.insert_element(ir.Constant(lanes, ir.Undefined), value, ir.IntType(32)(0))
+            return builder.shuffle_vector(single, ir.Constant(lanes, ir.Undefined), spread)
+
+        counts = ir.Constant(lanes, [float(i) for i in range(_PAD)])
+        values = builder.fadd(everywhere(arguments[2]), builder.fmul(everywhere(arguments[3]), counts))
+        builder.store(values, _lanes(context, builder, signature.args[0], arguments[0], arguments[1]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(target, types.int64, types.float64, types.float64), codegen
+
+
+@intrinsic
+def _copy_block(typingctx, target, index, source, begin):
+    """target[index + i] = source[begin + i] for a whole block."""
+
+    def codegen(context, builder, signature, arguments):
+        values = builder.load(_lanes(context, builder, signature.args[2], arguments[2], arguments[3]), align=8)
+        builder.store(values, _lanes(context, builder, signature.args[0], arguments[0], arguments[1]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(target, types.int64, source, types.int64), codegen
+
+
+@intrinsic
+def _copy_doubled_block(typingctx, target, index, source, begin):
+    """target[index + i] = source[begin + i // 2] for a whole block."""
+
+    def codegen(context, builder, signature, arguments):
+        lanes = ir.VectorType(ir.DoubleType(), _PAD)
+        values = builder.load(_lanes(context, builder, signature.args[2], arguments[2], arguments[3]), align=8)
+        twice = ir.Constant(ir.VectorType(ir.IntType(32), _PAD), [i // 2 for i in range(_PAD)])
+        values = builder.shuffle_vector(values, ir.Constant(lanes, ir.Undefined), twice)
+        builder.store(values, _lanes(context, builder, signature.args[0], arguments[0], arguments[1]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(target, types.int64, source, types.int64), codegen
+
+
 @_jit
 def rollouts(start: Start, rules: Rules, actions: Actions, paths: Paths, tasks: Tasks, out: Outcomes) -> None:
     """Run every task and fill `out`; see reference.rollouts."""
+    work = _workspace(start, rules)
+    filled = 0
+    heaviest = 0.0
+    for j in range(start.density.shape[0]):
+        work.first_offset[j] = filled
+        for i in range(start.low[j], start.high[j]):
+            work.first[filled] = start.density[j, i]
+            heaviest = max(heaviest, work.first[filled])
+            filled += 1
+    for t in range(len(tasks.action)):
+        _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], heaviest, work, out, t)
+
+
+@_jit
+def _workspace(start, rules):
     ny, nx = start.density.shape
     rows = max(ny, 2 * COARSE_CELLS)
-    cells = max(ny * nx, 4 * COARSE_CELLS * COARSE_CELLS)
-    places = max(len(rules.places), rules.grid_x * rules.grid_y)
-    work = _Workspace(
+    cells = max(ny * nx, 4 * COARSE_CELLS * COARSE_CELLS) + _PAD
+    columns = max(nx, 2 * COARSE_CELLS) + _PAD
+    return _Workspace(
+        np.empty(cells),
+        np.empty(rows, np.int64),
         np.empty((2, cells)),
         np.empty(cells),
         np.empty(cells),
+        np.arange(columns).astype(np.float64),
         np.empty((2, rows), np.int64),
         np.empty((2, rows), np.int64),
         np.empty((2, rows), np.int64),
         np.empty((2, len(start.hull) + 2 * rules.horizon + 2, 2)),
         np.empty(HISTOGRAM_BINS),
-        np.empty(places),
-        np.empty(places),
-        np.empty((4 * rows + 4, 2)),
+        np.empty(max(len(rules.places), rules.grid_x * rules.grid_y)),
+        np.empty((4 * rows + len(start.hull) + 2 * rules.horizon + 4, 2)),
     )
-    offset = start.low + nx * np.arange(ny)
-    density = start.density.reshape(-1)
-    for t in range(len(tasks.action)):
-        _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], density, offset, work, out, t)
 
 
 @_jit
-def _rollout(start, rules, actions, paths, action, path, density, offset, work, out, t):
+def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, out, t):
     tx, ty = paths.targets[path, 0], paths.targets[path, 1]
     px, py = actions.places[action, 0], actions.places[action, 1]
     heading, lattice, cost = actions.headings[action], actions.lattice[action], actions.costs[action]
@@ -123,12 +194,13 @@ def _rollout(start, rules, actions, paths, action, path, density, offset, work, 
         before, now = now, 1 - now
         if step == 0:
             x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb = _measure(
-                density, offset, start.low, start.high, start.hull, corners,
-                x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now,
+                work.first, work.first_offset, start.low, start.high, start.hull, LIGHT * heaviest_weight,
+                corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now,
             )  # fmt: skip
         else:
             x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb = _measure(
                 work.weight[before], work.offset[before], work.low[before], work.high[before], work.hull[before],
+                LIGHT * work.weight[before, heaviest],
                 corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now,
             )  # fmt: skip
         bearings += 1
@@ -142,8 +214,9 @@ def _rollout(start, rules, actions, paths, action, path, density, offset, work, 
         vaa = (maa - 2.0 * ea * ma) / m0 + ea * ea  # (3.34), about the estimate, in the bearing's frame
         vab = (mab - ea * mb - eb * ma) / m0 + ea * eb
         vbb = (mbb - 2.0 * eb * mb) / m0 + eb * eb
-        localized = _localized(weight, along, across, cells, ea, eb, vaa + vbb, m0, rules.threshold, h * (nx + ny))
         ex, ey = px + c * ea - s * eb, py + s * ea + c * eb
+        reach = np.hypot(max(ex - x0, x0 + nx * h - ex), max(ey - y0, y0 + ny * h - ey))
+        localized = _localized(weight, along, across, cells, ea, eb, vaa + vbb, m0, rules.threshold, reach)
         xx = c * c * vaa - 2.0 * c * s * vab + s * s * vbb
         xy = c * s * (vaa - vbb) + (c * c - s * s) * vab
         yy = s * s * vaa + 2.0 * c * s * vab + c * c * vbb
@@ -171,7 +244,9 @@ def _rollout(start, rules, actions, paths, action, path, density, offset, work, 
 
 
 @_jit
-def _measure(weight, offset, low, high, hull, corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now):
+def _measure(
+    weight, offset, low, high, hull, light, corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now
+):
     """Clip, crop, multiply. Returns the new geometry (x0, y0, h, nx, ny, corners, doubled), the number of live cells,
     the heaviest of them, and the moments m0, ma, mb, maa, mab, mbb in the bearing's frame.
     """
@@ -195,11 +270,10 @@ def _measure(weight, offset, low, high, hull, corners, x0, y0, h, nx, ny, double
                 break
             k += 1
         cells = _gather(
-            weight, offset, low, high, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
+            weight, offset, low, high, light, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
         )
-        m0, ma, mb, maa, mab, mbb, heaviest = _weigh(
-            work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge
-        )
+        _weigh(work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell)
+        m0, ma, mb, maa, mab, mbb, heaviest = _moments(work.weight[now], work.along, work.across, cells)
         if m0 > 0.0:
             doubled = max(i1 - i0, j1 - j0) < COARSE_CELLS
             x0, y0 = x0 + i0 * cell, y0 + j0 * cell
@@ -245,57 +319,87 @@ def _aligned_range(low, high, h, n):
 
 
 @_jit
-def _gather(weight, offset, low, high, x0, y0, h, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now):
+def _gather(weight, offset, low, high, light, x0, y0, h, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now):
     """Copy the live cells of rows j0..j1, columns i0..i1 that the widened wedge touches; h and the indices are those of
-    the grid doubled k times. Returns how many.
+    the grid doubled k times. The light ends of rows are left out. Returns how many cells there are.
     """
-    target, along, across = work.weight[now], work.along, work.across
-    new_offset, new_low, new_high = work.offset[now], work.low[now], work.high[now]
-    left = x0 + i0 * h - px
-    margin = -h / np.sqrt(2.0)
-    width = i1 - i0
-    step_a, step_b = c * h, -s * h
+    target = work.weight[now]
+    left, bottom = x0 + i0 * h - px, y0 + (j0 + 0.5) * h - py
+    r_way, r_start, r_slope = _crossing(rx, ry, left, bottom, h)
+    l_way, l_start, l_slope = _crossing(lx, ly, left, bottom, h)
+    c_way, c_start, c_slope = _crossing(c, s, left, bottom, h)
     n = 0
     for j in range(j0, j1):
         row = j >> k
-        dy = y0 + j0 * h + (j - j0 + 0.5) * h - py
-        a, b = _narrowed(0, width, rx, margin - ry * dy, left, h)
-        a, b = _narrowed(a, b, lx, margin - ly * dy, left, h)
-        a, b = _narrowed(a, b, c, margin - s * dy, left, h)
-        a = max(a, (low[row] << k) - i0)
-        b = min(b, (high[row] << k) - i0)
+        up = float(j - j0)
+        a, b = _narrowed(0, i1 - i0, r_way, r_start + r_slope * up)
+        a, b = _narrowed(a, b, l_way, l_start + l_slope * up)
+        a, b = _narrowed(a, b, c_way, c_start + c_slope * up)
+        first, last, base = low[row], high[row], offset[row] - low[row]
+        first, last = max(first, (a + i0) >> k), min(last, ((b + i0 - 1) >> k) + 1)
+        while first < last and weight[base + first] < light:
+            first += 1
+        while first < last and weight[base + last - 1] < light:
+            last -= 1
+        a, b = max(a, (first << k) - i0), min(b, (last << k) - i0)
         count = max(b - a, 0)
-        new_offset[j - j0], new_low[j - j0], new_high[j - j0] = n, a, a + count
+        work.offset[now, j - j0], work.low[now, j - j0], work.high[now, j - j0] = n, a, a + count
         if count == 0:
             continue
-        dx = left + (a + 0.5) * h
-        a0, b0 = c * dx + s * dy, c * dy - s * dx
-        row_a, row_b, row_w = along[n : n + count], across[n : n + count], target[n : n + count]
-        for i in range(count):
-            row_a[i] = a0 + step_a * i
-            row_b[i] = b0 + step_b * i
-        first = offset[row] - low[row]
-        if k == 0:
-            source = weight[first + a + i0 : first + a + i0 + count]
-            for i in range(count):
-                row_w[i] = source[i]
-        else:
-            for i in range(count):
-                row_w[i] = weight[first + ((a + i + i0) >> k)]
+        dx, dy = left + (a + 0.5) * h, bottom + up * h
+        _place_cells(work.along, work.across, n, count, c * dx + s * dy, c * dy - s * dx, c * h, -s * h)
+        _copy_cells(weight, target, base, a + i0, n, count, k)
         n += count
     return n
 
 
 @_jit
-def _narrowed(a, b, normal, reach, left, h):
-    """Columns a..b whose centre has normal * dx >= reach, dx = left + (i + 0.5) h."""
-    if normal > NEARLY:
-        edge = np.ceil((reach / normal - left) / h - 0.5 - NEARLY)
+def _place_cells(along, across, n, count, a0, b0, step_a, step_b):
+    """Coordinates of `count` cells of one row, in whole blocks."""
+    for first in range(0, count, _PAD):
+        _store_ramp(along, n + first, a0 + step_a * first, step_a)
+        _store_ramp(across, n + first, b0 + step_b * first, step_b)
+
+
+@_jit
+def _copy_cells(weight, target, base, column, n, count, k):
+    """Weights of `count` cells of one row from `column` of the grid doubled k times, in whole blocks where it pays."""
+    if k == 0:
+        for first in range(0, count, _PAD):
+            _copy_block(target, n + first, weight, base + column + first)
+    elif k == 1:
+        odd = column & 1
+        target[n] = weight[base + (column >> 1)]
+        for first in range(odd, count, _PAD):
+            _copy_doubled_block(target, n + first, weight, base + ((column + first) >> 1))
+    else:
+        for i in range(count):
+            target[n + i] = weight[base + ((column + i) >> k)]
+
+
+@_jit
+def _crossing(nx, ny, left, bottom, h):
+    """Where a side of the widened wedge, nx dx + ny dy >= -h / sqrt(2), crosses the rows of cell centres.
+
+    Returns the way it opens (1 east, -1 west, 0 along the rows) and the column of row 0 and its slope; for a side along
+    the rows what is left of the margin, in cells.
+    """
+    reach = -h / np.sqrt(2.0) - ny * bottom
+    if abs(nx) <= NEARLY:
+        return 0, NEARLY - reach / h, ny
+    return 1 if nx > 0.0 else -1, (reach / nx - left) / h - 0.5, -ny / nx
+
+
+@_jit
+def _narrowed(a, b, way, column):
+    """The columns of a..b on the inner side of a wedge's side that crosses the row at `column`."""
+    if way > 0:
+        edge = np.ceil(column - NEARLY)
         return (max(a, int(edge)), b) if edge < b else (b, b)
-    if normal < -NEARLY:
-        edge = np.floor((reach / normal - left) / h - 0.5 + NEARLY) + 1.0
+    if way < 0:
+        edge = np.floor(column + NEARLY) + 1.0
         return (a, min(b, int(edge))) if edge > a else (a, a)
-    return (a, b) if reach <= NEARLY * h else (a, a)
+    return (a, b) if column >= 0.0 else (a, a)
 
 
 @_jit
@@ -315,25 +419,29 @@ def _copy(weight, offset, low, high, x0, y0, h, ny, px, py, c, s, work, now):
 
 
 @_jit
-def _weigh(weight, along, across, cells, likelihood, edge):
-    """Multiply the likelihood in; moments m0, ma, mb, maa, mab, mbb and the index of the heaviest cell."""
-    p0, p1, p2, p3 = likelihood[0], likelihood[1], likelihood[2], likelihood[3]
-    p4, p5, p6 = likelihood[4], likelihood[5], likelihood[6]
-    m0 = ma = mb = maa = mab = mbb = 0.0
-    top = np.int64(0)
-    w_, a_, b_ = weight[:cells], along[:cells], across[:cells]
+def _weigh(weight, along, across, cells, likelihood, edge, ahead):
+    """Multiply the likelihood L = p(sin^2 e)^8 in; beyond 4 sigma and less than `ahead` m ahead that of the edge."""
+    p0, p1, p2, p3, p4, p5 = likelihood[0], likelihood[1], likelihood[2], likelihood[3], likelihood[4], likelihood[5]
     for i in range(cells):
-        a, b = a_[i], b_[i]
+        a, b = along[i], across[i]
         b2 = b * b
         sin2 = b2 / (a * a + b2)
-        sin2 = sin2 if a > 0.0 else 1.0
+        sin2 = sin2 if a > ahead else 1.0
         u = sin2 if sin2 < edge else edge
-        root = p0 + u * (p1 + u * (p2 + u * (p3 + u * (p4 + u * (p5 + u * p6)))))
+        u2 = u * u
+        root = (p0 + u * p1) + u2 * ((p2 + u * p3) + u2 * (p4 + u * p5))
         root = root * root
         root = root * root
-        root = root * root
-        w = w_[i] * (root * root)
-        w_[i] = w
+        weight[i] *= root * root
+
+
+@_jit
+def _moments(weight, along, across, cells):
+    """Moments m0, ma, mb, maa, mab, mbb and the index of the heaviest cell, the first of equal ones."""
+    m0 = ma = mb = maa = mab = mbb = 0.0
+    top = np.int64(0)
+    for i in range(cells):
+        a, b, w = along[i], across[i], weight[i]
         wa, wb = w * a, w * b
         m0 += w
         ma += wa
@@ -343,23 +451,6 @@ def _weigh(weight, along, across, cells, likelihood, edge):
         mbb += wb * b
         key = (_bits(w) & ~_INDEX_MASK) | (_INDEX_MASK - i)
         top = key if key > top else top
-    return m0, ma, mb, maa, mab, mbb, _INDEX_MASK - (top & _INDEX_MASK)
-
-
-@_jit
-def _moments(weight, along, across, cells):
-    """As `_weigh` without a likelihood."""
-    m0 = ma = mb = maa = mab = mbb = 0.0
-    top = np.int64(0)
-    for i in range(cells):
-        a, b, w = along[i], across[i], weight[i]
-        m0 += w
-        ma += w * a
-        mb += w * b
-        maa += w * a * a
-        mab += w * a * b
-        mbb += w * b * b
-        top = max(top, (_bits(w) & ~_INDEX_MASK) | (_INDEX_MASK - i))
     return m0, ma, mb, maa, mab, mbb, _INDEX_MASK - (top & _INDEX_MASK)
 
 
@@ -428,52 +519,61 @@ def _ellipse(ex, ey, xx, xy, yy, px, py, ratios, distances):
 
 @_jit
 def _fisher(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0, y0, h, nx, ny):
-    """See reference.fisher_action. Distances to C95 are only measured for places that would win otherwise."""
+    """See reference.fisher_action. Places are held against C95 only as far as the answer needs it."""
     fixed = len(rules.places) > 0
     left, bottom, step_x, step_y = _action_grid(rules, x0, y0, h, nx, ny)
     n = len(rules.places) if fixed else rules.grid_x * rules.grid_y
-    constrained = rules.standoff > 0.0
-    corners, around = 0, 0.0
-    if constrained:
-        corners = _confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny)
-        for v in range(corners):
-            around = max(around, np.hypot(work.chain[v, 0] - ex, work.chain[v, 1] - ey))
-    gain, clearance = work.gain, work.clearance
-    surely_clear = 0
-    for k in range(n):
-        qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
-        x, y = ex - qx, ey - qy
-        r2 = max(x * x + y * y, h * h)
-        gain[k] = (xx * y * y - 2.0 * xy * x * y + yy * x * x) / (r2 * r2)
-        clearance[k] = -1.0
-        if np.sqrt(x * x + y * y) - around >= rules.standoff:
-            surely_clear += 1
-    needed = rules.standoff
-    if constrained and surely_clear < 2:
-        first = second = -1.0
+    gain = work.gain
+    if fixed:
         for k in range(n):
-            qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
-            clearance[k] = _distance_to_hull(work.chain, corners, qx, qy)
-            if clearance[k] > first:
-                first, second = clearance[k], first
-            elif clearance[k] > second:
-                second = clearance[k]
-        needed = min(needed, second if n > 1 else first)
-    needed -= NEARLY * rules.standoff
+            gain[k] = _gain(ex - rules.places[k, 0], ey - rules.places[k, 1], xx, xy, yy, h)
+    else:
+        for row in range(rules.grid_y):
+            y = ey - (bottom + (row + 0.5) * step_y)
+            some = gain[row * rules.grid_x : (row + 1) * rules.grid_x]
+            for column in range(rules.grid_x):
+                some[column] = _gain(ex - (left + (work.ramp[column] + 0.5) * step_x), y, xx, xy, yy, h)
+    corners, needed = 0, -1.0
+    if rules.standoff > 0.0:
+        corners = _confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny)
+        needed = _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, work.chain, corners)
+    outside = _distance_to_hull(work.chain, corners, ex, ey) if corners > 0 else 0.0
     best, best_gain = 0, -np.inf
     for k in range(n):
         if gain[k] > best_gain:
             qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
-            if not constrained or _clear(work, corners, k, qx, qy) >= needed:
+            if corners == 0 or _clear(work.chain, corners, qx, qy, needed, np.hypot(qx - ex, qy - ey) + outside):
                 best, best_gain = k, gain[k]
     for k in range(best):
         if gain[k] >= best_gain * (1.0 - NEARLY):
             qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
-            if not constrained or _clear(work, corners, k, qx, qy) >= needed:
+            if corners == 0 or _clear(work.chain, corners, qx, qy, needed, np.inf):
                 best = k
                 break
     qx, qy = _place(rules, fixed, best, left, bottom, step_x, step_y)
     return qx, qy, best if fixed else -1
+
+
+@_jit
+def _gain(x, y, xx, xy, yy, nearest):
+    r2 = max(x * x + y * y, nearest * nearest)
+    return (xx * y * y - 2.0 * xy * x * y + yy * x * x) / (r2 * r2)
+
+
+@_jit
+def _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, corners):
+    """r_min, or what it shrinks to so that two places are left (6.1)."""
+    first = second = -1.0
+    for k in range(n):
+        qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
+        clearance = _distance_to_hull(hull, corners, qx, qy)
+        if clearance > first:
+            first, second = clearance, first
+        elif clearance > second:
+            second = clearance
+        if second >= rules.standoff:
+            break
+    return min(rules.standoff, second if n > 1 else first) - NEARLY * rules.standoff
 
 
 @_jit
@@ -495,10 +595,15 @@ def _place(rules, fixed, k, left, bottom, step_x, step_y):
 
 
 @_jit
-def _clear(work, corners, k, qx, qy):
-    if work.clearance[k] < 0.0:
-        work.clearance[k] = _distance_to_hull(work.chain, corners, qx, qy)
-    return work.clearance[k]
+def _clear(hull, corners, x, y, needed, at_most):
+    """Whether (x, y) is at least `needed` m away from the hull, of which a point is at most `at_most` m away."""
+    if at_most < needed:
+        return False
+    for v in range(corners):
+        dx, dy = hull[v, 0] - x, hull[v, 1] - y
+        if dx * dx + dy * dy < needed * needed and needed > 0.0:
+            return False
+    return _distance_to_hull(hull, corners, x, y) >= needed
 
 
 @_jit

@@ -18,9 +18,10 @@ MAP, EXPECTED_VALUE, GEOMETRIC_MEDIAN = 0, 1, 2
 ELLIPSE, FISHER = 0, 1
 LINEAR, FULL = 0, 1
 
-LIKELIHOOD_DEGREE = 6
+LIKELIHOOD_DEGREE = 5
+LIKELIHOOD_POWER = 8
 WIDEST_SIGMA = np.deg2rad(15.0)
-"""Rollouts assume at most this noise: the likelihood's polynomial is good to 2e-4 there, to 3e-9 below 7 deg."""
+"""Rollouts assume at most this noise: the likelihood's polynomial is good to 3e-4 there, to 1e-5 below 12 deg."""
 
 CLOSED_FEATURES = 10
 """A rollout's end: platform x, y, estimate x, y, covariance xx, xy, yy, expected RMSE, bearings, localized (0 or 1).
@@ -50,7 +51,7 @@ class Start(NamedTuple):
 class Rules(NamedTuple):
     """The problem as numbers.
 
-    likelihood: (7,) coefficients of p in L = p(sin^2 e)^16, lowest first. edge: sin^2 of 4 sigma. threshold: m.
+    likelihood: (6,) coefficients of p in L = p(sin^2 e)^8, lowest first. edge: sin^2 of 4 sigma. threshold: m.
     motion: LINEAR or FULL. standoff: m, of a Fisher action to C95. places: (l, 2) m, the fixed lattice; with none the
     grid_x x grid_y cells of the tripled belief rectangle are used, cut with window (x_min, y_min, x_max, y_max).
     travel: (l, l) m between places, or (0, 0) for straight lines. ratios, distances: (n,) the ellipse policy's table.
@@ -120,14 +121,14 @@ def outcomes(tasks: int) -> Outcomes:
 
 
 def likelihood_polynomial(sigma: float) -> tuple[FloatArray, float]:
-    """Coefficients (7,) of p with exp(-e^2 / (2 sigma^2)) = p(sin^2 e)^16 for |e| <= 4 sigma, and sin^2 of 4 sigma.
+    """Coefficients (6,) of p with exp(-e^2 / (2 sigma^2)) = p(sin^2 e)^8 for |e| <= 4 sigma, and sin^2 of 4 sigma.
 
-    The sixteenth root is nearly straight, so that a low degree fits it; four squarings bring the likelihood back.
+    The eighth root is nearly straight, so that a low degree fits it; three squarings bring the likelihood back.
     """
     edge = float(np.sin(WEDGE_SIGMAS * sigma) ** 2)
     nodes = np.cos(np.pi * (np.arange(64) + 0.5) / 64)
     error = np.arcsin(np.sqrt(0.5 * (nodes + 1.0) * edge))
-    fitted = chebyshev.chebfit(nodes, np.exp(-(error**2) / (32.0 * sigma**2)), LIKELIHOOD_DEGREE)
+    fitted = chebyshev.chebfit(nodes, np.exp(-(error**2) / (2.0 * LIKELIHOOD_POWER * sigma**2)), LIKELIHOOD_DEGREE)
     in_nodes = np.polynomial.Polynomial(chebyshev.cheb2poly(fitted))
     coefficients = in_nodes(np.polynomial.Polynomial([-1.0, 2.0 / edge])).coef
     return np.resize(coefficients, LIKELIHOOD_DEGREE + 1), edge

@@ -23,6 +23,7 @@ from planner.kernels.model import (
     EXPECTED_VALUE,
     FULL,
     GEOMETRIC_MEDIAN,
+    LIKELIHOOD_POWER,
     Actions,
     Outcomes,
     Paths,
@@ -40,6 +41,8 @@ HISTOGRAM_SHIFT = 48
 HISTOGRAM_BINS = 512
 MEDIAN_STEPS = 20
 DEEPEST_DOUBLING = 12
+LIGHT = 1e-6
+"""The ends of a row lighter than this share of the heaviest cell are left out of the next update."""
 
 
 class Belief(NamedTuple):
@@ -125,7 +128,8 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
     columns = np.arange(nx)
     touched = (columns >= low[:, None]) & (columns < high[:, None])
     dx = x0 + (columns + 0.5) * h - place[0]
-    weight = np.where(touched, weight * likelihood(rules, dx[None, :], dy[:, None], angle), 0.0)
+    weight = without_light_ends(np.where(touched, weight, 0.0), LIGHT * belief.weight.max())
+    weight = weight * likelihood(rules, dx[None, :], dy[:, None], angle, NEARLY * h)
     if not weight.sum() > 0:
         return unchanged
     return Belief(weight, x0, y0, h, hull, belief.bearings + 1, doubled=max(nx, ny) < COARSE_CELLS)
@@ -149,6 +153,14 @@ def _cropped(belief: Belief, hull: FloatArray) -> tuple[FloatArray, float, float
     return belief.weight[np.ix_(rows, columns)], belief.x0 + i0 * h, belief.y0 + j0 * h, h
 
 
+def without_light_ends(weight: FloatArray, light: float) -> FloatArray:
+    """(ny, nx) with zeros before the first and after the last cell of each row that weighs at least `light`."""
+    heavy = weight >= light
+    begun = np.logical_or.accumulate(heavy, axis=1)
+    not_over = np.logical_or.accumulate(heavy[:, ::-1], axis=1)[:, ::-1]
+    return np.where(begun & not_over, weight, 0.0)
+
+
 def _narrowed(
     low: FloatArray, high: FloatArray, normal: FloatArray, dy: FloatArray, left: float, h: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -161,13 +173,16 @@ def _narrowed(
     return low, np.where(reach <= NEARLY * h, high, 0.0)
 
 
-def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float) -> FloatArray:
-    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing; beyond 4 sigma that of the edge."""
+def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, ahead: float) -> FloatArray:
+    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing.
+
+    Beyond 4 sigma, and for places less than `ahead` m ahead of the sensor, that of the wedge's edge.
+    """
     along = np.cos(angle) * dx + np.sin(angle) * dy
     across = np.cos(angle) * dy - np.sin(angle) * dx
     length2 = along**2 + across**2
-    sin2 = np.where(along > 0, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
-    return np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood) ** 16
+    sin2 = np.where(along > ahead, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
+    return np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood) ** LIKELIHOOD_POWER
 
 
 def estimate(belief: Belief, estimator: int, flat: bool) -> Look:

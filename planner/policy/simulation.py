@@ -47,9 +47,6 @@ TerminalValue = Callable[[FloatArray], FloatArray]
 HORIZON = 24
 """Bearings after which a rollout is given up."""
 
-NEGLIGIBLE_WEIGHT = 1e-13
-"""Cells lighter than this share of the heaviest are left out of rollouts."""
-
 UNKNOWN_TURN = np.pi / 2
 """Turn before the first flight when the heading is not known: the mean of all."""
 
@@ -138,7 +135,7 @@ def simulate(
 
 def start_of(belief: GridBelief) -> Start:
     """The belief as kernel arrays, each row cut to the columns that carry weight."""
-    live = belief.density > NEGLIGIBLE_WEIGHT * belief.density.max()
+    live = belief.density >= reference.LIGHT * belief.density.max()
     low = np.where(live.any(axis=1), live.argmax(axis=1), 0)
     high = np.where(live.any(axis=1), belief.nx - live[:, ::-1].argmax(axis=1), 0)
     return Start(
