@@ -81,6 +81,12 @@ class EmitterAroundHome:
         if self._receiver is not None:
             await self._receiver.close()
 
+    def silence(self, silent: bool) -> None:
+        """Stop or resume delivering samples, as a hung driver would. Raises ReceiverError before the first opening."""
+        if self._receiver is None:
+            raise ReceiverError("the receiver is not open")
+        self._receiver.silence(silent)
+
     async def samples(self) -> AsyncIterator[PowerSample]:
         if self._receiver is None:
             raise ReceiverError("the receiver is not open")

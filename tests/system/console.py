@@ -1,0 +1,121 @@
+"""A console without a browser: REST for commands, the websocket for what happens; and the simulated pilot."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import httpx
+import websockets
+
+from hardware.sim.autopilot.launch import SimulatedAutopilot, find_simulated
+
+Event = dict[str, Any]
+
+
+class Console:
+    """What one websocket told, in order, by type; `events` are the recorded ones with their numbers."""
+
+    def __init__(self, url: str, client: httpx.AsyncClient) -> None:
+        self.url = url
+        self.client = client
+        self.mission_id = ""
+        self.events: list[Event] = []
+        self.messages: dict[str, list[Event]] = {}
+        self.frames: list[bytes] = []
+        self._news = asyncio.Event()
+        self._watching: asyncio.Task[None] | None = None
+
+    async def draft(self, **changes: dict[str, Any]) -> str:
+        """The suggested mission; `changes`: parts of the specification, merged."""
+        spec = (await self.client.get("/api/defaults")).json()["spec"]
+        for part, values in changes.items():
+            spec[part] = spec[part] | values
+        answer = await self.client.post("/api/missions", json=spec)
+        assert answer.status_code == 201, answer.text
+        self.mission_id = answer.json()["mission_id"]
+        return self.mission_id
+
+    async def ready(self, wall_s: float = 30.0) -> None:
+        """Preflight passes (a vehicle that was just switched on needs some seconds)."""
+        checked: Event = {}
+        async with asyncio.timeout(wall_s):
+            while not checked.get("passed"):
+                checked = (await self.client.post(f"/api/missions/{self.mission_id}/preflight")).json()
+                await asyncio.sleep(0.2)
+
+    async def order(self, kind: str, **content: Any) -> Event:
+        body = {"command_id": str(uuid4()), "command": {"kind": kind, **content}}
+        answer = await self.client.post(f"/api/missions/{self.mission_id}/commands", json=body)
+        assert answer.status_code == 200, answer.text
+        return answer.json()
+
+    async def watch(self) -> None:
+        """Open the websocket and keep what it says."""
+        address = f"{self.url.replace('http', 'ws', 1)}/api/live?mission={self.mission_id}&after=0"
+        socket = await websockets.connect(address, max_size=None)
+        self._watching = asyncio.create_task(self._read(socket))
+
+    async def _read(self, socket: websockets.ClientConnection) -> None:
+        async with socket:
+            async for message in socket:
+                if isinstance(message, bytes):
+                    self.frames.append(message)
+                else:
+                    told = json.loads(message)
+                    self.messages.setdefault(told["type"], []).append(told)
+                    if told["type"] == "event":
+                        self.events.append(told["recorded"])
+                self._news.set()
+
+    async def until(self, happened: Callable[[], bool], wall_s: float = 60.0) -> None:
+        try:
+            async with asyncio.timeout(wall_s):
+                while not happened():
+                    self._news.clear()
+                    await self._news.wait()
+        except TimeoutError:
+            told = [(e["event"].get("after"), e["event"].get("reason")) for e in self.of("phase_changed")]
+            raise AssertionError(f"it did not happen in time; phases so far: {told}") from None
+
+    async def until_phase(self, phase: str, wall_s: float = 60.0) -> None:
+        await self.until(lambda: self.phases[-1:] == [phase], wall_s)
+
+    async def until_event(self, kind: str, count: int = 1, wall_s: float = 60.0) -> Event:
+        await self.until(lambda: len(self.of(kind)) >= count, wall_s)
+        return self.of(kind)[count - 1]["event"]
+
+    def of(self, kind: str) -> list[Event]:
+        return [e for e in self.events if e["event"]["kind"] == kind]
+
+    @property
+    def phases(self) -> list[str]:
+        return [e["event"]["after"] for e in self.of("phase_changed")]
+
+    async def close(self) -> None:
+        if self._watching is not None:
+            self._watching.cancel()
+            await asyncio.gather(self._watching, return_exceptions=True)
+
+
+@asynccontextmanager
+async def console(url: str) -> AsyncIterator[Console]:
+    async with httpx.AsyncClient(base_url=url, timeout=60.0) as client:
+        made = Console(url, client)
+        try:
+            yield made
+        finally:
+            await made.close()
+
+
+async def simulated_vehicle(data_dir: Path) -> SimulatedAutopilot:
+    """The one that the server on this data directory flies, to order its pilot and its faults."""
+    kept = json.loads((data_dir / "simulated_vehicle.json").read_text())
+    found = await find_simulated(kept["connect_port"], kept["control_port"])
+    assert found is not None
+    return found
