@@ -22,7 +22,8 @@ class Airframe:
     drag_power: float = 0.25  # W per (m/s)^3 of airspeed
     idle_power: float = 8.0
     capacity: float = 89.0
-    gust_response: float = 0.12  # m/s^2 that one m/s of gust pushes before the controller answers
+    velocity_time: float = 0.4  # s, time constant of the velocity controller
+    gust_response: float = 0.3  # m/s^2 of push from one m/s of gust
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +140,8 @@ class Copter:
             climb = min(math.sqrt(1.4 * self.airframe.climb_acceleration * abs(d_u)), 0.9 * abs(d_u))
             want_u = min(climb, demand.climb) if d_u >= 0 else -min(climb, demand.descend)
         push = self.airframe.gust_response
-        a_n, a_e = want_n - self.v_north, want_e - self.v_east
+        share = min(1.0, dt / self.airframe.velocity_time)
+        a_n, a_e = (want_n - self.v_north) * share, (want_e - self.v_east) * share
         size, most = math.sqrt(a_n * a_n + a_e * a_e), self.airframe.acceleration * dt
         if size > most:
             a_n, a_e = a_n * most / size, a_e * most / size
