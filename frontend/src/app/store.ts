@@ -142,6 +142,20 @@ export const flying = computed<{ id: string; phase: Phase } | null>(() => {
   return null;
 });
 
+/** The server's clock now, ms UTC: a simulated mission's clock runs faster than this page's. */
+export const serverNowMs = computed<number>(() => {
+  const { telemetry, status, hello } = live.value;
+  const newest = [telemetry, status].filter((r) => r !== null).toSorted((a, b) => b.atMs - a.atMs)[0];
+  if (!newest) return Date.now() + 0 * nowMs.value;
+  return Date.parse(newest.value.at_utc) + (nowMs.value - newest.atMs) * (hello?.time_factor ?? 1);
+});
+
+/** The moment shown: of the review, of the mission's end, or now. */
+export const shownTimeMs = computed<number>(() => {
+  const ended = mission.value.ended;
+  return reviewTimeMs.value ?? (ended ? Date.parse(ended.at) : serverNowMs.value);
+});
+
 /** Newest-wins messages are folded at most once a frame; events and link changes at once. */
 let pending: SourceMessage[] = [];
 let scheduled = false;

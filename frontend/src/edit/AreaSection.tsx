@@ -183,11 +183,12 @@ export function AreaSection({ failed, told, onTold, onFile }: Properties) {
         </p>
       ))}
       <div class="area-row">
-        <span data-testid="area-size" data-has={now.hasArea}>
+        <span data-testid="area-size" data-has={now.hasArea} data-suggested={now.suggested}>
           <strong>{t("edit.area")}:</strong>{" "}
           {now.hasArea
             ? t("edit.area.have", { area: formatArea(areaM2(now.spec.area as Area), units), corners: cornerCount(now.spec.area as Area) })
             : t("edit.area.none")}
+          {now.suggested && <span class="muted"> {t("edit.area.suggested")}</span>}
         </span>
         {now.hasArea && (
           <button type="button" data-testid="area-clear" onClick={() => remove("area")}>

@@ -8,6 +8,8 @@ export interface Draft {
   key: string;
   spec: MissionSpec;
   hasArea: boolean;
+  /** The area is the server's suggestion: the first one drawn takes its place. */
+  suggested: boolean;
   /** Raw text of fields whose text is not (yet) a number or a place, by path. */
   text: Record<string, string>;
 }

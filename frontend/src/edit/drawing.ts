@@ -17,8 +17,8 @@ export function add(kind: What, polygons: readonly Rings[]): void {
   if (!now || polygons.length === 0) return;
   const { area, flight } = now.spec;
   if (kind === "area") {
-    const joined = areaOf(now.hasArea ? [...polygonsOf(area), ...polygons] : polygons)!;
-    update({ ...now, hasArea: true, spec: { ...now.spec, area: joined } });
+    const joined = areaOf(now.hasArea && !now.suggested ? [...polygonsOf(area), ...polygons] : polygons)!;
+    update({ ...now, hasArea: true, suggested: false, spec: { ...now.spec, area: joined } });
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {
@@ -30,7 +30,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
 export function remove(kind: What, index = 0): void {
   const now = draft.peek();
   if (!now) return;
-  if (kind === "area") update({ ...now, hasArea: false });
+  if (kind === "area") update({ ...now, hasArea: false, suggested: false });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", null) });
   else update({ ...now, spec: set(now.spec, "flight.no_fly", now.spec.flight.no_fly.filter((_, i) => i !== index)) });
 }
@@ -40,7 +40,7 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   const now = draft.peek();
   const joined = areaOf(polygons);
   if (!now || !joined) return;
-  if (kind === "area") update({ ...now, spec: { ...now.spec, area: joined } });
+  if (kind === "area") update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
   else update({ ...now, spec: set(now.spec, "flight.no_fly", polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings }))) });
 }

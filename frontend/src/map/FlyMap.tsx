@@ -16,7 +16,7 @@ import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { beliefPixels, imageCorners } from "./beliefImage";
 import { createMap, fit, gridStepM } from "./createMap";
-import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, pathFeatures, planFeatures, roseFeatures, type Features } from "./features";
+import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, flightPoints, pathFeatures, planFeatures, roseFeatures, type Features } from "./features";
 import { hover, watchHover } from "./hover";
 import { missionLayers, SOURCES, SWITCHES, type SourceName, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
@@ -174,7 +174,7 @@ function frameAll(map: GlMap, animate: boolean): void {
   const at = vehicle.peek().at;
   const home = mission.peek().home;
   const points: LonLat[] = [
-    ...(spec ? areaPoints(spec.area) : []),
+    ...(spec ? [...areaPoints(spec.area), ...flightPoints(spec)] : []),
     ...(home ? [lonLat(home)] : []),
     ...(at && inFlight(mission.peek().phase) ? [at] : []),
   ];

@@ -16,15 +16,25 @@ export function cividis(share: number): [number, number, number] {
   return [a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1]), a[2] + f * (b[2] - a[2])];
 }
 
-/** Alpha of a probability relative to the peak: 0 at 0, a tenth of the peak already well visible. */
-export const opacity = (share: number): number => Math.min(1, 2.2 * Math.sqrt(Math.max(0, share))) * 0.85;
+/** Alpha of a probability relative to the peak: 0 at 0, a tenth already well visible. */
+export const opacity = (share: number): number => Math.min(1, 2.2 * Math.max(0, share) ** 0.8) * 0.85;
+
+/** The likeliest cell counts as full only when it stands out: 6 times the grid's mean. */
+const STANDS_OUT = 6;
+
+/** Factor from `cells` (relative to the peak) to the share that is coloured: about a sixth everywhere when nothing is known. */
+export function contrast(cells: Float32Array): number {
+  const sum = cells.reduce((total, cell) => total + cell, 0);
+  return 1 / Math.max(1, (STANDS_OUT * sum) / cells.length);
+}
 
 /** RGBA bytes, row 0 in the north (as pictures are); cells come from the south. */
 export function beliefPixels({ nx, ny, cells }: Pick<BeliefFrame, "nx" | "ny" | "cells">): Uint8ClampedArray<ArrayBuffer> {
   const pixels = new Uint8ClampedArray(4 * nx * ny);
+  const factor = contrast(cells);
   for (let row = 0; row < ny; row++) {
     for (let column = 0; column < nx; column++) {
-      const share = cells[(ny - 1 - row) * nx + column]!;
+      const share = factor * cells[(ny - 1 - row) * nx + column]!;
       if (!(share > 0)) continue;
       const [r, g, b] = cividis(Math.sqrt(share));
       pixels.set([r, g, b, 255 * opacity(share)], 4 * (row * nx + column));

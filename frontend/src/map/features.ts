@@ -2,6 +2,7 @@
 import { rankCandidates, roundShade } from "../state/candidates";
 import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
 import type { MissionState } from "../state/mission";
+import { marginOutline } from "../state/areas";
 import { polarScale, radius } from "../state/polar";
 import type { Area, MissionSpec } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
@@ -31,11 +32,24 @@ export function reachM(spec: MissionSpec | null): number {
   return box ? 1.15 * distanceM([box[0], box[1]], [box[2], box[3]]) : 300;
 }
 
+/** The fence as drawn, or the search area with its margin. */
+function fenceFeatures(spec: MissionSpec): GeoJSON.Feature[] {
+  const { fence, fence_margin_m: margin } = spec.flight;
+  if (fence) return [feature(fence as GeoJSON.Geometry, { what: "fence" })];
+  return marginOutline(spec.area as Area, margin).map((piece) => line(piece, { what: "fence" }));
+}
+
+/** Corners of everything the vehicle may fly in. */
+export function flightPoints(spec: MissionSpec): LonLat[] {
+  const fence = spec.flight.fence as Area | null;
+  return fence ? areaPoints(fence) : marginOutline(spec.area as Area, spec.flight.fence_margin_m).flat();
+}
+
 export function planFeatures(spec: MissionSpec | null): Features {
   if (!spec) return collection([]);
   return collection([
     feature(spec.area as GeoJSON.Geometry, { what: "area" }),
-    ...(spec.flight.fence ? [feature(spec.flight.fence as GeoJSON.Geometry, { what: "fence" })] : []),
+    ...fenceFeatures(spec),
     ...spec.flight.no_fly.map((area) => feature(area as GeoJSON.Geometry, { what: "no_fly" })),
   ]);
 }

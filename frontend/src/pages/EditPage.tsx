@@ -23,10 +23,10 @@ type EditRoute = Extract<Route, { page: "new" | "edit" }>;
 
 const keyOf = (route: EditRoute) => (route.page === "edit" ? route.missionId : "new");
 
-async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; hasArea: boolean }> {
-  if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, hasArea: true };
-  if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, hasArea: true };
-  return { spec: (await api.defaults()).spec as MissionSpec, hasArea: false };
+async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested: boolean }> {
+  if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, suggested: false };
+  if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, suggested: false };
+  return { spec: (await api.defaults()).spec as MissionSpec, suggested: true };
 }
 
 function EditMapArea({ onFile }: { onFile: (file: File) => void }) {
@@ -175,7 +175,7 @@ export function EditPage({ route }: { route: EditRoute }) {
   const load = () => {
     setProblem(null);
     specFor(route).then(
-      ({ spec, hasArea }) => update({ key, spec, hasArea, text: {} }),
+      ({ spec, suggested }) => update({ key, spec, hasArea: true, suggested, text: {} }),
       (error: unknown) => setProblem(asProblem(error)),
     );
   };

@@ -2,7 +2,7 @@
 import { computed } from "@preact/signals";
 import { overlay, toggle } from "../app/overlay";
 import { change, settings } from "../app/settings";
-import { live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { live, mission, shownTimeMs } from "../app/store";
 import { send } from "../commands/send";
 import { t, type MessageKey } from "../i18n";
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
@@ -14,8 +14,7 @@ const open = computed(() => mission.value.alerts.filter(isOpen));
 const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
 
 function AlertRow({ alert }: { alert: Alert }) {
-  nowMs.value;
-  const age = ((reviewTimeMs.value ?? Date.now()) - Date.parse(alert.raisedAt)) / 1000;
+  const age = Math.max(0, (shownTimeMs.value - Date.parse(alert.raisedAt)) / 1000);
   const id = live.value.mission.missionId;
   return (
     <li class={`alert-row ${isOpen(alert) ? alert.level : "past"}`} data-testid="alert-row" data-level={alert.level}>

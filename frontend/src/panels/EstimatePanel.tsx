@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { copyText } from "../app/clipboard";
 import { change, settings } from "../app/settings";
-import { live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { live, mission, reviewTimeMs, shownTimeMs } from "../app/store";
 import { t, type MessageKey } from "../i18n";
 import { remainingTime } from "../state/timeLeft";
 import { formatPlace, type CoordinateFormat } from "../units/coordinates";
@@ -46,11 +46,9 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
 }
 
 function TimeLeft() {
-  nowMs.value;
   const { plan, ended, belief } = mission.value;
   if (!plan || ended || belief?.fact.localized) return null;
-  const factor = live.value.hello?.time_factor ?? 1;
-  const left = remainingTime(plan, reviewTimeMs.value ?? Date.now(), reviewTimeMs.value === null ? factor : 1);
+  const left = remainingTime(plan, shownTimeMs.value);
   if (!left) return null;
   return (
     <div data-testid="time-left" data-seconds={left.meanS}>
@@ -134,7 +132,7 @@ export function EstimatePanel() {
       {fact && !localized && fact.not_yet.length > 0 && (
         <ul class="reasons" data-testid="not-yet">
           {fact.not_yet.map((reason) => (
-            <li key={reason}>{reason}</li>
+            <li key={reason}>{reason.replace(/^not yet: /, "")}</li>
           ))}
         </ul>
       )}

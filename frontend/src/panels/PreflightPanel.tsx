@@ -64,6 +64,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
           </ul>
         </>
       )}
+      <div class="start-foot">
       <div class="start-row">
         <a class="button" href={`#/mission/${encodeURIComponent(missionId)}/edit`} data-testid="edit">
           {t("preflight.edit")}
@@ -82,6 +83,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
           onCancel={() => setSliding(false)}
         />
       )}
+      </div>
     </section>
   );
 }

@@ -1,14 +1,14 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
 import { useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { cursor, events, flying, live, mission, nowMs, reviewTimeMs } from "../app/store";
+import { cursor, events, flying, live, mission, nowMs, shownTimeMs, vehicle } from "../app/store";
 import { missionAddress } from "../app/route";
 import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { sendUrgent, urgent, type Urgent } from "../commands/urgent";
 import { t, type MessageKey } from "../i18n";
 import { ageS, freshness, OLD_AFTER_S, type Freshness } from "../state/age";
-import { stateWords } from "../state/words";
+import { distanceM, lonLat } from "../state/geometry";
+import { reviewWords, stateWords, waitsWords } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
 import { Menu } from "./Menu";
@@ -162,6 +162,14 @@ function controlWords(): string {
   return t(heard.controller === "crossfix" ? "control.crossfix" : "control.nobody");
 }
 
+/** Seconds until the place that is flown to is reached, as the crow flies. */
+function etaS(): number | null {
+  const { plan, spec, phase } = mission.value;
+  const { at, speedMs } = vehicle.value;
+  if (phase !== "flying" || !plan || !at || !spec) return null;
+  return distanceM(at, lonLat(plan.fact.place)) / Math.max(speedMs ?? 0, spec.flight.speed_m_s);
+}
+
 function Words() {
   const now = nowMs.value;
   const { status, link, lastMessageMs, hello } = live.value;
@@ -171,15 +179,12 @@ function Words() {
   const aboutThis = status?.value.mission_id === shown.missionId;
   const reviewed = cursor.value === null ? null : events.value.findLast((e) => e.seq <= cursor.value!);
 
-  let words = shown.missionId ? stateWords(shown) : t("state.none");
-  if (reviewed) words = `${t("state.review", { time: reviewed.at_utc.slice(11, 19) })}: ${words}`;
-  else if (fresh && aboutThis && settings.value.language === "en" && status?.value.doing) words = status.value.doing;
+  const doing = shown.missionId ? stateWords(shown, etaS()) : t(flying.value ? "state.otherFlies" : "state.none");
+  const words = reviewed ? `${reviewWords(reviewed.at_utc)}: ${doing}` : doing;
   const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
 
   const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;
-  const endedMs = shown.ended ? Date.parse(shown.ended.at) : null;
-  const untilMs = reviewTimeMs.value ?? endedMs ?? Date.now();
-  const waits = cursor.value === null && fresh && aboutThis ? status?.value.waits_for : null;
+  const waits = waitsWords(shown) ?? (cursor.value === null && fresh && aboutThis ? status?.value.waits_for : null);
   return (
     <div class="words">
       <div class={`state-words ${lost ? "stale" : ""}`} data-testid="state-words" data-phase={shown.phase} role="status">
@@ -193,7 +198,7 @@ function Words() {
         {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
         {startedMs !== null && (
           <span data-testid="mission-time" title={shown.spec?.name}>
-            {t("state.time", { duration: formatDuration((untilMs - startedMs) / 1000) })}
+            {t("state.time", { duration: formatDuration((shownTimeMs.value - startedMs) / 1000) })}
           </span>
         )}
         {shown.spec && <span class="mission-name">{shown.spec.name}</span>}

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { settings } from "../app/settings";
-import { cursor, events, look, mission } from "../app/store";
+import { cursor, events, live, look, mission } from "../app/store";
 import { t } from "../i18n";
 import { eventWords, isMain, toneOf } from "../state/words";
 import { formatClock, formatLength } from "../units/quantities";
@@ -152,7 +152,7 @@ export function Timeline() {
             look(null);
           }}
         >
-          {t(reviewing ? "timeline.goLive" : mission.value.ended ? "timeline.review" : "timeline.live")}
+          {t(reviewing ? (live.value.mission.ended ? "timeline.toEnd" : "timeline.goLive") : mission.value.ended ? "timeline.review" : "timeline.live")}
         </button>
         <button class="icon" aria-label={t("timeline.previous")} data-testid="step-back" disabled={all.length === 0} onClick={() => stepEvent(-1)}>
           ◂

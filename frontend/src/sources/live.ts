@@ -46,7 +46,7 @@ export class LiveSource implements Source {
   private address(): string {
     const query = new URLSearchParams({ after: String(this.lastSeq) });
     if (this.missionId) query.set("mission", this.missionId);
-    if (this.lite) query.set("lite", "true");
+    if (this.lite) query.set("lite", "1");
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     return `${scheme}://${location.host}/api/live?${query}`;
   }

@@ -2,7 +2,7 @@
 import { parsePlace } from "../units/coordinates";
 import type { Area } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
-import { lonLat, ringAreaM2 } from "./geometry";
+import { lonLat, metresPerDegree, ringAreaM2 } from "./geometry";
 
 /** Rings of one polygon: outline first, then holes; each closed. */
 export type Rings = LonLat[][];
@@ -31,6 +31,62 @@ export function closeRing(points: readonly LonLat[]): LonLat[] {
   const last = points.at(-1);
   if (!first || !last) return [];
   return first[0] === last[0] && first[1] === last[1] ? [...points] : [...points, first];
+}
+
+/** Distance from a point to a ring's edges, m, with the nearest edge's ends given in metres. */
+function distanceToEdges([x, y]: [number, number], edges: readonly [number, number, number, number][]): number {
+  let least = Infinity;
+  for (const [ax, ay, bx, by] of edges) {
+    const [dx, dy] = [bx - ax, by - ay];
+    const along = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+    least = Math.min(least, Math.hypot(x - ax - along * dx, y - ay - along * dy));
+  }
+  return least;
+}
+
+/** The outline of an area with a margin around it, as lines: offset edges and corner arcs that no other edge swallows. */
+export function marginOutline(area: Area, marginM: number): LonLat[][] {
+  const outlines = polygonsOf(area).map(([outline]) => outline ?? []);
+  const origin = outlines[0]?.[0];
+  if (!origin || !(marginM > 0)) return [];
+  const [mx, my] = metresPerDegree(origin[1]);
+  const edges = outlines.flatMap((ring) =>
+    ring.slice(1).map((b, i): [number, number, number, number] => {
+      const a = ring[i]!;
+      return [(a[0] - origin[0]) * mx, (a[1] - origin[1]) * my, (b[0] - origin[0]) * mx, (b[1] - origin[1]) * my];
+    }),
+  );
+  const inside = ([x, y]: [number, number]) =>
+    edges.filter(([ax, ay, bx, by]) => ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)).length % 2 === 1;
+  const free = (p: [number, number]) => distanceToEdges(p, edges) > marginM * 0.999 && !inside(p);
+  const lines: LonLat[][] = [];
+  const keep = (points: [number, number][]) => {
+    let run: LonLat[] = [];
+    for (const p of [...points, null]) {
+      if (p && free(p)) run.push([origin[0] + p[0] / mx, origin[1] + p[1] / my]);
+      else {
+        if (run.length > 1) lines.push(run);
+        run = [];
+      }
+    }
+  };
+  for (const [ax, ay, bx, by] of edges) {
+    const length = Math.hypot(bx - ax, by - ay);
+    if (length === 0) continue;
+    const [nx, ny] = [((by - ay) / length) * marginM, (-(bx - ax) / length) * marginM];
+    const steps = Math.max(8, Math.ceil(length / 5));
+    for (const side of [1, -1]) {
+      keep(Array.from({ length: steps + 1 }, (_, i) => {
+        const s = i / steps;
+        return [ax + s * (bx - ax) + side * nx, ay + s * (by - ay) + side * ny];
+      }));
+    }
+    keep(Array.from({ length: 91 }, (_, i) => {
+      const angle = (i / 90) * 2 * Math.PI;
+      return [ax + marginM * Math.cos(angle), ay + marginM * Math.sin(angle)];
+    }));
+  }
+  return lines;
 }
 
 export interface Unreadable {

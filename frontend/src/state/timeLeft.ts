@@ -8,10 +8,9 @@ export interface TimeLeft {
   worstS: number | null;
 }
 
-/** `factor`: seconds of mission time a second of the clock. */
-export function remainingTime(plan: At<PlanChosen>, timeMs: number, factor: number): TimeLeft | null {
+export function remainingTime(plan: At<PlanChosen>, timeMs: number): TimeLeft | null {
   const { expected_time_s: mean, time_90_s: worst } = plan.fact;
   if (mean === null) return null;
-  const elapsed = Math.max(0, ((timeMs - Date.parse(plan.at)) / 1000) * factor);
+  const elapsed = Math.max(0, (timeMs - Date.parse(plan.at)) / 1000);
   return { meanS: Math.max(0, mean - elapsed), worstS: worst === null ? null : Math.max(0, worst - elapsed) };
 }

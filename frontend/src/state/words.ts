@@ -7,10 +7,14 @@ import type { MissionState } from "./mission";
 export const phaseName = (phase: Phase): string => t(`phase.${phase}` satisfies MessageKey);
 
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
-export function stateWords(mission: MissionState): string {
+export function stateWords(mission: MissionState, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.bearings.length + 1;
   const reason = mission.phaseReason || phaseName(mission.phase);
   switch (mission.phase) {
+    case "flying":
+      return etaS === null
+        ? t("state.flying", { number })
+        : t("state.flyingEta", { number, time: formatDuration(etaS) });
     case "planning":
       return t("state.planning", { number: mission.bearings.length + 1 });
     case "measuring":
@@ -23,7 +27,6 @@ export function stateWords(mission: MissionState): string {
     case "ready":
     case "taking_off":
     case "waiting":
-    case "flying":
     case "hold":
     case "manual":
     case "returning":
@@ -31,6 +34,20 @@ export function stateWords(mission: MissionState): string {
     case "aborted":
     case "failed":
       return t(`state.${mission.phase}` satisfies MessageKey, { number, reason });
+  }
+}
+
+/** What the mission waits for before it goes on; null when it goes on by itself. */
+export function waitsWords(mission: MissionState): string | null {
+  switch (mission.phase) {
+    case "waiting":
+      return t("waits.waiting");
+    case "hold":
+      return t(mission.lost.vehicle ? "waits.vehicle" : "waits.hold");
+    case "manual":
+      return t("waits.manual");
+    default:
+      return null;
   }
 }
 

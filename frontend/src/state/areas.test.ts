@@ -1,0 +1,65 @@
+import { describe, expect, it } from "vitest";
+import { areaM2, areaOf, closeRing, cornerCount, cornersFromText, marginOutline, polygonsOf, type Rings } from "./areas";
+import { circle, destination, distanceM } from "./geometry";
+import type { LonLat } from "../wire/beliefFrame";
+
+const square = (at: LonLat, side: number): LonLat[] => {
+  const east = destination(at, 90, side);
+  return closeRing([at, east, destination(east, 0, side), destination(at, 0, side)]);
+};
+
+it("an area is its polygons, one or many", () => {
+  const one: Rings[] = [[square([7, 50], 100)]];
+  const two: Rings[] = [...one, [square([7.01, 50], 50)]];
+  expect(areaOf([])).toBeNull();
+  expect(areaOf(one)?.type).toBe("Polygon");
+  expect(polygonsOf(areaOf(two)!)).toEqual(two);
+  expect(areaM2(areaOf(two)!)).toBeCloseTo(12_500, -1);
+  expect(cornerCount(areaOf(two)!)).toBe(8);
+});
+
+it("a hole is not searched", () => {
+  const outline = square([7, 50], 100);
+  const hole = square(destination(destination([7, 50], 90, 20), 0, 20), 10);
+  expect(areaM2(areaOf([[outline, hole]])!)).toBeCloseTo(9_900, -1);
+});
+
+describe("the margin around an area", () => {
+  const area = areaOf([[square([7, 50], 200)]])!;
+
+  it("keeps its distance everywhere", () => {
+    const corners = square([7, 50], 200);
+    for (const p of marginOutline(area, 60).flat()) {
+      expect(Math.min(...corners.map((c) => distanceM(c, p)))).toBeGreaterThan(59.9);
+    }
+  });
+
+  it("is as long as the outline and a circle together, for a convex area", () => {
+    const length = marginOutline(area, 60).reduce((sum, l) => sum + l.slice(1).reduce((s, p, i) => s + distanceM(l[i]!, p), 0), 0);
+    expect(length / (4 * 200 + 2 * Math.PI * 60)).toBeCloseTo(1, 1);
+  });
+
+  it("is nothing without a margin", () => {
+    expect(marginOutline(area, 0)).toEqual([]);
+  });
+});
+
+describe("corners that were typed", () => {
+  it("become a closed ring, in any notation", () => {
+    const found = cornersFromText("50.0 N 7.0 E\n\n50.0, 7.01\n50°00′36.0″ N 7°00′36.0″ E\n");
+    expect("ring" in found && found.ring).toEqual([[7, 50], [7.01, 50], [expect.closeTo(7.01), expect.closeTo(50.01)], [7, 50]]); // prettier-ignore
+  });
+
+  it("name the line that is no place", () => {
+    expect(cornersFromText("50 7\nover there\n51 7")).toEqual({ unreadable: { line: 2, text: "over there" } });
+  });
+
+  it("are at least three", () => {
+    expect(cornersFromText("50 7\n51 7")).toEqual({ tooFew: true });
+  });
+});
+
+it("a closed ring stays as it is", () => {
+  const ring = circle([7, 50], 10, 12);
+  expect(closeRing(ring)).toEqual(ring);
+});

@@ -1,0 +1,17 @@
+import { expect, it } from "vitest";
+import { rankCandidates, roundShade, SHADES } from "./candidates";
+import { somePlan } from "./examples";
+
+it("the chosen one comes first, then who stayed longest, then the quickest", () => {
+  expect(rankCandidates(somePlan()).map((r) => r.index)).toEqual([1, 2, 0]);
+  expect(rankCandidates(somePlan())[0]!.chosen).toBe(true);
+});
+
+it("later rounds are stronger, survivors stronger still, the chosen one strongest", () => {
+  const plan = somePlan();
+  const [survivor, second, first] = [plan.candidates[1]!, plan.candidates[2]!, plan.candidates[0]!];
+  const shades = [first, second, survivor].map((c) => roundShade(c, plan, false));
+  expect(shades.toSorted((a, b) => a - b)).toEqual(shades);
+  expect(new Set(shades).size).toBe(3);
+  expect(roundShade(survivor, plan, true)).toBe(SHADES + 1);
+});

@@ -1,0 +1,74 @@
+import { describe, expect, it } from "vitest";
+import { phase, record, someBearing, somePlan, someSpec } from "./examples";
+import { emptyMission, foldMission, inFlight, isOver, missionAt } from "./mission";
+import type { MissionEvent } from "../wire";
+
+const fold = (...events: MissionEvent[]) => missionAt(record(...events), Infinity);
+
+describe("the mission as a fold of its events", () => {
+  it("is the same whether events come once or again after a reconnect", () => {
+    const events = record({ kind: "mission_drafted", spec: someSpec() }, phase("flying"), someBearing());
+    const once = missionAt(events, Infinity);
+    const twice = [...events, ...events].reduce(foldMission, emptyMission);
+    expect(twice).toEqual(once);
+  });
+
+  it("at an earlier event equals the fold of the events up to it", () => {
+    const events = record({ kind: "mission_drafted", spec: someSpec() }, somePlan(), someBearing(), phase("hold", "x"));
+    for (let seq = 0; seq <= events.length; seq++) {
+      expect(missionAt(events, seq)).toEqual(events.slice(0, seq).reduce(foldMission, emptyMission));
+    }
+  });
+
+  it("marks a bearing that was left out, and only that one", () => {
+    const state = fold(
+      someBearing({ bearing_id: "a" }),
+      someBearing({ bearing_id: "b" }),
+      { kind: "bearing_excluded", bearing_id: "a", by: "operator", reason: "" },
+    );
+    expect(state.bearings.map((b) => [b.fact.bearing_id, b.excluded])).toEqual([["a", true], ["b", false]]); // prettier-ignore
+  });
+
+  it("forgets the plan that was vetoed", () => {
+    expect(fold(somePlan(), { kind: "plan_vetoed", place: { lat: 1, lon: 2 }, by: "operator" }).plan).toBeNull();
+  });
+
+  it("keeps the pilot's control until it is released", () => {
+    const taken = fold({ kind: "control_taken", mode: "POSCTL", detail: "sticks" });
+    expect(taken.pilot?.mode).toBe("POSCTL");
+    expect(fold({ kind: "control_taken", mode: "POSCTL", detail: "" }, { kind: "control_released", by: "o" }).pilot).toBeNull();
+  });
+
+  it("knows which links are down now", () => {
+    const lost = { kind: "link_lost", link: "receiver", detail: "silent" } as const;
+    expect(Object.keys(fold(lost).lost)).toEqual(["receiver"]);
+    expect(fold(lost, { kind: "link_restored", link: "receiver", outage_s: 4 }).lost).toEqual({});
+  });
+
+  it("follows an alert from raised to acknowledged to over", () => {
+    const raised = { kind: "alert_raised", alert_id: "q", level: "caution", text: "x", remedy: "y" } as const;
+    const state = fold(raised, { kind: "alert_acknowledged", alert_id: "q", by: "o" }, { kind: "alert_cleared", alert_id: "q" });
+    expect(state.alerts).toMatchObject([{ id: "q", acknowledgedBy: "o", cleared: true }]);
+  });
+
+  it("raises an alert of the same id anew, unacknowledged", () => {
+    const raised = { kind: "alert_raised", alert_id: "q", level: "caution", text: "x", remedy: "y" } as const;
+    const state = fold(raised, { kind: "alert_acknowledged", alert_id: "q", by: "o" }, raised);
+    expect(state.alerts).toMatchObject([{ id: "q", acknowledgedBy: null }]);
+  });
+
+  it("takes back the checks when the specification changes", () => {
+    const checked = { kind: "preflight_checked", passed: true, checks: [] } as const;
+    const edited = { kind: "mission_edited", spec: someSpec() } as const;
+    expect(fold(checked).preflightPassed).toBe(true);
+    expect(fold(checked as MissionEvent, edited).preflightPassed).toBeNull();
+  });
+});
+
+it("a mission flies or is over, never both", () => {
+  for (const p of ["draft", "ready", "hold", "manual", "measuring", "done", "aborted", "failed"] as const) {
+    expect(inFlight(p) && isOver(p)).toBe(false);
+  }
+  expect(inFlight("hold")).toBe(true);
+  expect(inFlight("ready")).toBe(false);
+});

@@ -1,0 +1,31 @@
+import { describe, expect, it } from "vitest";
+import { binnedPath, polarPoint, polarScale, radius } from "./polar";
+
+it("north is up, east is right", () => {
+  expect(polarPoint(0, 1)).toEqual([expect.closeTo(0), expect.closeTo(-1)]);
+  expect(polarPoint(90, 1)).toEqual([expect.closeTo(1), expect.closeTo(0)]);
+});
+
+describe("the scale", () => {
+  it("puts the loudest on the rim and never stretches noise over the whole plot", () => {
+    const scale = polarScale([-60, -61, null, -60.5])!;
+    expect(radius(-60, scale)).toBe(1);
+    expect(radius(-61, scale)).toBeGreaterThan(0.9);
+  });
+  it("is none when nothing was heard", () => {
+    expect(polarScale([null, null])).toBeNull();
+  });
+  it("is not upset by a missing number", () => {
+    expect(polarScale([NaN, -50])!.topDb).toBe(-50);
+  });
+});
+
+describe("the path over the bins", () => {
+  const scale = { topDb: 0, spanDb: 20 };
+  it("is closed when every bin was heard", () => {
+    expect(binnedPath([0, -1, -2, -3], scale)).toMatch(/^M.*Z$/);
+  });
+  it("breaks where nothing was heard", () => {
+    expect(binnedPath([0, -1, null, -3, -4], scale).match(/M/g)).toHaveLength(2);
+  });
+});
