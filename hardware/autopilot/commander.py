@@ -98,18 +98,18 @@ class Commander:
         try:
             if not await self._link.send(outgoing.message, fields, allowed):
                 return None
-            result = await self._answer(future, Deadline(self._clock, ACK_S, ACK_WALL_S))
+            result = await self._answer(future, Deadline(self._clock, ACK_S, ACK_WALL_S), allowed)
             if result == IN_PROGRESS:
                 waiting.remove(future)
                 future = asyncio.get_running_loop().create_future()
                 waiting.append(future)
-                result = await self._answer(future, Deadline(self._clock, 10.0, 5.0))
+                result = await self._answer(future, Deadline(self._clock, 10.0, 5.0), allowed)
             return result
         finally:
             waiting.remove(future)
 
-    async def _answer(self, future: asyncio.Future[int], deadline: Deadline) -> int | None:
-        while not deadline.passed:
+    async def _answer(self, future: asyncio.Future[int], deadline: Deadline, allowed: Callable[[], bool]) -> int | None:
+        while not deadline.passed and allowed():
             done, _ = await asyncio.wait((future,), timeout=0.05)
             if done:
                 return future.result()

@@ -51,7 +51,7 @@ class Orders:
             if not isinstance(order, dict):
                 raise OrderError('An order is a JSON object such as {"do": "ping"}.')
             answer = {"ok": True, "time_s": self._firmware.time} | self.carry_out(order)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             answer = {"ok": False, "time_s": self._firmware.time, "error": str(error)}
         return json.dumps(answer).encode() + b"\n"
 

@@ -1,0 +1,135 @@
+"""The promise to the pilot: what is asked in the instant before each send decides, also for a repetition."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from hardware.autopilot.commander import Commander, CommandRefused, Manoeuvre, ManoeuvreSuperseded
+from hardware.autopilot.control import ControlLatch
+from hardware.autopilot.link import Fields
+from hardware.autopilot.messages import Outgoing, arm, pause
+from hardware.clock import ScaledClock
+from hardware.ports import PilotHasControl, VehicleError
+
+MODES = frozenset({1})
+
+
+class Wire:
+    """Stands in for the link: records what was sent; `answer` acts on each message after it was sent."""
+
+    def __init__(self) -> None:
+        self.sent: list[Fields] = []
+        self.before: Callable[[], None] = lambda: None
+        self.answer: Callable[[int], None] = lambda count: None
+
+    async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
+        await asyncio.sleep(0)
+        self.before()
+        if not allowed():
+            return False
+        self.sent.append(fields)
+        self.answer(len(self.sent))
+        return True
+
+
+class Rig:
+    def __init__(self) -> None:
+        self.wire = Wire()
+        self.latch = ControlLatch(frozenset({1}), str)
+        self.lines: list[str] = []
+        link: Any = self.wire
+        self.commander = Commander(link, ScaledClock(None, 100.0), self.latch, self.lines.append)
+        self.manoeuvre = Manoeuvre("Flight")
+
+    def acknowledge(self, result: int, number: int = 192) -> None:
+        self.commander.acknowledged({"command": number, "result": result})
+
+    async def order(self, outgoing: Outgoing | None = None) -> None:
+        await self.commander.order(self.manoeuvre, outgoing or pause(), MODES, "the place")
+
+
+async def test_accepted_is_done_and_refused_is_said() -> None:
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.acknowledge(0)
+    await rig.order()
+    rig.wire.answer = lambda count: rig.acknowledge(2)
+
+    with pytest.raises(CommandRefused, match="refused the place: denied"):
+        await rig.order()
+    assert len(rig.wire.sent) == 2
+
+
+async def test_another_commands_acknowledgement_is_not_ours() -> None:
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.acknowledge(0, number=400) if count == 1 else rig.acknowledge(0)
+
+    await rig.order()
+
+    assert len(rig.wire.sent) == 2
+    assert [fields["confirmation"] for fields in rig.wire.sent] == [0, 1]
+    assert rig.lines == ["no answer to the place, sent again (2 of 3)"]
+
+
+async def test_in_progress_waits_for_the_last_word_without_sending_again() -> None:
+    rig = Rig()
+
+    def answer(count: int) -> None:
+        rig.acknowledge(5)
+        asyncio.get_running_loop().call_later(0.02, rig.acknowledge, 4)
+
+    rig.wire.answer = answer
+    with pytest.raises(CommandRefused, match="failed"):
+        await rig.order()
+    assert len(rig.wire.sent) == 1
+
+
+async def test_a_latch_that_closes_in_the_instant_before_sending_stops_it() -> None:
+    rig = Rig()
+    rig.wire.before = lambda: rig.latch.latch("the pilot moved the sticks") and None
+
+    with pytest.raises(PilotHasControl, match="the pilot moved the sticks"):
+        await rig.order(arm())
+    assert rig.wire.sent == []
+
+
+async def test_a_pilot_who_takes_over_while_an_answer_is_awaited_gets_no_repetition() -> None:
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.latch.latch("the pilot moved the sticks") and None
+
+    with pytest.raises(PilotHasControl):
+        await rig.order()
+    assert len(rig.wire.sent) == 1
+
+
+async def test_a_superseded_manoeuvre_sends_nothing_more() -> None:
+    rig = Rig()
+
+    def supersede(count: int) -> None:
+        rig.manoeuvre.superseded_by = "Hold"
+
+    rig.wire.answer = supersede
+    with pytest.raises(ManoeuvreSuperseded, match="replaced by Hold"):
+        await rig.order()
+    with pytest.raises(ManoeuvreSuperseded):
+        await rig.order()
+    assert len(rig.wire.sent) == 1
+
+
+async def test_no_answer_at_all_is_an_error_after_three_sends() -> None:
+    rig = Rig()
+
+    with pytest.raises(VehicleError, match="did not answer"):
+        await rig.order()
+    assert len(rig.wire.sent) == 3
+
+
+async def test_questions_pass_while_the_pilot_flies() -> None:
+    rig = Rig()
+    rig.latch.latch("the pilot moved the sticks")
+    rig.wire.answer = lambda count: rig.acknowledge(0)
+
+    assert await rig.commander.ask(pause()) is True
