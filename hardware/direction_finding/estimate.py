@@ -57,16 +57,16 @@ class SparseDirectionFinder:
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal:
-            return _refused(binned, refusal)
+            return refused(binned, refusal)
         bank, curve = self._prepare(pattern)
         noise_db = sweep.noise_floor_db
         power = linear_power(binned, noise_db)
         if noise_db is not None and np.nanmax(binned.power_db) < noise_db + MINIMUM_SNR_DB:
-            return _refused(binned, f"nothing was heard: no direction is {MINIMUM_SNR_DB:.0f} dB above the noise floor")
+            return refused(binned, f"nothing was heard: no direction is {MINIMUM_SNR_DB:.0f} dB above the noise floor")
         solution = solve_sparse(bank, power, self.penalty, binned.filled)
         parts = components(solution.r, curve.beam_deg / 4.0)
         if not parts:
-            return _refused(binned, "the sweep has no direction in it: the power looks the same all around")
+            return refused(binned, "the sweep has no direction in it: the power looks the same all around")
         fit = refine(curve, binned, parts, noise_db)
         return self._reading(bank, curve, binned, parts, fit, noise_db)
 
@@ -256,6 +256,6 @@ def _fitted_db(curve: PatternCurve, fit: Fit, noise_db: float | None) -> NDArray
     return 10.0 * np.log10(total)
 
 
-def _refused(binned: BinnedSweep, reason: str) -> BearingReading:
+def refused(binned: BinnedSweep, reason: str) -> BearingReading:
     """Not accepted and without a bearing: 0 degrees with sigma 180 says "anywhere"."""
     return BearingReading(0.0, 180.0, 0.0, False, reason, (), binned.power_db, np.full(BINS, np.nan))

@@ -162,4 +162,4 @@ def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float
     gain = _to_db(str(path), table[:, 1], unit)
     angle, member = np.unique(np.round(table[:, 0], 6), return_inverse=True)
     mean = np.bincount(member, gain) / np.bincount(member)
-    return make_pattern(path.stem, angle, mean, offset_to_nose_deg)
+    return make_pattern(path.stem, np.asarray(angle, dtype=np.float64), mean, offset_to_nose_deg)

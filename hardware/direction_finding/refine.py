@@ -152,7 +152,7 @@ def fit_pattern(
             if damping > 1e6:
                 break
     normal = (jacobian * weight[:, None]).T @ jacobian
-    covariance = np.linalg.pinv(normal, hermitian=True)
+    covariance = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
     order = np.argsort(-theta[sources:], kind="stable")
     both = np.concatenate([order, order + sources])
     return Fit(
@@ -171,7 +171,7 @@ def _damped_step(normal: NDArray[np.float64], gradient: NDArray[np.float64], dam
     damped = normal.copy()
     damped.flat[:: normal.shape[0] + 1] *= 1.0 + damping
     damped.flat[:: normal.shape[0] + 1] += 1e-12
-    return np.linalg.solve(damped, gradient)
+    return np.asarray(np.linalg.solve(damped, gradient), dtype=np.float64)
 
 
 def _model(

@@ -44,7 +44,7 @@ class PatternBank:
 
     @classmethod
     def of(cls, pattern: AntennaPattern) -> PatternBank:
-        gain_db = pattern.gain_at(np.arange(COLUMNS) * COLUMN_DEG)
+        gain_db = pattern.gain_at(np.linspace(0.0, 360.0, COLUMNS, endpoint=False))
         power = 10.0 ** (gain_db / 10.0)
         scale = 1.0 / np.sqrt(np.sum(power**2) / _PER_BIN)
         shape = power * scale
@@ -149,4 +149,4 @@ def _solve(gram: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.
     try:
         return cho_solve(cho_factor(gram), right)
     except LinAlgError:
-        return np.linalg.lstsq(gram, right, rcond=None)[0]
+        return np.asarray(np.linalg.lstsq(gram, right, rcond=None)[0], dtype=np.float64)

@@ -6,11 +6,9 @@ import asyncio
 from collections.abc import AsyncIterator, Callable
 
 from hardware.ports import Clock, ReceiverError
-from hardware.readings import GeoPoint, PowerSample, Telemetry
+from hardware.readings import PowerSample, Telemetry
+from hardware.sim.pose_track import PoseTrack
 from hardware.sim.world import Pose, RadioLink, World
-
-HEADING_HELD_S = 0.5
-"""Telemetry older than this is no longer waited for: the vehicle is taken to stand as last heard."""
 
 
 class SimulatedReceiver:
@@ -65,57 +63,22 @@ class SimulatedReceiver:
         if self._link is None:
             raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
         link = self._link
-        before: _Fix | None = None
+        track = PoseTrack(self._ground_amsl_m)
         next_s = self._clock.now()
         while self._link is link:
             if self._gone:
                 raise ReceiverError("the simulated receiver was unplugged")
             now = self._clock.now()
-            after = _fix(self._telemetry(), self._ground_amsl_m)
-            if after is None or self._silent:
+            known_until = track.hear(self._telemetry(), now)
+            if known_until is None or self._silent:
                 next_s = now
             else:
-                known_until = max(after.at_s, now - HEADING_HELD_S)
                 while next_s <= known_until and self._link is link:
-                    yield self._sample(link, next_s, before or after, after)
+                    yield self._sample(link, next_s, track.at(next_s))
                     next_s += self._period_s
-                if before is None or after.at_s > before.at_s:
-                    before = after
             await self._clock.sleep(self._period_s)
             await asyncio.sleep(0)
 
-    def _sample(self, link: RadioLink, at_s: float, before: _Fix, after: _Fix) -> PowerSample:
-        power_dbm, clipped = link.power_dbm(at_s, _between(at_s, before, after))
+    def _sample(self, link: RadioLink, at_s: float, pose: Pose) -> PowerSample:
+        power_dbm, clipped = link.power_dbm(at_s, pose)
         return PowerSample(at_s, link.frequency_hz, power_dbm, self._world.front_end.noise_dbm, clipped)
-
-
-class _Fix:
-    """A pose with the time at which its heading was heard."""
-
-    __slots__ = ("at_s", "pose")
-
-    def __init__(self, at_s: float, pose: Pose) -> None:
-        self.at_s = at_s
-        self.pose = pose
-
-
-def _fix(telemetry: Telemetry, ground_amsl_m: float) -> _Fix | None:
-    if telemetry.position is None or telemetry.heading_deg is None or telemetry.heading_at_s is None:
-        return None
-    height = telemetry.altitude_relative_m
-    if height is None:
-        height = (telemetry.altitude_amsl_m or ground_amsl_m) - ground_amsl_m
-    return _Fix(telemetry.heading_at_s, Pose(telemetry.position, max(height, 0.3), telemetry.heading_deg))
-
-
-def _between(at_s: float, before: _Fix, after: _Fix) -> Pose:
-    """The pose at `at_s`: linear between the two, headings the short way round, held outside."""
-    span = after.at_s - before.at_s
-    part = 1.0 if span <= 0 else min(max((at_s - before.at_s) / span, 0.0), 1.0)
-    a, b = before.pose, after.pose
-    turn = (b.heading_deg - a.heading_deg + 180.0) % 360.0 - 180.0
-    place = GeoPoint(
-        a.place.lat_deg + part * (b.place.lat_deg - a.place.lat_deg),
-        a.place.lon_deg + part * (b.place.lon_deg - a.place.lon_deg),
-    )
-    return Pose(place, a.height_m + part * (b.height_m - a.height_m), (a.heading_deg + part * turn) % 360.0)

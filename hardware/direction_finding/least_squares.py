@@ -1,0 +1,110 @@
+"""Two plainer direction finders, for comparison: least-squares pattern fit and correlation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.estimate import MINIMUM_QUALITY, cosine_quality, linear_power, refused, unusable
+from hardware.direction_finding.refine import PatternCurve
+from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep, bin_sweep
+from hardware.readings import BearingReading, Sweep
+
+_GRID_DEG = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class LeastSquaresDirectionFinder:
+    """min over bearing and level of sum_i (m_i - level - G(bearing - h_i))^2 in decibels: one source, even noise."""
+
+    minimum_quality: float = MINIMUM_QUALITY
+
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
+        refusal = unusable(sweep, binned)
+        if refusal:
+            return refused(binned, refusal)
+        curve = PatternCurve(pattern)
+        heading, power = binned.heading_deg[binned.filled], binned.power_db[binned.filled]
+        count = binned.count[binned.filled].astype(np.float64)
+
+        def misfit(bearing: NDArray[np.float64]) -> NDArray[np.float64]:
+            residual = power - curve.gain_db(bearing[:, None] - heading)
+            level = residual @ count / count.sum()
+            return ((residual - level[:, None]) ** 2) @ count
+
+        bearing, curvature, least = _minimum(misfit)
+        freedom = max(heading.size - 2, 1)
+        # sigma^2 = residual variance / (half the second derivative)
+        sigma = math.sqrt(max(least, 1e-9) / count.mean() / freedom / max(curvature / 2.0 / count.mean(), 1e-9))
+        level = float((power - curve.gain_db(bearing - heading)) @ count / count.sum())
+        return _reading(self.minimum_quality, curve, binned, bearing, sigma, level, sweep.noise_floor_db)
+
+
+@dataclass(frozen=True, slots=True)
+class CorrelationDirectionFinder:
+    """The bearing whose shifted pattern is most like the sweep: cosine similarity of linear powers."""
+
+    minimum_quality: float = MINIMUM_QUALITY
+
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
+        refusal = unusable(sweep, binned)
+        if refusal:
+            return refused(binned, refusal)
+        curve = PatternCurve(pattern)
+        heading = binned.heading_deg[binned.filled]
+        measured = linear_power(binned, sweep.noise_floor_db)[binned.filled]
+        measured = measured / max(float(np.linalg.norm(measured)), 1e-12)
+
+        def distance(bearing: NDArray[np.float64]) -> NDArray[np.float64]:
+            shifted = 10.0 ** (curve.gain_db(bearing[:, None] - heading) / 10.0)
+            # |a - b|^2 of unit vectors: 2 - 2 cos
+            return 2.0 - 2.0 * (shifted @ measured) / np.linalg.norm(shifted, axis=1)
+
+        bearing, curvature, least = _minimum(distance)
+        sigma = math.sqrt(max(least, 1e-9) / max(heading.size - 2, 1) / max(curvature / 2.0, 1e-12))
+        level = float(np.median(binned.power_db[binned.filled] - curve.gain_db(bearing - heading)))
+        return _reading(self.minimum_quality, curve, binned, bearing, sigma, level, sweep.noise_floor_db)
+
+
+def _minimum(cost: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> tuple[float, float, float]:
+    """(bearing in degrees, second derivative a square degree, least cost): grid, then a parabola through its foot."""
+    grid = np.arange(0.0, 360.0, _GRID_DEG)
+    coarse = cost(grid)
+    foot = float(grid[int(np.argmin(coarse))])
+    reach = 1.0
+    fine = foot + np.linspace(-reach, reach, 9)
+    second, first, zeroth = np.polyfit(fine - foot, cost(fine), 2)
+    step = float(np.clip(-first / (2.0 * second), -reach, reach)) if second > 1e-12 else 0.0
+    return (foot + step) % 360.0, max(2.0 * float(second), 0.0), float(zeroth - second * step**2)
+
+
+def _reading(
+    minimum_quality: float,
+    curve: PatternCurve,
+    binned: BinnedSweep,
+    bearing: float,
+    sigma: float,
+    level_db: float,
+    noise_db: float | None,
+) -> BearingReading:
+    quality = cosine_quality(curve, binned, bearing, noise_db)
+    accepted = quality >= minimum_quality
+    centre = (np.arange(BINS) + 0.5) * BIN_DEG
+    return BearingReading(
+        bearing_deg=bearing % 360.0,
+        sigma_deg=min(sigma, 180.0),
+        quality=quality,
+        accepted=accepted,
+        reason="" if accepted else f"the sweep does not look like the antenna (similarity {quality:.2f})",
+        peaks=(),
+        binned_db=binned.power_db,
+        fitted_db=level_db + curve.gain_db(bearing - centre),
+        snr_db=None if noise_db is None else level_db + curve.peak_db - noise_db,
+    )

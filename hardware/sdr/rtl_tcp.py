@@ -1,0 +1,129 @@
+"""rtl_tcp: an RTL-SDR on another machine, over TCP.
+
+Protocol (librtlsdr, rtl_tcp.c): the server greets with 12 bytes: "RTL0", tuner type and number of gain steps as
+big-endian 32-bit words; then it streams interleaved unsigned 8-bit I and Q. Commands: one byte, one big-endian word.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import struct
+import time
+from collections.abc import AsyncIterator
+
+from hardware.iq import IqBlock, from_unsigned_bytes
+from hardware.ports import ReceiverError
+
+SET_FREQUENCY, SET_SAMPLE_RATE, SET_GAIN_MODE, SET_GAIN, SET_PPM, SET_AGC = 0x01, 0x02, 0x03, 0x04, 0x05, 0x08
+GREETING = struct.Struct(">4sII")
+COMMAND = struct.Struct(">BI")
+_RATES_HZ = ((225_001, 300_000), (900_001, 3_200_000))
+
+
+class RtlTcpSource:
+    """IQ from an rtl_tcp server. Manual gain; the chip's own AGC is switched off."""
+
+    def __init__(
+        self,
+        host: str,
+        port: int = 1234,
+        sample_rate_hz: float = 250_000.0,
+        gain_db: float = 28.0,
+        ppm: int = 0,
+        timeout_s: float = 5.0,
+    ) -> None:
+        if not any(low <= sample_rate_hz <= high for low, high in _RATES_HZ):
+            raise ReceiverError(
+                f"an RTL-SDR cannot sample at {sample_rate_hz:.0f} S/s; choose 225001..300000 or 900001..3200000"
+            )
+        self._host, self._port = host, port
+        self._rate, self._gain, self._ppm = sample_rate_hz, gain_db, ppm
+        self._timeout_s = timeout_s
+        self._reader: asyncio.StreamReader | None = None
+        self._writer: asyncio.StreamWriter | None = None
+
+    @property
+    def sample_rate_hz(self) -> float:
+        return self._rate
+
+    @property
+    def gain_db(self) -> float:
+        return self._gain
+
+    async def open(self, centre_hz: float) -> float:
+        if not 0 < centre_hz < 2**32:
+            raise ReceiverError(f"rtl_tcp cannot tune to {centre_hz:.0f} Hz")
+        await self.close()
+        where = f"{self._host}:{self._port}"
+        try:
+            async with asyncio.timeout(self._timeout_s):
+                reader, writer = await asyncio.open_connection(self._host, self._port)
+                greeting = await reader.readexactly(GREETING.size)
+        except TimeoutError:
+            raise ReceiverError(
+                f"rtl_tcp at {where} does not answer; is it running, and is no other client connected?"
+            ) from None
+        except asyncio.IncompleteReadError:
+            raise ReceiverError(f"rtl_tcp at {where} closed the connection; is another client connected?") from None
+        except OSError as error:
+            raise ReceiverError(
+                f"rtl_tcp at {where} cannot be reached ({error.strerror or error}); start it there"
+            ) from error
+        magic, _, _ = GREETING.unpack(greeting)
+        if magic != b"RTL0":
+            writer.close()
+            raise ReceiverError(f"what listens at {where} is no rtl_tcp server")
+        self._reader, self._writer = reader, writer
+        await self._command(SET_SAMPLE_RATE, round(self._rate))
+        await self._command(SET_PPM, self._ppm & 0xFFFFFFFF)
+        await self._command(SET_AGC, 0)
+        await self._command(SET_GAIN_MODE, 1)
+        await self._command(SET_GAIN, round(self._gain * 10.0) & 0xFFFFFFFF)
+        await self._command(SET_FREQUENCY, round(centre_hz))
+        return float(round(centre_hz))
+
+    async def set_gain(self, gain_db: float) -> None:
+        if self._writer is not None:
+            await self._command(SET_GAIN, round(gain_db * 10.0) & 0xFFFFFFFF)
+        self._gain = gain_db
+
+    async def _command(self, code: int, value: int) -> None:
+        if self._writer is None:
+            raise ReceiverError("rtl_tcp is not connected: open it first")
+        try:
+            self._writer.write(COMMAND.pack(code, value))
+            await self._writer.drain()
+        except OSError as error:
+            raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
+
+    async def blocks(self) -> AsyncIterator[IqBlock]:
+        reader = self._reader
+        if reader is None:
+            raise ReceiverError("rtl_tcp is not connected: open it first")
+        size = 2 * int(self._rate / 50.0)
+        sent = 0
+        first_s = 0.0
+        while self._reader is reader:
+            try:
+                raw = await reader.readexactly(size)
+            except asyncio.IncompleteReadError:
+                if self._reader is not reader:
+                    return
+                raise ReceiverError(f"rtl_tcp at {self._host}:{self._port} ended the stream") from None
+            except OSError as error:
+                raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
+            samples, clipped = from_unsigned_bytes(raw)
+            # time by counting samples, pulled back when the wall clock says that the stream runs late
+            now = time.time() - samples.size / self._rate
+            at_s = now if sent == 0 else min(first_s + sent / self._rate, now)
+            first_s = at_s - sent / self._rate
+            sent += samples.size
+            yield IqBlock(at_s, samples, clipped)
+
+    async def close(self) -> None:
+        writer, self._reader, self._writer = self._writer, None, None
+        if writer is not None:
+            writer.close()
+            with contextlib.suppress(OSError):
+                await writer.wait_closed()
