@@ -124,6 +124,7 @@ def report(
     results: Annotated[Path, typer.Argument(help="Directory that `crossfix study run --results` filled.")],
     figures: Annotated[Path, typer.Option(help="Directory for the drawings (PNG).")] = Path("study-figures"),
     markdown: Annotated[Path | None, typer.Option(help="Also write the table to this Markdown file.")] = None,
+    paths: Annotated[int, typer.Option(help="Sample paths on which first actions are valued.")] = 1000,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object: cells and files drawn.")] = False,
 ) -> None:
     """Draw the thesis' figures from stored results and print the table beside the thesis.
@@ -132,7 +133,7 @@ def report(
     """
     study = _modules()
     try:
-        summaries, drawn = study.report(results, figures, remark)
+        summaries, drawn = study.report(results, figures, remark, paths)
         if markdown is not None:
             markdown.write_text(study.table.markdown(summaries) + "\n", encoding="utf-8")
     except PlannerError as error:

@@ -28,7 +28,7 @@ class ActionValues:
     std_errors: FloatArray
 
 
-def values_of_grid(scenario: Scenario, paths: int = 1000, base_policy: BasePolicy = "ellipse") -> ActionValues:
+def values_of_grid(scenario: Scenario, paths: int, base_policy: BasePolicy = "ellipse") -> ActionValues:
     """Of every place of the scenario's action space, at the first decision on the prior."""
     belief = prior_belief(scenario.problem)
     places = constrained_actions(scenario.problem, belief)
@@ -36,7 +36,7 @@ def values_of_grid(scenario: Scenario, paths: int = 1000, base_policy: BasePolic
 
 
 def values_of_places(
-    scenario: Scenario, places: FloatArray, paths: int = 4000, base_policy: BasePolicy = "ellipse"
+    scenario: Scenario, places: FloatArray, paths: int, base_policy: BasePolicy = "ellipse"
 ) -> FloatArray:
     """(n,) s of first actions (n, 2), m, all on the same sample paths: their differences are sharper than they are."""
     belief = prior_belief(scenario.problem)

@@ -1,4 +1,7 @@
-"""The thesis' figures from stored results, each None when the data for it are not there."""
+"""The thesis' figures from stored results, each None when the data for it are not there.
+
+All are drawn from the missions, the cells' summaries, and `paths`: how many sample paths value a first action.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,14 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from planner.belief.grid import GridBelief, prior_belief
 from planner.study.action_values import values_of_grid, values_of_places
 from planner.study.cell import Cell
 from planner.study.courses import draw_courses
 from planner.study.scenarios import MEASUREMENT_TIMES
 from planner.study.table import Summary, half_width, label
 
-Draw = Callable[[pd.DataFrame, list[Summary]], Figure | None]
+Draw = Callable[[pd.DataFrame, list[Summary], int], Figure | None]
 
 MOST_PANELS = 9
 
@@ -35,7 +39,7 @@ def _of(results: pd.DataFrame, cell: Cell) -> pd.DataFrame:
     return results.loc[results["cell"] == cell.name()]
 
 
-def time_by_target(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def time_by_target(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 1: mean time against the target's distance along the row."""
     chosen = [s for s in summaries if s.cell.scenario == "1"]
     if not chosen:
@@ -64,7 +68,7 @@ def time_by_target(results: pd.DataFrame, summaries: list[Summary]) -> Figure | 
     return figure
 
 
-def times_violin(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def times_violin(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: how the times are spread, one violin a planner, with mean (bar) and median (dash)."""
     chosen = [s for s in summaries if s.cell.scenario == "2" and s.runs >= 10]
     if not chosen:
@@ -75,14 +79,16 @@ def times_violin(results: pd.DataFrame, summaries: list[Summary]) -> Figure | No
     for panel, config in zip(axes, configs, strict=True):
         here = sorted((s for s in chosen if s.cell.config == config), key=lambda s: -s.mean_s)
         times = [_of(results, s.cell)["time"].to_numpy(dtype=float) for s in here]
-        panel.violinplot(times, vert=False, showmeans=True, showmedians=True, showextrema=False, widths=0.85)
+        panel.violinplot(
+            times, orientation="horizontal", showmeans=True, showmedians=True, showextrema=False, widths=0.85
+        )
         panel.set_yticks(np.arange(1, len(here) + 1), [label(s.cell.fields()) for s in here], fontsize="small")
         panel.set_xlim(0, max(np.quantile(t, 0.995) for t in times))
         panel.set(title=config, xlabel="time until localization, s")
     return figure
 
 
-def first_actions(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def first_actions(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: where each planner goes first, over the prior; as many missions as there are in the results."""
     chosen = _one_a_planner([s for s in summaries if s.cell.scenario == "2"])[:MOST_PANELS]
     if not chosen:
@@ -90,8 +96,7 @@ def first_actions(results: pd.DataFrame, summaries: list[Summary]) -> Figure | N
     figure, axes = _axes(len(chosen), height=4.4)
     for panel, summary in zip(axes, chosen, strict=True):
         case = summary.cell.case()
-        values = values_of_grid(case, paths=1)
-        _belief(panel, values.belief)
+        _belief(panel, prior_belief(case.problem))
         places = _of(results, summary.cell)[["first_x", "first_y"]].dropna().to_numpy(dtype=float)
         distinct, counts = np.unique(places, axis=0, return_counts=True)
         panel.scatter(*distinct.T, s=8 + 200 * counts / counts.sum(), color="tab:red", alpha=0.6, linewidths=0)
@@ -101,7 +106,7 @@ def first_actions(results: pd.DataFrame, summaries: list[Summary]) -> Figure | N
     return figure
 
 
-def action_values(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def action_values(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Expected time by way of each first place, with the belief it is for, for every configuration of Scenario 2."""
     configs = sorted({s.cell.config for s in summaries if s.cell.scenario == "2"}, key=list(MEASUREMENT_TIMES).index)
     if not configs:
@@ -109,7 +114,7 @@ def action_values(results: pd.DataFrame, summaries: list[Summary]) -> Figure | N
     figure, axes = _axes(len(configs), width=4.8, height=4.4)
     for panel, config in zip(axes, configs, strict=True):
         case = Cell(scenario="2", config=config).case()
-        values = values_of_grid(case)
+        values = values_of_grid(case, paths)
         _belief(panel, values.belief)
         nx, ny = case.problem.action_grid
         x, y, z = (column.reshape(ny, nx) for column in (*values.places.T, values.values))
@@ -123,17 +128,17 @@ def action_values(results: pd.DataFrame, summaries: list[Summary]) -> Figure | N
     return figure
 
 
-def optimization_by_budget(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def optimization_by_budget(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: what the chosen first actions are really worth, against the budget."""
-    return _by_budget(summaries, lambda s: _optimization(results, s), "value of the first action, s")
+    return _by_budget(summaries, lambda s: _optimization(results, s, paths), "value of the first action, s")
 
 
-def localization_by_budget(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def localization_by_budget(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: mean time until localization against the budget."""
     return _by_budget(summaries, lambda s: (s.mean_s, s.ci95_s), "time until localization, s")
 
 
-def optimization_against_localization(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def optimization_against_localization(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: whether better first actions make quicker missions, one point a cell."""
     chosen = _rollouts(summaries)
     if len(chosen) < 3:
@@ -142,7 +147,7 @@ def optimization_against_localization(results: pd.DataFrame, summaries: list[Sum
     figure, axes = _axes(len(configs))
     for panel, config in zip(axes, configs, strict=True):
         here = [s for s in chosen if s.cell.config == config]
-        points = np.array([_optimization(results, s)[0] for s in here]), np.array([s.mean_s for s in here])
+        points = np.array([_optimization(results, s, paths)[0] for s in here]), np.array([s.mean_s for s in here])
         for summary, x, y in zip(here, *points, strict=True):
             panel.errorbar(x, y, yerr=summary.ci95_s, marker="o", markersize=4, capsize=2, color="tab:blue")
         title = config
@@ -152,7 +157,7 @@ def optimization_against_localization(results: pd.DataFrame, summaries: list[Sum
     return figure
 
 
-def sensitivity_to_grid(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def sensitivity_to_grid(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Mean time against the number of places compared, for cells that differ in nothing else."""
     return _sensitivity(
         summaries,
@@ -162,7 +167,7 @@ def sensitivity_to_grid(results: pd.DataFrame, summaries: list[Summary]) -> Figu
     )
 
 
-def sensitivity_to_measurement_time(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def sensitivity_to_measurement_time(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Mean time against the time a bearing takes, for cells that differ in nothing else."""
     return _sensitivity(
         summaries,
@@ -172,12 +177,12 @@ def sensitivity_to_measurement_time(results: pd.DataFrame, summaries: list[Summa
     )
 
 
-def courses(results: pd.DataFrame, summaries: list[Summary]) -> Figure | None:
+def courses(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Fig. 3.9: the lookahead planner's courses; needs no results."""
     return draw_courses()
 
 
-def _belief(panel: Axes, belief) -> None:
+def _belief(panel: Axes, belief: GridBelief) -> None:
     x_min, y_min, x_max, y_max = belief.bounds
     panel.imshow(
         belief.density, origin="lower", extent=(x_min, x_max, y_min, y_max), cmap="Greys", interpolation="nearest"
@@ -197,11 +202,11 @@ def _one_a_planner(summaries: list[Summary]) -> list[Summary]:
     return list(kept.values())
 
 
-def _optimization(results: pd.DataFrame, summary: Summary) -> tuple[float, float]:
+def _optimization(results: pd.DataFrame, summary: Summary, paths: int) -> tuple[float, float]:
     """Mean value of the chosen first actions and its half width, on the common test paths."""
     places = _of(results, summary.cell)[["first_x", "first_y"]].dropna().to_numpy(dtype=float)
     distinct, of_mission = np.unique(places, axis=0, return_inverse=True)
-    values = values_of_places(summary.cell.case(), distinct, paths=max(200, 400_000 // len(distinct)))
+    values = values_of_places(summary.cell.case(), distinct, paths)
     return float(values[of_mission].mean()), half_width(values[of_mission])
 
 

@@ -17,11 +17,16 @@ from planner.types import PlannerError
 _SETTINGS = tuple(Cell.__dataclass_fields__)
 
 
-def report(directory: Path, figures: Path, remark: Callable[[str], None]) -> tuple[list[Summary], list[Path]]:
+def report(
+    directory: Path, figures: Path, remark: Callable[[str], None], paths: int = 1000
+) -> tuple[list[Summary], list[Path]]:
     """Summaries of all cells in `directory`, and the PNG files drawn into `figures`.
 
-    remark: told which figures were left out, and what they need.
+    remark: told which figures were left out, and what they need. paths: on how many sample paths first actions are
+    valued.
     """
+    if paths < 2:
+        raise PlannerError(f"first actions are valued on 2 sample paths or more, got {paths}")
     results = read_results(directory)
     summaries = [summarize(cell_of(missions), missions) for _, missions in results.groupby("cell", sort=True)]
     try:
@@ -30,7 +35,7 @@ def report(directory: Path, figures: Path, remark: Callable[[str], None]) -> tup
         raise PlannerError(f"{figures}: cannot hold figures ({error.strerror}); choose another directory") from error
     drawn = []
     for name, (draw, needs) in FIGURES.items():
-        figure = draw(results, summaries)
+        figure = draw(results, summaries, paths)
         if figure is None:
             remark(f"no {name}.png: it needs {needs}")
             continue
