@@ -1,0 +1,346 @@
+"""How the live channel and the abort hold up under viewers. Prints figures; run it by hand:
+
+    python tests/benchmarks/live_load.py fanout --viewers 100 --stalled 5 --hertz 10 --seconds 60
+    python tests/benchmarks/live_load.py abort --viewers 50 --stalled 5 --times 100
+
+fanout: a server process publishes telemetry (and an event a second, a belief every five); this process reads with all
+viewers and measures from the publish to the read. abort: a whole server with a simulated vehicle is told HOLD again
+and again; measured from the request's arrival in the server to the command handed to the vehicle.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import base64
+import json
+import os
+import socket
+import statistics
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager, nullcontext
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+import psutil
+import uvicorn
+import websockets
+
+from backend.api.services import Services
+from backend.events import HoldOrdered, MissionDrafted
+from backend.live.hub import Hub
+from backend.main import create_app, server_config
+from backend.mission.ports import Status
+from backend.settings import Settings
+from backend.spec import MissionSpec, Polygon
+from backend.store.opening import open_journal
+from hardware.readings import GeoPoint, Telemetry
+from planner.belief.grid import GridBelief
+
+SPEC = MissionSpec(name="load", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
+TELEMETRY = Telemetry(
+    connected=True,
+    at_s=0.0,
+    position=GeoPoint(50.623412, 7.204651),
+    altitude_amsl_m=160.3,
+    altitude_relative_m=40.3,
+    heading_deg=123.4,
+    velocity_north_m_s=3.2,
+    velocity_east_m_s=-1.1,
+    velocity_down_m_s=0.1,
+    battery_percent=81.0,
+    gps_fix="3d",
+    satellites=14,
+    armed=True,
+    in_air=True,
+    mode="GUIDED",
+)
+
+
+# The server of the fan-out
+
+
+async def publish(services: Services, hertz: float) -> None:
+    hub, journal, tick = services.hub, services.journal, 0
+    y, x = np.mgrid[0:100, 0:100]
+    density = np.exp(-((x - 30) ** 2 + (y - 60) ** 2) / 400.0)
+    belief = GridBelief(density / density.sum(), 0.0, 0.0, 3.0, (), (), 3, True)
+    status = Status("load", "flying", "flying to place 3", None, "ok", -71.0, 0.1, 31.0, "ok")
+    began = time.monotonic()
+    while True:
+        now = time.time()
+        hub.telemetry(replace(TELEMETRY, at_s=now, position_at_s=now, heading_at_s=now), now)
+        if tick % round(hertz) == 0:
+            hub.status(status)
+            hub.events(await journal.append("load", [HoldOrdered(by="load", reason="x" * 300)]))
+        if tick % round(5 * hertz) == 0:
+            hub.belief("load", 3, belief, [(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.61)])
+        tick += 1
+        await asyncio.sleep(max(0.0, began + tick / hertz - time.monotonic()))
+
+
+async def serve_fanout(port: int, folder: str, hertz: float) -> None:
+    settings = Settings(port=port, data_dir=Path(folder), live_ping_timeout_s=60.0)
+
+    @asynccontextmanager
+    async def opening(settings: Settings) -> AsyncIterator[Services]:
+        async with open_journal(settings, time.time) as journal:
+            hub = Hub(journal.read, time.time)
+            await journal.append("load", [MissionDrafted(spec=SPEC)])
+            missions: Any = None
+            services = Services(missions, journal, hub, settings, time.time)
+            publishing = asyncio.create_task(publish(services, hertz))
+            yield services
+            publishing.cancel()
+
+    await uvicorn.Server(server_config(settings, create_app(settings, opening))).serve()
+
+
+# Viewers
+
+
+def stalled_viewer(port: int, mission_id: str) -> socket.socket:
+    """Shakes hands and never reads again."""
+    client = socket.socket()
+    client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+    client.connect(("127.0.0.1", port))
+    key = base64.b64encode(os.urandom(16)).decode()
+    head = f"GET /api/live?mission={mission_id} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
+    client.sendall(
+        f"{head}Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+    return client
+
+
+class Tally:
+    """Delays in ms of telemetry messages, and what each viewer got."""
+
+    def __init__(self) -> None:
+        self.delays_ms: list[float] = []
+        self.dropped = 0
+        self.gaps = 0
+        self.messages = 0
+        self.bytes = 0
+
+
+async def view(port: int, mission_id: str, tally: Tally, lite: bool = False) -> None:
+    last_seq = 0
+    url = f"ws://127.0.0.1:{port}/api/live?mission={mission_id}&lite={int(lite)}"
+    async with websockets.connect(url, compression=None, max_queue=None) as websocket:
+        async for content in websocket:
+            now = time.time()
+            tally.messages += 1
+            tally.bytes += len(content)
+            if isinstance(content, bytes):
+                continue
+            if content.startswith('{"type":"telemetry"'):
+                message = json.loads(content)
+                tally.delays_ms.append(1e3 * (now - datetime.fromisoformat(message["at_utc"]).timestamp()))
+                tally.dropped = max(tally.dropped, message["dropped"])
+            elif content.startswith('{"type":"event"'):
+                seq = json.loads(content)["recorded"]["seq"]
+                tally.gaps += seq != last_seq + 1
+                last_seq = seq
+
+
+def percentile(values: Sequence[float], share: float) -> float:
+    return float(np.quantile(values, share)) if values else float("nan")
+
+
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+async def until_answers(port: int) -> None:
+    async with asyncio.timeout(120):
+        while True:
+            try:
+                await asyncio.to_thread(urllib.request.urlopen, f"http://127.0.0.1:{port}/api/missions", timeout=5)
+                return
+            except OSError:
+                await asyncio.sleep(0.2)
+
+
+async def fanout(viewers: int, stalled: int, hertz: float, seconds: float) -> dict[str, Any]:
+    port = free_port()
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, __file__, "serve-fanout", str(port), folder, str(hertz)]
+        server = await asyncio.create_subprocess_exec(*command)
+        watching: list[asyncio.Task[None]] = []
+        sockets: list[socket.socket] = []
+        try:
+            await until_answers(port)
+            process = psutil.Process(server.pid)
+            sockets = [await asyncio.to_thread(stalled_viewer, port, "load") for _ in range(stalled)]
+            tally = Tally()
+            watching = [asyncio.create_task(view(port, "load", tally)) for _ in range(viewers)]
+            await asyncio.sleep(5.0)
+            tally.delays_ms.clear()
+            memory_mb, processor = [], process.cpu_times()
+            for _ in range(10):
+                await asyncio.sleep(seconds / 10)
+                memory_mb.append(process.memory_info().rss / 2**20)
+            used = process.cpu_times()
+            broken = [task for task in watching if task.done()]
+        finally:
+            for task in watching:
+                task.cancel()
+            await asyncio.gather(*watching, return_exceptions=True)
+            for client in sockets:
+                client.close()
+            server.terminate()
+            await server.wait()
+    delays = tally.delays_ms
+    return {
+        "viewers": viewers,
+        "stalled": stalled,
+        "hertz": hertz,
+        "seconds": seconds,
+        "messages": len(delays),
+        "expected": int(viewers * hertz * seconds),
+        "p50_ms": percentile(delays, 0.5),
+        "p99_ms": percentile(delays, 0.99),
+        "max_ms": max(delays, default=float("nan")),
+        "dropped_at_most": tally.dropped,
+        "event_gaps": tally.gaps,
+        "broken_viewers": len(broken),
+        "server_cpu_share": (used.user + used.system - processor.user - processor.system) / seconds,
+        "server_rss_mb": [round(value, 1) for value in memory_mb],
+    }
+
+
+# Abort
+
+
+class Stopwatch:
+    """ASGI wrapper that notes when a command's request arrives."""
+
+    def __init__(self, app: Any) -> None:
+        self.app = app
+        self.arrived = 0.0
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] == "http" and scope["path"].endswith("/commands"):
+            self.arrived = time.perf_counter()
+        await self.app(scope, receive, send)
+
+
+def post(port: int, path: str, body: object) -> Any:
+    request = urllib.request.Request(
+        f"http://127.0.0.1:{port}/api{path}", json.dumps(body).encode(), {"content-type": "application/json"}
+    )
+    return json.load(urllib.request.urlopen(request, timeout=60))
+
+
+async def order(port: int, mission_id: str, kind: str) -> dict[str, Any]:
+    body = {"command_id": str(uuid4()), "command": {"kind": kind}}
+    return await asyncio.to_thread(post, port, f"/missions/{mission_id}/commands", body)
+
+
+async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
+    from backend.mission.patient_vehicle import PatientVehicle
+    from backend.wiring import open_services
+
+    held_at: list[float] = []
+    hold = PatientVehicle.hold
+
+    async def timed_hold(vehicle: PatientVehicle) -> None:
+        held_at.append(time.perf_counter())
+        await hold(vehicle)
+
+    PatientVehicle.hold = timed_hold
+    port = free_port()
+    with tempfile.TemporaryDirectory() as folder:
+        settings = Settings(port=port, data_dir=Path(folder), time_factor=5.0, live_ping_timeout_s=60.0)
+        async with open_services(settings) as services:
+            app = create_app(settings, lambda _: nullcontext(services))
+            watch = Stopwatch(app)
+            config = server_config(settings, app)
+            config.app = watch
+            server = uvicorn.Server(config)
+            serving = asyncio.create_task(server.serve())
+            await until_answers(port)
+            spec = json.load(
+                await asyncio.to_thread(urllib.request.urlopen, f"http://127.0.0.1:{port}/api/defaults", timeout=10)
+            )["spec"]
+            mission = (await asyncio.to_thread(post, port, "/missions", spec))["mission_id"]
+            started = await order(port, mission, "start")
+            if not started["accepted"]:
+                raise SystemExit(f"the mission did not start: {started}")
+            viewer_process = await asyncio.create_subprocess_exec(
+                sys.executable, __file__, "viewers", str(port), mission, str(viewers), str(stalled)
+            )
+            while services.hub.viewers() < viewers + stalled:  # noqa: ASYNC110 (another process joins)
+                await asyncio.sleep(0.1)
+            delays_ms, answers_ms = [], []
+            for _ in range(times):
+                held_at.clear()
+                asked = time.perf_counter()
+                reply = await order(port, mission, "hold")
+                answered = time.perf_counter()
+                if reply["accepted"] and held_at:
+                    delays_ms.append(1e3 * (held_at[0] - watch.arrived))
+                    answers_ms.append(1e3 * (answered - asked))
+                await asyncio.sleep(0.3)
+                await order(port, mission, "resume")
+                await asyncio.sleep(0.5)
+                if (await services.journal.mission(mission)).outcome is not None:
+                    break
+            viewer_process.terminate()
+            await viewer_process.wait()
+            server.should_exit = True
+            await serving
+    return {
+        "viewers": viewers,
+        "stalled": stalled,
+        "commands": len(delays_ms),
+        "receipt_to_vehicle_p50_ms": percentile(delays_ms, 0.5),
+        "receipt_to_vehicle_p99_ms": percentile(delays_ms, 0.99),
+        "receipt_to_vehicle_max_ms": max(delays_ms, default=float("nan")),
+        "answer_median_ms": statistics.median(answers_ms) if answers_ms else float("nan"),
+    }
+
+
+async def viewers_only(port: int, mission_id: str, viewers: int, stalled: int) -> None:
+    sockets = [await asyncio.to_thread(stalled_viewer, port, mission_id) for _ in range(stalled)]
+    await asyncio.gather(*(view(port, mission_id, Tally()) for _ in range(viewers)))
+    del sockets
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("fanout")
+    one.add_argument("--viewers", type=int, default=100)
+    one.add_argument("--stalled", type=int, default=5)
+    one.add_argument("--hertz", type=float, default=10.0)
+    one.add_argument("--seconds", type=float, default=60.0)
+    two = commands.add_parser("abort")
+    two.add_argument("--viewers", type=int, default=50)
+    two.add_argument("--stalled", type=int, default=5)
+    two.add_argument("--times", type=int, default=100)
+    server = commands.add_parser("serve-fanout")
+    for name, kind in (("port", int), ("folder", str), ("hertz", float)):
+        server.add_argument(name, type=kind)
+    only = commands.add_parser("viewers")
+    for name, kind in (("port", int), ("mission_id", str), ("viewers", int), ("stalled", int)):
+        only.add_argument(name, type=kind)
+    given = vars(parser.parse_args())
+    run = {"fanout": fanout, "abort": abort, "serve-fanout": serve_fanout, "viewers": viewers_only}
+    result = asyncio.run(run[given.pop("command")](**given))
+    if result is not None:
+        print(json.dumps(result, indent=2))
+
+
+if __name__ == "__main__":
+    main()
