@@ -81,7 +81,7 @@ def clip_convex(ring: Ring, window: Ring) -> Ring:
 
 
 def clip_wedge(ring: Ring, x: float, y: float, angle: float, half_angle: float) -> Ring:
-    """The part of `ring` that is seen from (x, y) within `half_angle` < pi/2 of direction `angle` (rad ccw from east)."""
+    """The part of `ring` seen from (x, y) within `half_angle` < pi/2 of direction `angle` (rad ccw from east)."""
     apex = np.array([x, y])
     right, left = angle - half_angle, angle + half_angle
     ring = clip_half_plane(ring, apex, np.array([-np.sin(right), np.cos(right)]))
@@ -138,6 +138,17 @@ def segments_cross(start: FloatArray, end: FloatArray, region: Region) -> np.nda
     side_a, side_b = _cross(p, q, a), _cross(p, q, b)
     side_p, side_q = _cross(a, b, p), _cross(a, b, q)
     return ((side_a * side_b < 0) & (side_p * side_q < 0)).any(axis=1)
+
+
+def segments_touch(start: FloatArray, end: FloatArray, region: Region) -> np.ndarray:
+    """Whether each segment start -> end, both (n, 2), has a point in common with an edge of the region. (n,) bool."""
+    a, b = edges(region)
+    if len(a) == 0:
+        return np.zeros(len(start), dtype=bool)
+    p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
+    apart = (np.maximum(p, q) < np.minimum(a, b)).any(axis=2) | (np.minimum(p, q) > np.maximum(a, b)).any(axis=2)
+    meet = (_cross(p, q, a) * _cross(p, q, b) <= 0) & (_cross(a, b, p) * _cross(a, b, q) <= 0)
+    return (meet & ~apart).any(axis=1)
 
 
 def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, PlannerError
 
@@ -64,6 +63,8 @@ def _fit_linear_constant(distances: FloatArray, times: FloatArray) -> LinearCons
 
 
 def _fit_full(distances: FloatArray, turns: FloatArray, times: FloatArray) -> FullMotion:
+    from scipy.optimize import least_squares  # half a second to import, and only fits need it
+
     start = FullMotion()
 
     def model(p: FloatArray) -> FullMotion:

@@ -36,7 +36,10 @@ def constrained_actions(problem: Problem, belief: GridBelief) -> FloatArray:
 
 
 def lattice(problem: Problem) -> FloatArray:
-    """(n, 2) m: places `action_spacing` apart over the flight area's rectangle, centred in it; west to east first."""
+    """(n, 2) m: centres of as many squares of `action_spacing` as fit each way into the flight area's rectangle.
+
+    West to east first; no place stands on the fence.
+    """
     spacing = problem.action_spacing
     if spacing is None or not (np.isfinite(spacing) and spacing > 0):
         raise PlannerError(f"the action lattice needs a positive spacing, got {spacing}")
@@ -80,7 +83,7 @@ def may_fly(problem: Problem, places: FloatArray) -> np.ndarray:
 
 
 def _centred(low: float, high: float, spacing: float) -> FloatArray:
-    count = int((high - low) / spacing) + 1
+    count = max(1, int((high - low) / spacing + 1e-9))
     return 0.5 * (low + high) + (np.arange(count) - 0.5 * (count - 1)) * spacing
 
 

@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.belief.grid import GridBelief
 from planner.kernels import compiled, reference
@@ -36,7 +37,7 @@ from planner.kernels.model import (
 from planner.motion import flight_time, turn_between
 from planner.policy.actions import flight_window, lattice, may_fly
 from planner.policy.ellipse import table
-from planner.travel import RoadMap, road_map, travel_distances
+from planner.travel import RoadMap, lattice_distances, road_map, straight_suffices, travel_distances
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, PlannerError, Problem
 
 BasePolicy = Literal["ellipse", "fisher"]
@@ -76,7 +77,13 @@ class Simulation:
         directions = np.arctan2(flights[:, 1], flights[:, 0])
         turns = UNKNOWN_TURN if self.heading is None else turn_between(self.heading, directions)
         costs = flight_time(self.problem.motion, distances, turns) + self.problem.measurement_time
-        return Actions(places, costs, directions, np.full(len(places), -1, dtype=np.int64))
+        return Actions(places, costs, directions, self._in_lattice(places))
+
+    def _in_lattice(self, places: FloatArray) -> NDArray[np.int64]:
+        if len(self.rules.travel) == 0:
+            return np.full(len(places), -1, dtype=np.int64)
+        index = {(float(x), float(y)): k for k, (x, y) in enumerate(self.rules.places)}
+        return np.array([index.get((float(x), float(y)), -1) for x, y in places], dtype=np.int64)
 
     def run(self, actions: Actions, paths: Paths, tasks: Tasks) -> Outcomes:
         """Outcomes of all tasks, cut rollouts closed by the terminal value; tasks are shared out to the threads."""
@@ -119,11 +126,11 @@ def simulate(
         raise PlannerError("the platform's position must be two finite numbers")
     if horizon < 1 or threads < 1:
         raise PlannerError(f"horizon and threads must be at least 1, got {horizon} and {threads}")
-    roads = road_map(problem) if problem.no_fly or problem.flight_area is not None else None
+    roads = None if straight_suffices(problem) else road_map(problem)
     return Simulation(
         problem,
         start_of(belief),
-        rules_of(problem, base_policy, horizon),
+        rules_of(problem, base_policy, horizon, roads),
         here,
         heading,
         roads,
@@ -151,7 +158,7 @@ def start_of(belief: GridBelief) -> Start:
     )
 
 
-def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int) -> Rules:
+def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: RoadMap | None = None) -> Rules:
     """The problem as kernel numbers."""
     for name in ("sigma", "threshold"):
         if not (np.isfinite(getattr(problem, name)) and getattr(problem, name) > 0):
@@ -164,6 +171,9 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int) -> Rules:
     if problem.action_spacing is not None:
         places = lattice(problem)
         places = np.ascontiguousarray(places[may_fly(problem, places)])
+    travel = np.empty((0, 0))
+    if roads is not None and len(places) > 0:
+        travel = np.ascontiguousarray(lattice_distances(problem, roads, places))
     ratios, distances = table(problem.sigma)
     motion, speed, constant, turn_rate, acceleration = _motion_numbers(problem)
     return Rules(
@@ -183,7 +193,7 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int) -> Rules:
         policy={"ellipse": ELLIPSE, "fisher": FISHER}[base_policy],
         standoff=float(problem.standoff),
         places=places,
-        travel=np.empty((0, 0)),
+        travel=travel,
         grid_x=int(problem.action_grid[0]),
         grid_y=int(problem.action_grid[1]),
         window=flight_window(problem),
