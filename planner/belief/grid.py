@@ -216,9 +216,7 @@ def _extent_of(belief: GridBelief, cells: np.ndarray) -> tuple[float, float, flo
 
 def _no_common_point(belief: GridBelief) -> InconsistentBearings:
     if belief.bearings == 0:
-        return InconsistentBearings(
-            "the bearing points past the target area: check area, antenna and place"
-        )
+        return InconsistentBearings("the bearing points past the target area: check area, antenna and place")
     return InconsistentBearings(
         f"the +-4 sigma wedges of {belief.bearings + 1} bearings have no common point in the area: "
         "at least one bearing is an outlier"
