@@ -174,8 +174,14 @@ async def open_services(settings: Settings) -> AsyncIterator[Services]:
 
 
 @asynccontextmanager
-async def open_simulation(settings: Settings) -> AsyncIterator[tuple[Services, EmitterAroundHome]]:
-    """The same, with the simulated emitter's truth beside it (for whoever grades the answer)."""
+async def open_simulation(
+    settings: Settings, leave_flying: bool = True
+) -> AsyncIterator[tuple[Services, EmitterAroundHome]]:
+    """The same, with the simulated emitter's truth beside it (for whoever grades the answer).
+
+    leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
+    server on the same data directory finds it.
+    """
     clock = ScaledClock(factor=settings.time_factor)
     warming = asyncio.create_task(asyncio.to_thread(_warm_up))
     async with open_journal(settings, lambda: clock.now()) as journal:
@@ -210,6 +216,7 @@ async def open_simulation(settings: Settings) -> AsyncIterator[tuple[Services, E
             yield services, receiver
         finally:
             await asyncio.gather(warming, return_exceptions=True)
+            in_flight = missions.active_mission_id is not None
             await missions.shut_down()
-            if simulated is not None:
+            if simulated is not None and not (leave_flying and in_flight):
                 await hangar.leave(simulated)

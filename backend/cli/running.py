@@ -59,11 +59,11 @@ class _Server(uvicorn.Server):
 
 
 @asynccontextmanager
-async def running_server(settings: Settings) -> AsyncIterator[RunningServer]:
+async def running_server(settings: Settings, leave_flying: bool = False) -> AsyncIterator[RunningServer]:
     """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError."""
     bound = _bind(settings.host, settings.port)
     try:
-        async with open_simulation(settings) as (services, receiver):
+        async with open_simulation(settings, leave_flying) as (services, receiver):
             app = create_app(settings, lambda _: nullcontext(services))
             server = _Server(server_config(settings, app))
             gone = asyncio.create_task(server.serve(sockets=[bound]))

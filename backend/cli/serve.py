@@ -59,7 +59,7 @@ def serve(
 
 
 async def _serve(settings: Settings, json_: bool) -> None:
-    async with running_server(settings) as running:
+    async with running_server(settings, leave_flying=True) as running:
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         if json_:
             print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})

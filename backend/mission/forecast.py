@@ -10,10 +10,11 @@ import numpy as np
 
 from backend.events import BearingMeasured, CandidateFact
 from backend.mission.localization import Localization
-from backend.mission.planning import candidate_facts, cost_of, decide
-from backend.mission.safety import Situation, place_vetoes
+from backend.mission.planning import candidate_facts, cost_of, decide, way_to
+from backend.mission.safety import Situation, place_vetoes, standing_vetoes
 from backend.spec import Place
 from hardware.readings import GeoPoint
+from planner.types import PlannerError
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +55,20 @@ def forecast(
     bearings = task.planner_bearings(measured)
     start, end = (task.frame.to_enu(GeoPoint(p.lat, p.lon)) for p in (platform, place))
     cost = cost_of(task, task.planning_belief(bearings), bearings, start, end)
-    reason = cost.reason
-    if situation is not None:
-        altitude = task.limits.home_amsl_m + task.mission.flight.altitude_relative_m
-        vetoes = place_vetoes(task.limits, situation, GeoPoint(place.lat, place.lon), altitude)
-        reason = reason or (vetoes[0].detail if vetoes else "")
+    altitude, point = task.limits.home_amsl_m + task.mission.flight.altitude_relative_m, GeoPoint(place.lat, place.lon)
+    if situation is None:
+        vetoes = standing_vetoes(task.limits, point, altitude)
+    else:
+        vetoes = place_vetoes(task.limits, situation, point, altitude, _way(task, start, end))
+    reason = vetoes[0].detail if vetoes else cost.reason
     return Forecast(place, not reason, reason, cost.mean_s, cost.std_error_s, cost.p90_s, cost.rollouts)
+
+
+def _way(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:
+    try:
+        return way_to(task, start, end)[:-1]
+    except PlannerError:
+        return []
 
 
 def preview(task: Localization, start: Place, threads: int) -> Preview:

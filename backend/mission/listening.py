@@ -26,13 +26,12 @@ class Listening:
         self._silent_after_s = silent_after_s
         self._samples: deque[PowerSample] = deque(maxlen=KEPT_SAMPLES)
         self._heard_at_s: float | None = None
-        self._began_at_s = clock.now()
+        self._quiet_s = 0.0
         self._heard = asyncio.Event()
         self._fault: str | None = None
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
-        self._began_at_s = self._clock.now()
         self._task = asyncio.create_task(self._listen())
 
     async def stop(self) -> None:
@@ -49,6 +48,7 @@ class Listening:
                 async for sample in self._receiver.samples():
                     self._samples.append(sample)
                     self._heard_at_s = self._clock.now()
+                    self._quiet_s = 0.0
                     self._heard.set()
                     self._fault = None
                 self._fault = "the receiver was closed"
@@ -64,7 +64,11 @@ class Listening:
             return "off"
         if self._fault is not None:
             return "lost"
-        return "silent" if self._quiet_s() > self._silent_after_s else "ok"
+        return "silent" if self._quiet_s > self._silent_after_s else "ok"
+
+    def wait(self, seconds: float) -> None:
+        """So much time went by in which a sample would have been noticed; silence is counted in it."""
+        self._quiet_s += seconds
 
     @property
     def trouble(self) -> str:
@@ -73,12 +77,9 @@ class Listening:
             case "lost":
                 return self._fault or "the receiver is gone"
             case "silent":
-                return f"silent for {self._quiet_s():.0f} s"
+                return f"silent for {self._quiet_s:.0f} s"
             case _:
                 return ""
-
-    def _quiet_s(self) -> float:
-        return self._clock.now() - (self._began_at_s if self._heard_at_s is None else self._heard_at_s)
 
     @property
     def last(self) -> PowerSample | None:

@@ -134,15 +134,9 @@ def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
     return (*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s))
 
 
-def place_vetoes(
-    limits: Limits,
-    situation: Situation,
-    place: GeoPoint,
-    altitude_amsl_m: float,
-    way: Sequence[tuple[float, float]] = (),
-) -> tuple[Veto, ...]:
-    """May the vehicle fly to `place` and measure there? `way`: points in between, m ENU; straight without them."""
-    found = list(vehicle_vetoes(situation))
+def standing_vetoes(limits: Limits, place: GeoPoint, altitude_amsl_m: float) -> tuple[Veto, ...]:
+    """May anything fly at `place` at all, wherever the vehicle is?"""
+    found = []
     relative = altitude_amsl_m - limits.home_amsl_m
     low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
     if not low - 0.5 <= relative <= high + 0.5:
@@ -153,20 +147,26 @@ def place_vetoes(
                 "change the mission's altitude or its band",
             )
         )
-    to = limits.frame.to_enu(place)
-    if math.hypot(*to) > FAR_M:
-        return (
-            *found,
-            Veto(
-                "distance",
-                f"the place is {math.hypot(*to) / 1000:.1f} km from home, more than {FAR_M / 1000:.0f} km",
-                "choose a place nearer to home",
-            ),
-        )
-    found += _area_vetoes(limits, to, "the place is")
+    at = limits.frame.to_enu(place)
+    if math.hypot(*at) > FAR_M:
+        detail = f"the place is {math.hypot(*at) / 1000:.1f} km from home, more than {FAR_M / 1000:.0f} km"
+        return (*found, Veto("distance", detail, "choose a place nearer to home"))
+    return (*found, *_area_vetoes(limits, at, "the place is"))
+
+
+def place_vetoes(
+    limits: Limits,
+    situation: Situation,
+    place: GeoPoint,
+    altitude_amsl_m: float,
+    way: Sequence[tuple[float, float]] = (),
+) -> tuple[Veto, ...]:
+    """May the vehicle fly to `place` and measure there? `way`: points in between, m ENU; straight without them."""
+    standing = standing_vetoes(limits, place, altitude_amsl_m)
+    found = [*vehicle_vetoes(situation), *standing]
     position = situation.telemetry.position
-    if position is not None:
-        path = LineString([limits.frame.to_enu(position), *way, to])
+    if position is not None and "distance" not in [veto.rule for veto in standing]:
+        path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
         if not found:
             found += _path_vetoes(limits, path)
         flight_s = path.length / limits.speed_m_s + limits.measurement_time_s

@@ -15,6 +15,9 @@ from backend.mission.state import MissionState
 from hardware.readings import Telemetry
 
 TICK_S = 0.2
+LONGEST_TICK_S = 1.0
+"""A tick that came later than this was held up by the machine: more silence than this was not observed."""
+
 TRACK_S = 0.5
 HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
@@ -60,6 +63,7 @@ class Watch:
     _battery_told: bool = False
     _on_ground_since: float | None = None
     _tracked_at: float = -math.inf
+    _ticked_at: float = math.inf
 
     def situation(self) -> Situation:
         return Situation(self.equipment.vehicle.telemetry(), self.equipment.clock.now(), self.drain.percent_s)
@@ -72,6 +76,8 @@ class Watch:
     def tick(self) -> None:
         """One look at everything."""
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
+        self.listening.wait(min(max(now - self._ticked_at, 0.0), LONGEST_TICK_S))
+        self._ticked_at = now
         self.drain.update(telemetry, now)
         self.notice_pilot("")
         self._links(telemetry, now)

@@ -210,7 +210,7 @@ async def test_a_vehicle_that_is_gone_holds_with_an_alert_and_comes_back(stage: 
 
 
 async def test_a_lost_console_holds_then_returns(stage: Stage) -> None:
-    mission = spec().model_copy(update={"timers": TimerSpec(console_lost_hold_s=5.0, console_lost_return_s=20.0)})
+    mission = spec().model_copy(update={"timers": TimerSpec(console_lost_hold_s=0.2, console_lost_return_s=0.6)})
     mission_id = await stage.service.create(mission, "anna")
     assert (await order(stage, mission_id, commands.Start())).accepted
     await stage.until(mission_id, "took_off")
