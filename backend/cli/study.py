@@ -184,6 +184,7 @@ def _fly(
                 workers=workers,
                 scheduler=scheduler,
                 progress=lambda done, task=task: bars.advance(task, done),
+                remark=remark,
             )
             summaries.append(study.table.summarize(cell, missions))
     return summaries

@@ -27,6 +27,9 @@ WRITE_EVERY = 10.0
 Progress = Callable[[int], None]
 """Told how many more missions are done."""
 
+Remark = Callable[[str], None]
+"""Told what the user should know."""
+
 
 def run_cell(
     cell: Cell,
@@ -36,6 +39,7 @@ def run_cell(
     workers: int = 1,
     scheduler: str | None = None,
     progress: Progress = lambda done: None,
+    remark: Remark = lambda text: None,
 ) -> pd.DataFrame:
     """All `runs` missions of the cell, those on disk included, one row each.
 
@@ -45,6 +49,8 @@ def run_cell(
     if runs < 1 or workers < 1:
         raise PlannerError(f"runs and workers must be 1 or more, got {runs} and {workers}")
     results = Results(directory, cell)
+    if results.stale:
+        remark(f"{results.path}: {results.stale} missions were flown by another version of the planner, flown again")
     missing = results.missing(runs)
     progress(runs - len(missing))
     waiting: list[Mission] = []

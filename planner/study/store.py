@@ -7,28 +7,39 @@ from collections.abc import Iterable
 from dataclasses import asdict, fields
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from planner.study.cell import Cell
+from planner.study.fingerprint import fingerprint
 from planner.study.mission import Mission
 from planner.types import PlannerError
+
+CODE = "code"
+"""Column with the fingerprint of the planner that flew the mission."""
 
 COLUMNS = [field.name for field in fields(Mission)]
 
 
 class Results:
-    """The missions of one cell flown so far. A study that was broken off goes on with those that are missing."""
+    """The missions of one cell flown so far. A study that was broken off goes on with those that are missing.
+
+    stale: missions on disk that another version of the planner flew; they do not count and go with the next write.
+    """
 
     def __init__(self, directory: Path, cell: Cell) -> None:
         self.path = directory / f"{cell.name()}.parquet"
         self._cell = cell
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            self._frame = pd.read_parquet(self.path) if self.path.exists() else pd.DataFrame(columns=COLUMNS)
+            self._frame = pd.read_parquet(self.path) if self.path.exists() else pd.DataFrame(columns=[*COLUMNS, CODE])
         except (OSError, ValueError) as error:
             raise PlannerError(f"{self.path}: cannot hold results ({error}); choose another directory") from error
-        if missing := sorted(set(COLUMNS) - set(self._frame.columns)):
+        if missing := sorted({*COLUMNS, CODE} - set(self._frame.columns)):
             raise PlannerError(f"{self.path}: lacks the columns {', '.join(missing)}; move it away to start afresh")
+        current = self._frame[CODE].to_numpy(dtype=object) == fingerprint()
+        self.stale = int(np.count_nonzero(~current))
+        self._frame = self._frame.loc[current]
 
     def missing(self, runs: int) -> list[int]:
         """Run numbers 0 .. runs - 1 that have not been flown."""
@@ -38,6 +49,7 @@ class Results:
     def add(self, missions: Iterable[Mission]) -> None:
         """Add rows and write the file."""
         rows = pd.DataFrame([asdict(mission) for mission in missions], columns=COLUMNS)
+        rows[CODE] = fingerprint()
         for key, value in self._cell.fields().items():
             rows[key] = value
         known = [self._frame] if len(self._frame) else []
