@@ -62,7 +62,7 @@ def draw_courses() -> Figure:
     for panel, title in titles.items():
         panel.plot(1.0, 0.0, marker="*", color="black", markersize=10)
         panel.set(title=title, xlabel="x", ylabel="y", aspect="equal")
-        panel.legend(fontsize="x-small", loc="upper left")
+        panel.legend(fontsize="x-small", loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
 
 
