@@ -16,11 +16,14 @@ class BootClock:
         self._offset: float | None = None
         self._boot = 0.0
         self._late: list[float] = []
+        self.reboots = 0
+        """How often the time since boot went back."""
 
     def to_utc(self, boot_s: float, heard_at_s: float) -> float:
         """UTC of the moment `boot_s` after boot, from a message heard at `heard_at_s` (UTC); never later than that."""
         observed = heard_at_s - boot_s
         rebooted = boot_s < self._boot - _STEP
+        self.reboots += rebooted
         if self._offset is None or rebooted or observed <= self._offset:
             self._offset = observed
             self._late.clear()

@@ -43,13 +43,13 @@ class ControlLatch:
         """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
         self._mode = mode
         was_armed, self._armed = self._armed, armed
-        if not armed:
-            if was_armed:
-                self._expected = None  # the flight has ended; a new one starts with a command
+        if was_armed and not armed:
+            self._expected = None  # the flight has ended; a new one starts with a command
+        if not armed and self._expected is None:
             return None
         if self._reason is not None:
             return None
-        if not in_air and mode in self._calm:
+        if not in_air and mode in self._calm and self._tolerated is None:
             ours = True  # an autopilot goes to its waiting mode by itself once it has landed
         elif self._expected is None:
             ours = mode in self._calm or not in_air
@@ -61,6 +61,10 @@ class ControlLatch:
             None if ours else self.latch(f"the vehicle is in {self._mode_name(mode)}, which Crossfix did not command")
         )
 
+    def stand_down(self) -> None:
+        """What was commanded came to nothing and the vehicle stands on the ground: its modes are anybody's again."""
+        self._expected = None
+
     def latch(self, reason: str) -> str:
         """Close it for a reason other than the mode (the autopilot's own word that the pilot moved the sticks)."""
         self._reason = reason
@@ -69,5 +73,5 @@ class ControlLatch:
     def release(self) -> None:
         """The operator's deed: the mode of this moment is accepted, commands pass again."""
         self._reason = None
-        self._expected = None if self._mode is None else frozenset({self._mode})
+        self._expected = frozenset({self._mode}) if self._armed and self._mode is not None else None
         self._tolerated = None

@@ -65,6 +65,10 @@ class Snapshot:
     _headings: deque[HeadingSample] = field(default_factory=deque)
 
     @property
+    def reboots(self) -> int:
+        return self._boot_clock.reboots
+
+    @property
     def in_air(self) -> bool | None:
         if self.landed_state != _UNDEFINED:
             return self.landed_state != _ON_GROUND

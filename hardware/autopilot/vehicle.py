@@ -130,12 +130,18 @@ class MavsdkVehicle:
         await self._commander.ask(request_message(HOME_POSITION_ID))
 
     async def _keep_streams(self) -> None:
-        """Ask for the telemetry rates again when they have ceased: an autopilot that rebooted forgot them."""
+        """Ask for the telemetry rates again when the autopilot has forgotten them."""
+        reboots = self._snapshot.reboots
         while True:
             await asyncio.sleep(1.0)
             attitude = self._snapshot.attitude_heard_at_s
-            if self._connected and (attitude is None or self._clock.now() - attitude > LINK_LOST_S):
-                await self._request_streams()
+            ceased = attitude is None or self._clock.now() - attitude > LINK_LOST_S
+            if self._snapshot.reboots != reboots:
+                reboots = self._snapshot.reboots
+                self._announce("the autopilot has started anew")
+            elif not (self._connected and ceased):
+                continue
+            await self._request_streams()
 
     async def _watch_link(self) -> None:
         while True:
@@ -368,7 +374,11 @@ class MavsdkVehicle:
             await self.goto(place, target_amsl, 5.0)
             return
         manoeuvre = self._begin("Take-off")
-        await self._leave_ground(manoeuvre, dialect, altitude_relative_m, target_amsl)
+        try:
+            await self._leave_ground(manoeuvre, dialect, altitude_relative_m, target_amsl)
+        finally:
+            if not self._snapshot.armed:
+                self._latch.stand_down()
         slack = max(1.0, 0.03 * altitude_relative_m)
 
         def climbed() -> bool:

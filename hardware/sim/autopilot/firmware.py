@@ -113,6 +113,8 @@ class Firmware:
         self.gcs_heard_at: float | None = None
         self.gcs_failsafe = False
         self.heartbeat_due = False
+        self.rebooted = False
+        """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
         self._armed_at = 0.0
         self._battery_failsafe = False
 
@@ -168,6 +170,14 @@ class Firmware:
             self.faults.ignore_yaw -= 1
             return True
         return False
+
+    def reboot(self) -> None:
+        """Time, mode, arming and whatever a ground station had asked for begin anew. Raises ValueError in the air."""
+        if self.flight.in_air:
+            raise ValueError("The autopilot does not reboot in the air: land first.")
+        self.flight.disarm()
+        self.time, self.mode, self.gcs_heard_at = 0.0, next(iter(self.modes)), None
+        self.rebooted = True
 
     # -- arming ----------------------------------------------------------------------------------------------------
 

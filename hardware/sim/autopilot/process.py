@@ -58,7 +58,11 @@ class Process:
         while not self._orders.stop_requested:
             now = time.monotonic()
             behind = (now - started) - self._firmware.time / self._speedup
-            if behind > MOST_BEHIND_WALL:
+            if self._firmware.rebooted:
+                self._firmware.rebooted = False
+                self._station.default_streams()
+                started += behind
+            elif behind > MOST_BEHIND_WALL:
                 started += behind
             self._advance((now - started) * self._speedup)
             if now >= next_look:

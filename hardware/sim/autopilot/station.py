@@ -37,9 +37,15 @@ class Station:
         self._encoder = mavlink.MAVLink(None, _SYSTEM, _COMPONENT)
         self._decoder = mavlink.MAVLink(None)
         self._decoder.robust_parsing = True
-        self._period: dict[int, float] = {mavlink.MAVLINK_MSG_ID_HEARTBEAT: 1.0}
-        self._period |= {message: 1.0 / hz for message, hz in firmware.streams_by_default.items()}
-        self._due: dict[int, float] = dict.fromkeys(self._period, 0.0)
+        self._period: dict[int, float] = {}
+        self._due: dict[int, float] = {}
+        self.default_streams()
+
+    def default_streams(self) -> None:
+        """What is sent without being asked: as after every start of the autopilot."""
+        self._period = {mavlink.MAVLINK_MSG_ID_HEARTBEAT: 1.0}
+        self._period |= {message: 1.0 / hz for message, hz in self.firmware.streams_by_default.items()}
+        self._due = dict.fromkeys(self._period, self.firmware.time)
 
     # -- out -------------------------------------------------------------------------------------------------------
 

@@ -34,6 +34,7 @@ def test_a_reboot_starts_anew() -> None:
     clock.to_utc(500.0, EPOCH)
 
     assert clock.to_utc(2.0, EPOCH + 10.0) == pytest.approx(EPOCH + 10.0)
+    assert clock.reboots == 1
 
 
 def test_a_lasting_step_is_followed_and_a_burst_of_lateness_is_not() -> None:

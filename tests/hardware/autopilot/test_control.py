@@ -92,3 +92,23 @@ def test_a_late_word_of_being_disarmed_does_not_forget_the_take_off_command() ->
 
     assert control.controller == "crossfix"
     assert flying(control, POSCTL) is not None
+
+
+def test_a_take_off_that_came_to_nothing_leaves_the_modes_on_the_ground_to_anybody() -> None:
+    control = latch()
+    control.observe(HOLD, armed=False, in_air=False)
+    control.command(frozenset({GUIDED}))
+    control.stand_down()
+
+    assert control.observe(POSCTL, armed=False, in_air=False) is None
+    assert control.controller == "nobody"
+
+
+def test_a_mode_selected_on_the_ground_during_our_take_off_latches() -> None:
+    control = latch()
+    control.observe(HOLD, armed=False, in_air=False)
+    control.command(frozenset({GUIDED}))
+
+    assert control.observe(POSCTL, armed=False, in_air=False) is not None
+    control.release()
+    assert control.observe(HOLD, armed=False, in_air=False) is None

@@ -1,0 +1,203 @@
+"""MavsdkVehicle beyond its port's contract: against the simulated autopilots over real sockets."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from hardware.autopilot.connect import connect_vehicle
+from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.clock import ScaledClock
+from hardware.frame import LocalFrame
+from hardware.ports import PilotHasControl, VehicleError
+from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, launch_simulated
+
+SPEEDUP = 16.0
+
+
+@dataclass
+class Rig:
+    vehicle: MavsdkVehicle
+    clock: ScaledClock
+    sim: SimulatedAutopilot
+    lines: list[str]
+
+    async def until(self, happened: Callable[[], bool], seconds: float = 60.0) -> None:
+        end = self.clock.now() + seconds
+        while not happened():
+            assert self.clock.now() < end, f"did not happen in {seconds} s: {self.lines}, {self.vehicle.telemetry()}"
+            await self.clock.sleep(0.1)
+
+    async def heard(self, words: str) -> None:
+        await self.until(lambda: any(words in line for line in self.lines))
+
+
+async def _keep(source: AsyncIterator[str], lines: list[str]) -> None:
+    async for line in source:
+        lines.append(line)  # noqa: PERF401 (each line must be seen when it comes)
+
+
+async def make(flavour: str, **setting: object) -> AsyncIterator[Rig]:
+    clock = ScaledClock(None, SPEEDUP)
+    sim = await launch_simulated(Setting(flavour=flavour, speedup=SPEEDUP, **setting))  # pyright: ignore
+    lines: list[str] = []
+    try:
+        vehicle = await connect_vehicle(sim.url, clock)
+
+        listener = asyncio.create_task(_keep(vehicle.changes(), lines))
+        try:
+            yield Rig(vehicle, clock, sim, lines)
+        finally:
+            await vehicle.close()
+            await asyncio.wait_for(listener, 5)
+    finally:
+        await sim.stop()
+
+
+@pytest.fixture(params=["px4", "ardupilot"])
+async def rig(request: pytest.FixtureRequest) -> AsyncIterator[Rig]:
+    async for rig in make(request.param):
+        yield rig
+
+
+@pytest.fixture
+async def px4() -> AsyncIterator[Rig]:
+    async for rig in make("px4"):
+        yield rig
+
+
+async def test_headings_are_true_at_their_own_time_while_turning(rig: Rig) -> None:
+    """A heading stamped 0.1 s wrong would be 4.5 degrees wrong at 45 deg/s."""
+    await rig.vehicle.take_off(10.0)
+    turn = asyncio.create_task(rig.vehicle.turn(45.0))
+    truth: list[tuple[float, float]] = []
+    while not turn.done():
+        asked = rig.clock.now()
+        heading = (await rig.sim.order("truth"))["heading_deg"]
+        answered = rig.clock.now()
+        if answered - asked < 0.1:
+            truth.append((0.5 * (asked + answered), heading))
+        await asyncio.sleep(0.005)
+    await turn
+    await rig.clock.sleep(0.5)
+
+    samples = rig.vehicle.headings(truth[0][0] - 1.0)
+    told = np.interp(
+        [at for at, _ in truth],
+        [sample.at_s for sample in samples],
+        np.unwrap([sample.heading_deg for sample in samples], period=360.0),
+    )
+    error = [math.remainder(a - b, 360.0) for a, (_, b) in zip(told, truth, strict=True)]
+    assert len(error) > 20
+    assert abs(float(np.median(error))) < 2.0
+    assert float(np.percentile(np.abs(error), 90)) < 4.0
+
+
+async def test_unsafe_failsafes_are_mended_on_wish_and_then_pass(rig: Rig) -> None:
+    flavour = rig.vehicle.telemetry().autopilot
+    unsafe = {"px4": {"NAV_DLL_ACT": 0, "COM_RC_OVERRIDE": 2}, "ardupilot": {"FS_GCS_ENABLE": 0, "MAV_GCS_SYSID": 1}}
+    for name, value in unsafe[flavour].items():
+        await rig.sim.order("set_param", name=name, value=value)
+
+    done = await rig.vehicle.mend_failsafes()
+
+    assert {line.split()[0] for line in done} == set(unsafe[flavour])
+    checks = [check for check in await rig.vehicle.preflight() if check.name.startswith("Failsafe")]
+    assert all(check.ok for check in checks), checks
+    assert await rig.vehicle.mend_failsafes() == []
+
+
+async def test_a_rebooted_autopilot_is_asked_for_its_telemetry_again(rig: Rig) -> None:
+    await rig.clock.sleep(10.0)
+    await rig.sim.order("reboot")
+
+    await rig.clock.sleep(5.0)
+    await rig.until(lambda: len(rig.vehicle.headings(rig.clock.now() - 2.0)) > 30)  # 20 Hz again
+    assert rig.vehicle.telemetry().connected
+    samples = rig.vehicle.headings(rig.clock.now() - 30.0)
+    assert all(a.at_s < b.at_s for a, b in pairwise(samples))
+    assert samples[-1].at_s <= rig.clock.now()
+
+
+async def test_a_gps_jump_is_announced(px4: Rig) -> None:
+    await px4.vehicle.take_off(10.0)
+    await px4.sim.order("gps_jump", north_m=40, seconds=5)
+
+    await px4.heard("GPS position jumped by 4")
+
+
+async def test_hold_during_take_off_stops_the_climb(rig: Rig) -> None:
+    take_off = asyncio.create_task(rig.vehicle.take_off(100.0))
+    await rig.until(lambda: (rig.vehicle.telemetry().altitude_relative_m or 0.0) > 8.0)
+    await rig.vehicle.hold()
+    with pytest.raises(VehicleError, match="replaced by Hold"):
+        await take_off
+    await rig.clock.sleep(8.0)
+
+    height = rig.vehicle.telemetry().altitude_relative_m
+    assert height is not None
+    assert 5.0 < height < 40.0
+
+
+async def test_two_holds_at_once_both_succeed(rig: Rig) -> None:
+    await rig.vehicle.take_off(10.0)
+
+    await asyncio.gather(rig.vehicle.hold(), rig.vehicle.hold())
+
+    assert rig.vehicle.telemetry().mode in ("HOLD", "BRAKE")
+
+
+async def test_take_off_waits_out_an_autopilot_that_is_not_ready_and_says_so(px4: Rig) -> None:
+    await px4.sim.order("prearm", ok=False)
+    take_off = asyncio.create_task(px4.vehicle.take_off(10.0))
+    await px4.heard("take-off tried again: The autopilot refused arming")
+    await px4.sim.order("prearm", ok=True)
+    await asyncio.wait_for(take_off, 30)
+
+    assert px4.vehicle.telemetry().in_air
+
+
+async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: Rig) -> None:
+    await px4.clock.sleep(7.0)
+    await px4.sim.order("prearm", ok=False)
+    take_off = asyncio.create_task(px4.vehicle.take_off(10.0))
+    await px4.heard("take-off tried again")
+    await px4.sim.order("pilot_mode", mode="STABILIZED")
+
+    with pytest.raises(PilotHasControl, match="STABILIZED"):
+        await asyncio.wait_for(take_off, 30)
+
+
+async def test_a_cancelled_flight_sends_nothing_more_and_the_vehicle_obeys_the_next_order(rig: Rig) -> None:
+    await rig.vehicle.take_off(10.0)
+    home = rig.vehicle.telemetry().home
+    amsl = rig.vehicle.telemetry().altitude_amsl_m
+    assert home is not None
+    assert amsl is not None
+    far = LocalFrame(home).to_geo(0.0, 300.0)
+    flight = asyncio.create_task(rig.vehicle.goto(far, amsl, 8.0))
+    await rig.clock.sleep(6.0)
+    flight.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await flight
+    at = (await rig.sim.order("ping"))["time_s"]
+    await rig.clock.sleep(10.0)
+    assert (await rig.sim.order("commands", since_s=at))["commands"] == []
+
+    await rig.vehicle.hold()
+    assert rig.vehicle.telemetry().controller == "crossfix"
+
+
+async def test_telemetry_keeps_its_rates_in_simulated_time(rig: Rig) -> None:
+    await rig.clock.sleep(12.0)
+    headings = rig.vehicle.headings(rig.clock.now() - 10.0)
+    gaps = np.diff([sample.at_s for sample in headings])
+
+    assert len(headings) == pytest.approx(195, abs=15)
+    assert float(gaps.max()) < 0.2
