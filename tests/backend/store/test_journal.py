@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 
 import numpy as np
@@ -50,22 +49,6 @@ def bearing(snr_db: float | None = 20.0, bearing_deg: float = 1 / 3) -> BearingM
     )
 
 
-async def test_sequence_counts_from_one_without_gaps(journal):
-    first = await journal.append("m", [DRAFT, hold()])
-    second = await journal.append("m", [hold("rain")])
-    assert [record.seq for record in first + second] == [1, 2, 3]
-    assert await journal.read("m") == first + second
-    assert await journal.read("m", after=2) == second
-
-
-async def test_concurrent_appends_get_distinct_numbers(journal):
-    await journal.append("m", [DRAFT])
-    await asyncio.gather(*(journal.append("m", [hold(str(n))]) for n in range(30)))
-    read = await journal.read("m")
-    assert [record.seq for record in read] == list(range(1, 32))
-    assert {record.event.reason for record in read[1:]} == {str(n) for n in range(30)}
-
-
 async def test_another_process_reads_back_the_same_facts(bench):
     first = await bench.open()
     written = await first.append("m", [DRAFT, STARTED, bearing()])
@@ -87,26 +70,6 @@ async def test_numbers_that_are_not_finite_are_unknown_or_refused(journal):
     assert after.seq == 3
 
 
-async def test_a_mission_begins_with_its_draft(journal):
-    with pytest.raises(ValueError, match="no draft"):
-        await journal.append("m", [hold()])
-    assert await journal.read("m") == []
-
-
-async def test_a_cancelled_caller_leaves_no_gap_and_no_double(journal):
-    await journal.append("m", [DRAFT])
-    for n in range(10):
-        task = asyncio.create_task(journal.append("m", [hold(str(n))]))
-        await asyncio.sleep(0)
-        task.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await task
-    await journal.append("m", [hold("end")])
-    read = await journal.read("m")
-    assert [record.seq for record in read] == list(range(1, len(read) + 1))
-    assert [record.event.reason for record in read[1:]] == [*map(str, range(10)), "end"]
-
-
 async def test_a_second_writer_is_found_out(bench):
     one, other = await bench.open(), await bench.open("other.spool")
     await one.append("m", [DRAFT])
@@ -114,13 +77,6 @@ async def test_a_second_writer_is_found_out(bench):
     await other.append("m", [hold("theirs")])
     with pytest.raises(JournalConflict):
         await one.append("m", [hold("ours")])
-
-
-async def test_unfinished_are_those_started_and_not_ended(journal):
-    await journal.append("draft", [DRAFT])
-    await journal.append("flying", [DRAFT, STARTED])
-    await journal.append("over", [DRAFT, STARTED, ENDED])
-    assert await journal.unfinished() == ["flying"]
 
 
 async def test_the_list_tells_phase_outcome_and_counts(bench):

@@ -1,0 +1,101 @@
+"""No request, however odd, makes the server stumble; every answer is what the schema promises.
+
+CROSSFIX_FUZZ_REQUESTS=100000 makes it a long run: the default is a taste of it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+from collections import Counter
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import httpx
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import seed as fixed_seed
+from hypothesis import strategies as st
+from schemathesis.checks import (
+    content_type_conformance,
+    not_a_server_error,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from backend.api.schema import wire_schema
+from backend.cli.running import running_server
+from backend.settings import Settings
+
+REQUESTS = int(os.environ.get("CROSSFIX_FUZZ_REQUESTS", "400"))
+SEED = int(os.environ.get("CROSSFIX_FUZZ_SEED", "1"))
+
+UNBUILT = {"scene"}
+"""Tags of operations whose room is being built."""
+
+CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance, response_schema_conformance]
+
+
+class Targets:
+    """Ids that exist, so that requests get past the first "not found"."""
+
+    def __init__(self, base_url: str) -> None:
+        self.base_url = base_url
+        self.spec = httpx.get(f"{base_url}/api/defaults").json()["spec"]
+        self.missions = [httpx.post(f"{base_url}/api/missions", json=self.spec).json()["mission_id"] for _ in range(3)]
+        body = {"command_id": str(uuid4()), "command": {"kind": "start"}}
+        started = httpx.post(f"{base_url}/api/missions/{self.missions[0]}/commands", json=body).json()
+        assert started["accepted"], started
+
+    def aim(self, case: schemathesis.Case, chance: random.Random) -> None:
+        """Half of the time at something that is there."""
+        if "mission_id" in (case.path_parameters or {}) and chance.random() < 0.7:
+            case.path_parameters["mission_id"] = chance.choice(self.missions)
+        body = case.body
+        if isinstance(body, dict) and "area" in body and chance.random() < 0.7:
+            body["area"] = self.spec["area"]
+        if isinstance(body, dict) and isinstance(body.get("planner"), dict):
+            body["planner"].pop("budget", None)
+
+
+def fuzz(base_url: str) -> Counter[tuple[str, int]]:
+    targets, seen = Targets(base_url), Counter()
+    schema = schemathesis.openapi.from_dict(wire_schema("0"))
+    operations = [result.ok() for result in schema.get_all_operations()]
+    operations = [operation for operation in operations if not UNBUILT & set(operation.tags or ())]
+    modes = [schemathesis.GenerationMode.POSITIVE, schemathesis.GenerationMode.NEGATIVE]
+    cases = st.one_of([operation.as_strategy(generation_mode=mode) for operation in operations for mode in modes])
+
+    @fixed_seed(SEED)
+    @settings(
+        max_examples=REQUESTS,
+        deadline=None,
+        database=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(cases, st.integers(0, 2**32))
+    def one(case: schemathesis.Case, number: int) -> None:
+        targets.aim(case, random.Random(number))
+        response: Any = case.call(base_url=base_url, timeout=60)
+        seen[case.operation.label, response.status_code] += 1
+        case.validate_response(response, checks=CHECKS)
+
+    one()
+    return seen
+
+
+@pytest.mark.system
+@pytest.mark.timeout(120 + REQUESTS)
+async def test_no_request_makes_the_server_stumble(tmp_path: Path, capsys):
+    server_settings = Settings(port=0, data_dir=tmp_path, time_factor=10.0, spool_reserve_bytes=2**20)
+    async with running_server(server_settings) as running:
+        seen = await asyncio.to_thread(fuzz, running.url)
+        assert (await asyncio.to_thread(httpx.get, f"{running.url}/api/health")).status_code == 200
+    with capsys.disabled():
+        statuses = Counter(status for (_, status), count in seen.items() for _ in range(count))
+        print(f"\n{sum(seen.values())} requests to {len({label for label, _ in seen})} operations: {dict(statuses)}")
+    assert sum(seen.values()) >= REQUESTS
