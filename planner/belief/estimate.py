@@ -39,7 +39,10 @@ def most_likely(mass: FloatArray) -> int:
 
 
 def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: float) -> tuple[float, float]:
-    """The point with the least mean distance, by Weiszfeld's iteration from the mean until a step < tolerance (m)."""
+    """The point with the least mean distance, by Weiszfeld's iteration from the mean until a step < tolerance (m).
+
+    The iteration is slow where the median is a point with half of the mass: the heaviest point is tried besides.
+    """
     px, py = float(mass @ x), float(mass @ y)
     for _ in range(MEDIAN_STEPS):
         weight = mass / np.maximum(np.hypot(x - px, y - py), tolerance)
@@ -49,7 +52,9 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
         px, py = qx, qy
         if moved < tolerance:
             break
-    return px, py
+    heaviest = int(np.argmax(mass))
+    at_median, at_heaviest = (mass @ np.hypot(x - a, y - b) for a, b in ((px, py), (x[heaviest], y[heaviest])))
+    return (px, py) if at_median <= at_heaviest else (float(x[heaviest]), float(y[heaviest]))
 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:

@@ -1,0 +1,114 @@
+"""Mission rule 6: what may be called localized, and what the operator is told otherwise."""
+
+import numpy as np
+import pytest
+
+from planner.belief.grid import fold
+from planner.belief.verdict import best_crossing_angle, distinct_places, points_at, verdict, wedges_meet
+from planner.types import Bearing, GaussianPrior, LinearMotion, LocalizationRule, Peak, Problem
+
+SIGMA = np.deg2rad(4.0)
+SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
+PROBLEM = Problem(area=(SQUARE,), sigma=SIGMA, threshold=10.0, measurement_time=10.0, motion=LinearMotion(5.0))
+RULE = LocalizationRule(threshold=10.0)
+TARGET = (160.0, 170.0)
+
+
+def toward(x, y, error=0.0, **more):
+    return Bearing(x, y, float(np.arctan2(TARGET[1] - y, TARGET[0] - x)) + error, SIGMA, **more)
+
+
+def told(bearings, rule=RULE, problem=PROBLEM):
+    return verdict(problem, rule, bearings, fold(problem, bearings))
+
+
+def test_two_crossing_bearings_that_agree_are_a_localization():
+    answer = told([toward(160, 110), toward(100, 170)])
+    assert answer.localized
+    assert answer.consistent
+    assert answer.reasons == ()
+
+
+def test_without_bearings_nothing_is_claimed():
+    assert told([]).reasons == ("not yet: no bearing taken",)
+
+
+def test_one_place_is_never_enough_however_small_the_belief():
+    narrow = Problem(
+        area=(SQUARE,),
+        sigma=SIGMA,
+        threshold=10.0,
+        measurement_time=10.0,
+        motion=LinearMotion(5.0),
+        prior=GaussianPrior(*TARGET, np.diag([1.0, 1.0])),
+    )
+    answer = told([toward(160, 110)], problem=narrow)
+    assert not answer.localized
+    assert "one bearing from one place" in answer.reasons[0]
+    again = told([toward(160, 110), toward(161, 110)], problem=narrow)
+    assert "all bearings from one place" in again.reasons[0]
+
+
+def test_bearings_from_one_side_are_told_apart_from_crossing_ones():
+    answer = told([toward(160, 60), toward(175, 60)])
+    assert not answer.localized
+    assert any("both bearings from one side" in reason for reason in answer.reasons)
+
+
+def test_a_wide_belief_names_its_expected_error():
+    answer = told([toward(-200, 170), toward(160, -200)])
+    assert not answer.localized
+    assert answer.reasons[-1].startswith("not yet: expected error")
+
+
+def test_inconsistent_bearings_are_never_a_localization():
+    answer = verdict(PROBLEM, RULE, [toward(160, 110), toward(100, 170, np.pi)], None)
+    assert not answer.localized
+    assert not answer.consistent
+    assert "outlier" in answer.reasons[0]
+
+
+def test_an_outlier_asks_for_another_look_before_anything_is_claimed():
+    modelled = {"outlier_probability": 0.05}
+    two = [toward(160, 110, **modelled), toward(100, 170, **modelled)]
+    wild = toward(220, 240, 2.0, **modelled)
+    answer = told([*two, wild])
+    assert not answer.consistent
+    assert not answer.localized
+    assert any("contradict" in reason for reason in answer.reasons)
+
+
+def test_an_outlier_that_is_clearly_outnumbered_does_not_stop_the_mission():
+    modelled = {"outlier_probability": 0.05}
+    good = [toward(x, y, **modelled) for x, y in [(160, 110), (100, 170), (200, 200), (120, 220)]]
+    answer = told([*good, toward(220, 240, 2.0, **modelled)])
+    assert answer.localized
+    assert not answer.consistent
+
+
+def test_an_outlier_into_a_corner_after_one_look_is_not_believed():
+    """Two of the thesis' eleven flights failed so: a multipath outlier, the corner of the area, one measurement."""
+    outlier = Bearing(280.0, 260.0, np.deg2rad(63.0), SIGMA, outlier_probability=0.05)
+    answer = told([outlier], rule=LocalizationRule(threshold=40.0))
+    assert not answer.localized
+
+
+def test_any_peak_of_a_sweep_supports_the_estimate():
+    two_peaks = Bearing(0.0, 0.0, np.pi, SIGMA, peaks=(Peak(0.0, 0.4),))
+    assert points_at(two_peaks, 50.0, 0.0)
+    assert not points_at(two_peaks, 0.0, 50.0)
+
+
+def test_wedges_that_meet_only_outside_the_area_do_not_meet():
+    assert wedges_meet((SQUARE,), [toward(160, 110), toward(100, 170)])
+    beyond = [Bearing(150.0, 0.0, np.deg2rad(70), 0.01), Bearing(0.0, 150.0, np.deg2rad(45), 0.01)]
+    assert not wedges_meet((SQUARE,), beyond)
+
+
+def test_lines_cross_at_the_acute_angle():
+    assert best_crossing_angle([toward(160, 0), toward(160, 300)], *TARGET) == pytest.approx(0.0, abs=1e-9)
+    assert best_crossing_angle([toward(160, 0), toward(0, 170)], *TARGET) == pytest.approx(np.pi / 2)
+
+
+def test_places_closer_than_the_distance_count_once():
+    assert distinct_places([toward(0, 0), toward(5, 0), toward(20, 0)], 10.0) == 2
