@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 from backend.events import CheckFact
 from backend.mission.equipment import Equipment
 from backend.mission.errors import MissionInputError
@@ -44,11 +46,10 @@ async def checklist(
 ) -> tuple[tuple[CheckFact, ...], Localization | None]:
     """All checks, and the task when the specification is sound. listening: that of a running mission, else None."""
     checks = [_of(check) for check in await equipment.vehicle.preflight()]
-    telemetry = equipment.vehicle.telemetry()
-    task, sound = task_at(mission, telemetry)
+    task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
     checks.append(sound)
     if task is not None:
-        vetoes = start_vetoes(task.limits, Situation(telemetry, equipment.clock.now()))
+        vetoes = start_vetoes(task.limits, Situation(equipment.vehicle.telemetry(), equipment.clock.now()))
         checks += [_fact(f"safety: {v.rule}", False, v.detail, v.remedy) for v in vetoes]
         if not vetoes:
             checks.append(_fact("safety", True, "fence, battery and position allow the start", ""))

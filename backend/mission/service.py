@@ -207,7 +207,7 @@ class MissionService:
     async def preview(self, spec: MissionSpec) -> Preview:
         """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
         home, home_amsl_m = self._home_for(spec)
-        task = localization(spec, home, home_amsl_m)
+        task = await asyncio.to_thread(localization, spec, home, home_amsl_m)
         start = self._platform(self._equipment.vehicle.telemetry(), task)
         return await asyncio.to_thread(preview, task, start, self._equipment.threads)
 
