@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+from contextlib import suppress
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
@@ -35,16 +36,15 @@ class Refused(Exception):
 async def live(websocket: WebSocket) -> None:
     services: Services = websocket.app.state.services
     await websocket.accept()
-    try:
-        await _live(websocket, services)
-    except Refused as refused:
-        await websocket.close(refused.code, refused.reason)
-    except JournalUnavailable as error:
-        await websocket.close(1013, str(error)[:120])
-    except ViewerStalled:
-        await websocket.close(4408, "nothing was taken for too long: come back with after=SEQ")
-    except WebSocketDisconnect:
-        return
+    with suppress(WebSocketDisconnect):
+        try:
+            await _live(websocket, services)
+        except Refused as refused:
+            await websocket.close(refused.code, refused.reason)
+        except JournalUnavailable as error:
+            await websocket.close(1013, str(error)[:120])
+        except ViewerStalled:
+            await websocket.close(4408, "nothing was taken for too long: come back with after=SEQ")
 
 
 async def _live(websocket: WebSocket, services: Services) -> None:
