@@ -9,6 +9,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from backend.api.application import make_application
+from backend.api.scene import close_scene_views
 from backend.api.services import Services
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
@@ -24,7 +25,10 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         async with opening(settings) as services:
             app.state.services = services
-            yield
+            try:
+                yield
+            finally:
+                await close_scene_views(app)
 
     return make_application(settings, lifespan)
 

@@ -36,7 +36,7 @@ class SceneRequest(Model):
     peak; None: chosen from the area."""
 
     mission_id: str | None = Field(default=None, pattern=r"^[A-Za-z0-9_-]{1,64}$")
-    seq: int | None = Field(default=None, ge=0, le=2**31 - 1)
+    seq: int | None = Field(default=None, ge=1, le=2**31 - 1)
     hidden: list[SceneLayer] = Field(default_factory=list, max_length=20)
     belief_height_m: float | None = Field(default=None, gt=0, le=10_000)
     theme: Literal["dark", "light"] = "dark"
