@@ -1,68 +1,74 @@
-"""The ways to turn a multicopter once around, each watched by telemetry."""
+"""The ways to turn a multicopter once around, each watched by telemetry; when one does nothing the next is tried."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
-from hardware.autopilot.commander import Commander, Manoeuvre
-from hardware.autopilot.dialect import Dialect, TurnMethod
+from hardware.autopilot.commander import Manoeuvre
+from hardware.autopilot.dialect import TurnMethod
+from hardware.autopilot.helm import Helm
 from hardware.autopilot.messages import CONDITION_YAW, Outgoing, command_long, reposition
-from hardware.autopilot.patience import News
-from hardware.autopilot.snapshot import Snapshot
 from hardware.autopilot.turning import FULL_CIRCLE, TOLERANCE, TurnProgress, next_target, step_size
-from hardware.ports import Clock
+from hardware.ports import VehicleError
 from hardware.readings import GeoPoint
 
 STUCK_S = 6.0
 """Seconds (of the headings seen) without at least STUCK_DEG of turning after which a way of turning has failed."""
 STUCK_DEG = 4.0
 LEG_DEG = 90.0
+SPOT_M = 5.0
+"""Nearer than this to the place it was sent to the vehicle turns there, else where it is."""
 _NUDGE_DEG = 9e-6  # one metre of latitude
 
 
-class TurnManoeuvre:
+async def turn_around(helm: Helm, rate_deg_s: float) -> None:
+    """Returns once telemetry saw the whole circle. Raises VehicleError when no way of turning made it."""
+    here = helm.here()
+    spot = here if helm.spot is None or sum(helm.distance(*helm.spot)) > SPOT_M else helm.spot
+    methods = helm.monitor.dialect.turn_methods
+    turn = Turn(helm, helm.begin("Turn"), rate_deg_s)
+    for number, method in enumerate(methods, 1):
+        if await turn.run(method, *spot):
+            return
+        if number < len(methods):
+            helm.monitor.announce(
+                f"the turn stopped after {turn.turned_deg:.0f} degrees, tried again by "
+                f"{methods[number].replace('_', ' ')} ({number + 1} of {len(methods)})"
+            )
+    raise VehicleError(
+        f"The vehicle acknowledged the turn and did not make it: {turn.turned_deg:.0f} degrees seen, "
+        f"{len(methods)} ways tried."
+    )
+
+
+class Turn:
     """One turn; `run` tries one way of doing it and says whether the circle was seen."""
 
-    def __init__(
-        self,
-        manoeuvre: Manoeuvre,
-        commander: Commander,
-        clock: Clock,
-        snapshot: Snapshot,
-        news: News,
-        go_on: Callable[[Manoeuvre], None],
-        dialect: Dialect,
-        rate_deg_s: float,
-    ) -> None:
+    def __init__(self, helm: Helm, manoeuvre: Manoeuvre, rate_deg_s: float) -> None:
+        self._helm = helm
         self._manoeuvre = manoeuvre
-        self._commander = commander
-        self._clock = clock
-        self._snapshot = snapshot
-        self._news = news
-        self._go_on = go_on
-        self._dialect = dialect
         self._rate = rate_deg_s
         self.turned_deg = 0.0
 
     async def run(self, method: TurnMethod, place: GeoPoint, altitude_amsl_m: float) -> bool:
         """True once telemetry saw the whole circle; False when the vehicle stopped turning."""
-        snapshot = self._snapshot
-        if self._dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
+        monitor = self._helm.monitor
+        snapshot, clock = monitor.snapshot, monitor.clock
+        if monitor.dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
             # yaw commands are acknowledged in every mode and obeyed in this one only
             await self._order(reposition(place, altitude_amsl_m, None, None), "holding the spot")
         if snapshot.heading_deg is None or snapshot.heading_at_s is None:
             return False
         progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
-        began, sent = self._clock.now(), 0.0
+        began, sent = clock.now(), 0.0
         progress_at, progress_deg = seen_at, 0.0
         while not progress.done:
-            self._go_on(self._manoeuvre)
-            target = self._target(method, self._clock.now() - began, progress.turned_deg, sent)
+            self._helm.go_on(self._manoeuvre)
+            target = self._target(method, clock.now() - began, progress.turned_deg, sent)
             if target - sent > 1.0:
                 await self._order(self._step(method, progress, target, place, altitude_amsl_m), "the turn")
                 sent = target
-            await self._news.wait()
+            await monitor.news.wait()
             for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
                 self.turned_deg, seen_at = progress.see(sample.heading_deg), sample.at_s
             if progress.turned_deg > progress_deg + STUCK_DEG:
@@ -72,7 +78,8 @@ class TurnManoeuvre:
         return True
 
     async def _order(self, outgoing: Outgoing, what: str) -> None:
-        await self._commander.order(self._manoeuvre, outgoing, self._dialect.reposition_modes, what)
+        modes = self._helm.monitor.dialect.reposition_modes
+        await self._helm.order(self._manoeuvre, outgoing, modes, what)
 
     def _target(self, method: TurnMethod, elapsed_s: float, turned_deg: float, sent_deg: float) -> float:
         """Degrees from the start that should be ordered by now."""

@@ -239,8 +239,32 @@ async def test_on_the_ground_flight_orders_are_refused_in_words(rig: Rig) -> Non
 async def test_orders_that_mean_nothing_are_refused_before_they_are_sent(altitude: float, speed: float) -> None:
     vehicle = MavsdkVehicle("udpin://127.0.0.1:1", WallClock())
 
-    with pytest.raises(VehicleUnreachable, match="No vehicle is connected"):
+    with pytest.raises(ValueError, match="No place to fly to"):
         await vehicle.goto(GeoPoint(47.0, 8.0), altitude, speed)
+    for rate in (0.0, math.nan, 500.0):
+        with pytest.raises(ValueError, match="turn rate must be"):
+            await vehicle.turn(rate)
+    with pytest.raises(ValueError, match="take-off altitude"):
+        await vehicle.take_off(-3.0)
+
+
+async def test_before_it_is_connected_every_order_says_so() -> None:
+    vehicle = MavsdkVehicle("udpin://127.0.0.1:1", WallClock())
+    orders: list[Callable[[], Awaitable[object]]] = [
+        vehicle.hold,
+        vehicle.land,
+        vehicle.return_home,
+        vehicle.preflight,
+        lambda: vehicle.goto(GeoPoint(47.0, 8.0), 500.0, 5.0),
+        lambda: vehicle.turn(30.0),
+        lambda: vehicle.take_off(10.0),
+    ]
+
+    assert not vehicle.telemetry().connected
+    assert vehicle.telemetry().autopilot == "unknown"
+    for order in orders:
+        with pytest.raises(VehicleUnreachable, match="No vehicle is connected"):
+            await order()
 
 
 async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(rig: Rig) -> None:
