@@ -25,6 +25,7 @@ from backend.spec import EmitterSpec, Place
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
 from backend.version import VERSION
+from hardware.autopilot.link import check_url
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
 from hardware.direction_finding.estimate import SparseDirectionFinder
@@ -168,7 +169,10 @@ def _warm_up() -> None:
 
 @asynccontextmanager
 async def open_services(settings: Settings) -> AsyncIterator[Services]:
-    """Everything of a running server; taken down in the opposite order."""
+    """Everything of a running server; taken down in the opposite order.
+
+    Raises ValueError for a vehicle address of no known form, DatabaseUnusable, HardwareError.
+    """
     async with open_simulation(settings) as (services, _):
         yield services
 
@@ -182,6 +186,8 @@ async def open_simulation(
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
+    if settings.vehicle_url is not None:
+        check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor)
     warming = asyncio.create_task(asyncio.to_thread(_warm_up))
     async with open_journal(settings, lambda: clock.now()) as journal:
