@@ -22,6 +22,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
   const [left, setLeft] = useState(expiresS);
   const dragFrom = useRef<number | null>(null);
   const holding = useRef<number | null>(null);
+  const heldSince = useRef<number | null>(null);
   const confirmed = useRef(false);
 
   const confirm = () => {
@@ -47,14 +48,15 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
   const release = () => {
     if (holding.current !== null) cancelAnimationFrame(holding.current);
     holding.current = null;
+    heldSince.current = null;
     dragFrom.current = null;
     if (!confirmed.current) setPosition(0);
   };
   useEffect(() => release, []);
 
-  const hold = () => {
+  const hold = (began: number) => {
     if (holding.current !== null || disabled) return;
-    const began = performance.now();
+    heldSince.current = began;
     const step = () => {
       const share = (performance.now() - began) / HOLD_MS;
       setPosition(Math.min(1, share));
@@ -66,10 +68,17 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
     holding.current = requestAnimationFrame(step);
   };
 
+  // A busy page may draw no frame in the last moment before the key comes up: the events' own times decide.
+  const onKeyUp = (event: KeyboardEvent) => {
+    if (event.key !== " ") return;
+    if (heldSince.current !== null && event.timeStamp - heldSince.current >= HOLD_MS) confirm();
+    release();
+  };
+
   const onKeyDown = (event: KeyboardEvent) => {
     if (event.key === " ") {
       event.preventDefault();
-      if (!event.repeat) hold();
+      if (!event.repeat) hold(event.timeStamp);
     } else if (event.key === "Escape") {
       event.stopPropagation();
       onCancel();
@@ -92,7 +101,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
         aria-valuenow={Math.round(position * 100)}
         aria-disabled={disabled}
         onKeyDown={onKeyDown}
-        onKeyUp={(event) => event.key === " " && release()}
+        onKeyUp={onKeyUp}
         onBlur={release}
       >
         <div class="slide-fill" style={{ width: `calc(var(--target) + (100% - var(--target)) * ${position})` }} />

@@ -242,8 +242,10 @@ export function SafetyBar() {
         <AlertsButton />
         <Menu />
       </div>
-      <UrgentNote />
-      <ProblemNote desk="bar" />
+      <div class="bar-notes">
+        <UrgentNote />
+        <ProblemNote desk="bar" />
+      </div>
     </header>
   );
 }

@@ -58,10 +58,10 @@ describe("the mission as a fold of its events", () => {
   });
 
   it("takes back the checks when the specification changes", () => {
-    const checked = { kind: "preflight_checked", passed: true, checks: [] } as const;
+    const checked: MissionEvent = { kind: "preflight_checked", passed: true, checks: [] };
     const edited = { kind: "mission_edited", spec: someSpec() } as const;
     expect(fold(checked).preflightPassed).toBe(true);
-    expect(fold(checked as MissionEvent, edited).preflightPassed).toBeNull();
+    expect(fold(checked, edited).preflightPassed).toBeNull();
   });
 });
 

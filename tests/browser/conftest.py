@@ -1,0 +1,98 @@
+"""A real server with a simulated vehicle in a process of its own, and Chromium looking at its page."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from screen import OpenScreen, Screen
+from served import Server, started, url_of
+
+SPEEDUP = 6.0
+
+CHROMIUM = [
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--autoplay-policy=no-user-gesture-required",
+]
+
+RESULTS = Path(__file__).resolve().parents[2] / "test-results"
+FAILED = pytest.StashKey[bool]()
+
+SETTINGS = {"theme": "outdoor", "tourSeen": True, "tones": False, "language": "en"}
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """A failed test leaves a picture of each page in test-results."""
+    report = yield
+    item.stash[FAILED] = item.stash.get(FAILED, False) or report.failed
+    return report
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    arguments = ["--data-dir", str(tmp_path), "--speedup", str(SPEEDUP), "--seed", "3"]
+    process = started([*arguments, "--port", "0"])
+    made = Server(url_of(process), tmp_path, arguments, process)
+    yield made
+    made.process.terminate()
+    made.process.wait(timeout=30)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    path = shutil.which("chromium")
+    if path is None:
+        pytest.skip("no chromium on this machine: make browser")
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=path, args=CHROMIUM)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[OpenScreen]:
+    """Opens a page as another device would: own storage. Faults of the page fail the test."""
+    contexts: list[BrowserContext] = []
+    faults: list[str] = []
+
+    def make(server: Server, path: str = "", settings: dict[str, Any] | None = None, **options: Any) -> Screen:
+        context = browser.new_context(viewport={"width": 1280, "height": 800}, **options)
+        contexts.append(context)
+        stored = json.dumps(SETTINGS | (settings or {}))
+        context.add_init_script(
+            f"if (!localStorage.getItem('crossfix.settings')) localStorage.setItem('crossfix.settings', {stored!r})"
+        )
+        page: Page = context.new_page()
+        page.set_default_timeout(30_000)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(server.url.rstrip("/") + "/" + path)
+        return Screen(page, server.url)
+
+    yield make
+    for number, context in enumerate(contexts):
+        if request.node.stash.get(FAILED, False):
+            RESULTS.mkdir(exist_ok=True)
+            context.pages[0].screenshot(path=RESULTS / f"{request.node.name}-{number}.png")
+        context.close()
+    assert faults == []
+
+
+@pytest.fixture
+def screen(server: Server, open_screen: OpenScreen) -> Screen:
+    return open_screen(server)

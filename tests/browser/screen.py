@@ -1,0 +1,99 @@
+"""The page in the words of its operator."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Locator, Page, expect
+
+expect.set_options(timeout=60_000)
+
+HOLD_S = 1.9
+"""Longer than the 1.5 s that the space bar must be held."""
+
+
+class Screen:
+    def __init__(self, page: Page, url: str) -> None:
+        self.page = page
+        self.url = url.rstrip("/")
+
+    def part(self, name: str) -> Locator:
+        return self.page.get_by_test_id(name)
+
+    def go(self, path: str) -> None:
+        self.page.goto(f"{self.url}/{path}")
+
+    @property
+    def mission_id(self) -> str:
+        found = re.search(r"#/mission/([^/]+)", self.page.url)
+        assert found, f"{self.page.url} shows no mission"
+        return found.group(1)
+
+    def expect_phase(self, *phases: str, seconds: float = 90) -> None:
+        wanted = re.compile("|".join(f"^{phase}$" for phase in phases))
+        expect(self.part("state-words")).to_have_attribute("data-phase", wanted, timeout=seconds * 1000)
+
+    def phase(self) -> str | None:
+        return self.part("state-words").get_attribute("data-phase")
+
+    def slide(self, name: str) -> None:
+        """Hold the space bar on the slider."""
+        self.part(name).focus()
+        self.page.keyboard.down(" ")
+        self.page.wait_for_timeout(HOLD_S * 1000)
+        self.page.keyboard.up(" ")
+
+    def drag_slider(self, name: str, share: float) -> None:
+        """Drag the knob by a share of its way."""
+        box = self.part(name).bounding_box()
+        assert box is not None
+        y = box["y"] + box["height"] / 2
+        x = box["x"] + box["height"] / 2
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        self.page.mouse.move(x + share * (box["width"] - box["height"]), y, steps=8)
+        self.page.mouse.up()
+
+    def map_ready(self, name: str = "map") -> None:
+        expect(self.part(name)).to_have_attribute("data-ready", "true")
+
+    def map_point(self, right: float, down: float, name: str = "map") -> tuple[float, float]:
+        """Pixels of a place on the map, by shares of its width and height."""
+        box = self.part(name).bounding_box()
+        assert box is not None
+        return box["x"] + right * box["width"], box["y"] + down * box["height"]
+
+    def draw(self, corners: list[tuple[float, float]]) -> None:
+        """Draw a polygon on the editor's map; the last click is on the first corner."""
+        self.part("draw-polygon").click()
+        for right, down in [*corners, corners[0]]:
+            x, y = self.map_point(right, down, "edit-map")
+            self.page.mouse.move(x, y)
+            self.page.wait_for_timeout(120)
+            self.page.mouse.click(x, y)
+            self.page.wait_for_timeout(120)
+
+    def checked(self) -> None:
+        expect(self.part("preflight")).to_have_attribute("data-passed", "true")
+
+    def open(self, mission_id: str) -> None:
+        self.go(f"#/mission/{mission_id}")
+
+    def start(self) -> None:
+        self.part("start").click()
+        self.slide("start-slider")
+        self.expect_phase("taking_off", "planning", "flying", "measuring")
+
+    def fly(self, mission_id: str) -> None:
+        self.open(mission_id)
+        self.checked()
+        self.start()
+
+    def evaluate(self, script: str) -> Any:
+        return self.page.evaluate(script)
+
+
+OpenScreen = Callable[..., Screen]
+"""Opens the page of a server as another device would."""
