@@ -94,7 +94,8 @@ async def rig(request: pytest.FixtureRequest) -> AsyncIterator[Rig]:
     else:
         clock = ScaledClock(None, SPEEDUP)
         flavour = name.removeprefix("sim-")
-        autopilot = await launch_simulated(Setting(flavour=flavour, speedup=SPEEDUP, seed=7, wind=(4.0, 250.0, 1.5)))
+        setting = Setting(flavour=flavour, speedup=SPEEDUP, seed=7, wind=(4.0, 250.0, 1.5), station_timeout_s=2.5)
+        autopilot = await launch_simulated(setting)
         url = autopilot.url
     vehicle = await connect_vehicle(url, clock)
     rig = Rig(name, vehicle, clock, autopilot)

@@ -13,7 +13,7 @@ from hardware.sim.autopilot.ardupilot import ArduCopter
 from hardware.sim.autopilot.copter import Wind
 from hardware.sim.autopilot.firmware import Conditions, Firmware
 from hardware.sim.autopilot.geodesy import HomeFrame
-from hardware.sim.autopilot.process import Endpoint, Process
+from hardware.sim.autopilot.process import Endpoint, Process, Schedule
 from hardware.sim.autopilot.px4 import Px4
 
 FLAVOURS: dict[str, type[Px4] | type[ArduCopter]] = {"px4": Px4, "ardupilot": ArduCopter}
@@ -95,7 +95,12 @@ def parser() -> argparse.ArgumentParser:
         help="set a parameter, for instance NAV_DLL_ACT=0 (may be repeated)",
     )  # fmt: skip
     p.add_argument("--control", type=int, default=0, metavar="PORT", help="UDP port for orders on 127.0.0.1 (0: any)")
+    p.add_argument(
+        "--station-timeout", type=_positive, default=Schedule().station_timeout, metavar="S",
+        help="wall seconds below which a silent ground station is not taken for lost (for sped-up runs)",
+    )  # fmt: skip
     p.add_argument("--parent", type=int, metavar="PID", help="stop when this parent process is gone")
+    p.add_argument("--linger", type=_positive, metavar="S", help="stop when nobody was heard for so many wall seconds")
     return p
 
 
@@ -120,7 +125,8 @@ def build(arguments: argparse.Namespace) -> Firmware:
 def main(argv: Sequence[str] | None = None) -> int:
     arguments = parser().parse_args(argv)
     try:
-        process = Process(build(arguments), arguments.connect, arguments.control, arguments.speedup, arguments.parent)
+        schedule = Schedule(arguments.speedup, arguments.station_timeout, arguments.parent, arguments.linger)
+        process = Process(build(arguments), arguments.connect, arguments.control, schedule)
     except (ValueError, OSError) as error:
         print(f"The simulated autopilot cannot start: {error}", file=sys.stderr)
         return 2

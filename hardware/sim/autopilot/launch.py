@@ -16,6 +16,8 @@ from typing import Any
 from hardware.ports import HardwareError
 from hardware.sim.autopilot.geodesy import HomeFrame
 
+LINGER_S = 1800.0
+
 
 class SimulatorError(HardwareError):
     """The simulated autopilot did not start or did not answer."""
@@ -25,7 +27,8 @@ class SimulatorError(HardwareError):
 class Setting:
     """What to simulate. wind: (speed m/s, degrees from, gusts m/s). connect_port, control_port: None = any free one.
 
-    keep_running: the vehicle stays in the air when this process dies (find it again with `find_simulated`).
+    keep_running: the vehicle stays in the air when this process dies (find it again with `find_simulated`); after
+    LINGER_S wall seconds without anybody it ends all the same. station_timeout_s: see process.Schedule.
     """
 
     flavour: str = "px4"
@@ -40,6 +43,7 @@ class Setting:
     connect_port: int | None = None
     control_port: int | None = None
     keep_running: bool = False
+    station_timeout_s: float = 8.0
 
     def arguments(self, connect_port: int) -> list[str]:
         home = self.home
@@ -54,12 +58,12 @@ class Setting:
             f"--heading-error={self.heading_error_deg!r}",
             "--battery", repr(self.battery_percent),
             "--control", str(self.control_port or 0),
+            "--station-timeout", repr(self.station_timeout_s),
         ]  # fmt: skip
         for name, value in self.parameters.items():
             arguments += ["--param", f"{name}={value!r}"]
-        if not self.keep_running:
-            arguments += ["--parent", str(os.getpid())]
-        return arguments
+        ends = ["--linger", str(LINGER_S)] if self.keep_running else ["--parent", str(os.getpid())]
+        return arguments + ends
 
 
 def free_port() -> int:

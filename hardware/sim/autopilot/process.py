@@ -15,8 +15,6 @@ from hardware.sim.autopilot.station import Station
 
 STEP = 0.02
 """Simulated seconds a step."""
-GCS_TIMEOUT_WALL = 3.0
-"""A ground station's heartbeat comes once a wall second, however fast the simulation runs."""
 MOST_BEHIND_WALL = 5.0
 """When the process was suspended for longer than this, the time it missed is not made up for."""
 
@@ -27,33 +25,47 @@ class Endpoint:
     port: int
 
 
-class Process:
-    """Sockets bound, not yet running. `connect`: where the ground station listens; `control`: our orders' port."""
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """How time passes, and when the process ends. Wall seconds.
 
-    def __init__(
-        self, firmware: Firmware, connect: Endpoint, control_port: int, speedup: float, parent: int | None
-    ) -> None:
-        firmware.gcs_timeout_floor = GCS_TIMEOUT_WALL * speedup
+    station_timeout: a ground station is not taken for lost earlier, whatever the parameter says: its heartbeats come by
+    the wall's clock and its restart takes wall time, however fast the simulation runs.
+    parent: ends when this process (our parent) is gone. linger: ends when nobody was heard for so long.
+    """
+
+    speedup: float = 1.0
+    station_timeout: float = 8.0
+    parent: int | None = None
+    linger: float | None = None
+
+
+class Process:
+    """Sockets bound, not yet running. `connect`: where the ground station listens; `control_port`: for orders."""
+
+    def __init__(self, firmware: Firmware, connect: Endpoint, control_port: int, schedule: Schedule) -> None:
+        firmware.gcs_timeout_floor = schedule.station_timeout * schedule.speedup
         self._firmware = firmware
         self._station = Station(firmware)
         self._orders = Orders(firmware)
         self._peer = (connect.host, connect.port)
-        self._speedup = speedup
-        self._parent = parent
+        self._speedup = schedule.speedup
+        self._schedule = schedule
+        self._heard_at = time.monotonic()
         self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._link.bind(("127.0.0.1" if connect.host.startswith("127.") else "0.0.0.0", 0))
         self._control = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._control.bind(("127.0.0.1", control_port))
         for each in (self._link, self._control):
             each.setblocking(False)
-        self._tick = min(0.02, max(0.002, STEP / speedup))
+        self._tick = min(0.02, max(0.002, STEP / schedule.speedup))
 
     @property
     def control_port(self) -> int:
         return self._control.getsockname()[1]
 
     def run(self) -> None:
-        """Until ordered to stop or until the parent process is gone."""
+        """Until ordered to stop or abandoned."""
         started, next_look = time.monotonic(), 0.0
         while not self._orders.stop_requested:
             now = time.monotonic()
@@ -67,11 +79,16 @@ class Process:
             self._advance((now - started) * self._speedup)
             if now >= next_look:
                 next_look = now + 0.25
-                if self._parent is not None and os.getppid() != self._parent:
+                if self._abandoned(now):
                     return
             readable, _, _ = select.select([self._link, self._control], [], [], self._tick)
             for each in readable:
                 self._read(each)
+
+    def _abandoned(self, now: float) -> bool:
+        parent, linger = self._schedule.parent, self._schedule.linger
+        orphaned = parent is not None and os.getppid() != parent
+        return orphaned or (linger is not None and now - self._heard_at > linger)
 
     def _advance(self, until: float) -> None:
         firmware = self._firmware
@@ -97,6 +114,7 @@ class Process:
                 return
             except ConnectionError:
                 continue
+            self._heard_at = time.monotonic()
             if source is self._control:
                 with contextlib.suppress(OSError):
                     source.sendto(self._orders.receive(data), sender)

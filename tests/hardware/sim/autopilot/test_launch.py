@@ -82,6 +82,19 @@ async def test_when_its_parent_is_killed_it_ends_unless_it_was_asked_to_fly_on(k
     assert await until_gone(pid)
 
 
+async def test_left_alone_by_everybody_it_ends_after_a_while() -> None:
+    command = [sys.executable, "-m", "hardware.sim.autopilot", "--linger", "0.6"]
+    alone = await asyncio.to_thread(subprocess.Popen, command, stdout=subprocess.PIPE)
+    assert alone.stdout is not None
+    control = json.loads(await asyncio.to_thread(alone.stdout.readline))["control_port"]
+    for _ in range(4):
+        await asyncio.sleep(0.3)
+        assert await find_simulated(1, control) is not None  # asked, it stays
+
+    assert await asyncio.to_thread(alone.wait, 10) == 0
+    alone.stdout.close()
+
+
 async def test_what_it_cannot_do_it_says_in_its_own_words() -> None:
     with pytest.raises(SimulatorError, match="no parameter NO_SUCH"):
         await launch_simulated(Setting(parameters={"NO_SUCH": 1.0}))
