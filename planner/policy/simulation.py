@@ -34,7 +34,7 @@ from planner.kernels.model import (
     likelihood_polynomial,
     outcomes,
 )
-from planner.motion import flight_time, turn_between
+from planner.motion import flight_time, turn_between, validate_motion
 from planner.policy.actions import flight_window, lattice, may_fly
 from planner.policy.ellipse import table
 from planner.travel import RoadMap, lattice_distances, road_map, straight_suffices, travel_distances
@@ -165,6 +165,7 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: Roa
             raise PlannerError(f"{name} must be a positive number, got {getattr(problem, name)}")
     if not (np.isfinite(problem.measurement_time) and problem.measurement_time >= 0):
         raise PlannerError(f"the measurement time must be a number >= 0, got {problem.measurement_time}")
+    validate_motion(problem.motion)
     sigma = float(min(problem.sigma, WIDEST_SIGMA))
     coefficients, edge = likelihood_polynomial(sigma)
     places = np.empty((0, 2))

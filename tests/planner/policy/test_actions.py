@@ -1,0 +1,84 @@
+"""The action space and what removes places from it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planner.belief.estimate import confidence_region
+from planner.belief.grid import fold, prior_belief
+from planner.geometry import contains, distance_to_convex
+from planner.policy.actions import action_space, belief_grid, constrained_actions, lattice
+from planner.types import Bearing, GaussianPrior, LinearMotion, PlannerError, Problem
+
+
+def rectangle(x0, y0, x1, y1):
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], dtype=float)
+
+
+PROBLEM = Problem((rectangle(0, 0, 300, 300),), np.deg2rad(4), 5.0, 10.0, LinearMotion(5.0))
+FIELD = replace(
+    PROBLEM,
+    area=(rectangle(0, 0, 313, 120),),
+    flight_area=(rectangle(-60, -60, 373, 180),),
+    action_spacing=15.0,
+    standoff=50.0,
+)
+TWO = [Bearing(150.0, -40.0, 1.5, 0.1), Bearing(0.0, 60.0, 0.1, 0.1)]
+
+
+def test_places_are_cell_centres_of_the_tripled_belief_rectangle():
+    places = belief_grid(PROBLEM, prior_belief(PROBLEM))
+    assert places.shape == (400, 2)
+    assert places[0].tolist() == [-277.5, -277.5]
+    assert places[1].tolist() == [-232.5, -277.5]
+    assert places[-1].tolist() == [577.5, 577.5]
+
+
+def test_the_grid_is_cut_with_the_flight_area():
+    places = belief_grid(replace(PROBLEM, flight_area=(rectangle(0, -50, 300, 300),)), prior_belief(PROBLEM))
+    assert places.min(axis=0).tolist() == [7.5, -41.25]
+
+
+def test_a_lattice_fills_the_fence_and_never_stands_on_it():
+    places = lattice(FIELD)
+    assert len(places) == 28 * 16
+    assert np.ptp(places, axis=0).tolist() == [27 * 15, 15 * 15]
+    assert contains(FIELD.flight_area, places).all()
+
+
+def test_no_fly_areas_and_the_fence_remove_places():
+    blocked = replace(FIELD, no_fly=(rectangle(100, 0, 200, 100),))
+    places = action_space(blocked, prior_belief(blocked))
+    assert not contains(blocked.no_fly, places).any()
+    assert 0 < len(places) < len(lattice(FIELD))
+
+
+def test_no_place_is_nearer_to_c95_than_the_standoff():
+    belief = fold(FIELD, TWO)
+    places = constrained_actions(FIELD, belief)
+    assert distance_to_convex(places, confidence_region(belief)).min() >= 50.0
+
+
+def test_the_standoff_shrinks_until_two_places_are_left():
+    tight = replace(FIELD, flight_area=(rectangle(120, 40, 200, 100),))
+    places = constrained_actions(replace(tight, standoff=500.0), fold(tight, TWO))
+    assert len(places) == 2
+
+
+def test_when_everything_is_forbidden_that_is_said():
+    forbidden = replace(FIELD, no_fly=(rectangle(-100, -100, 400, 200),))
+    with pytest.raises(PlannerError, match="no place may be flown to"):
+        constrained_actions(forbidden, prior_belief(forbidden))
+
+
+@pytest.mark.parametrize("changes", [{"action_spacing": 0.0}, {"action_spacing": np.nan}, {"action_grid": (0, 5)}])
+def test_unusable_grids_are_refused(changes):
+    broken = replace(PROBLEM, **changes)
+    with pytest.raises(PlannerError, match="action"):
+        action_space(broken, prior_belief(broken))
+
+
+def test_a_gaussian_prior_triples_the_whole_areas_rectangle():
+    gaussian = replace(PROBLEM, prior=GaussianPrior(150.0, 150.0, np.diag([100.0, 1600.0])))
+    assert (belief_grid(gaussian, prior_belief(gaussian)) == belief_grid(PROBLEM, prior_belief(PROBLEM))).all()

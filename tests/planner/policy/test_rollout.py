@@ -1,0 +1,152 @@
+"""The rollout policy and its sampler."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planner.belief.grid import prior_belief
+from planner.kernels.model import CLOSED_FEATURES
+from planner.policy.rollout import Rollout, RolloutSampler, clock
+from planner.policy.simulation import simulate
+from planner.selection.uniform import uniform
+from planner.types import GaussianPrior, LinearMotion, PlannerError, Problem
+
+
+def rectangle(x0, y0, x1, y1):
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], dtype=float)
+
+
+PROBLEM = Problem(
+    (rectangle(0, 0, 300, 300),),
+    np.deg2rad(4),
+    5.0,
+    10.0,
+    LinearMotion(5.0),
+    action_grid=(8, 8),
+    prior=GaussianPrior(150.0, 150.0, np.diag([100.0, 1600.0])),
+)
+HOME = (150.0, 0.0)
+
+
+def sampler(sampling, seed=1, **options):
+    belief = prior_belief(PROBLEM)
+    simulation = simulate(PROBLEM, belief, HOME, base_policy="ellipse", **options)
+    places = np.array([[90.0, 150.0], [210.0, 150.0], [150.0, 20.0]])
+    return RolloutSampler(simulation, belief, sampling, np.random.default_rng(seed), places)
+
+
+def rollout(rng_seed=1, problem=PROBLEM, **options):
+    policy = Rollout(**{"budget": 600, **options})
+    return policy(problem, prior_belief(problem), HOME, np.random.default_rng(rng_seed))
+
+
+def test_a_common_path_is_the_same_whoever_asks_first():
+    one, two = sampler("crn"), sampler("crn")
+    whole = one.actions(np.arange(3), 0, 150)
+    pieces = [two.actions(np.array([k]), a, b) for a, b in ((0, 20), (20, 150)) for k in (2, 0, 1)]
+    for k, order in enumerate((1, 2, 0)):
+        assert (np.concatenate([pieces[order][0], pieces[order + 3][0]]) == whole[k]).all()
+
+
+def test_independent_paths_are_drawn_afresh():
+    some = sampler("pmc")
+    assert (some.actions(np.array([0]), 0, 50) != some.actions(np.array([0]), 0, 50)).any()
+
+
+def test_common_paths_make_mirrored_places_comparable():
+    """Places left and right of the prior's axis differ by luck only; common luck shrinks the difference's spread."""
+    common, independent = sampler("crn").actions(np.arange(2), 0, 400), sampler("pmc").actions(np.arange(2), 0, 400)
+    assert np.std(common[0] - common[1]) < np.std(independent[0] - independent[1])
+
+
+def test_every_cost_is_flight_and_measurement_at_least():
+    costs = sampler("crn").actions(np.arange(3), 0, 100)
+    places = sampler("crn").places
+    least = np.hypot(*(places - np.array(HOME)).T) / 5.0 + 10.0
+    assert (costs >= least[:, None] - 1e-9).all()
+
+
+def test_places_and_actions_ask_the_same_paths():
+    one, two = sampler("crn"), sampler("crn")
+    assert (one.actions(np.arange(3), 0, 30) == two.anywhere(two.places, 0, 30)).all()
+
+
+def test_a_cut_rollout_is_closed_by_the_terminal_value():
+    seen = []
+
+    def value(ends):
+        seen.append(ends)
+        return np.full(len(ends), 1000.0)
+
+    plain = sampler("crn", horizon=1).actions(np.arange(3), 0, 40)
+    closed = sampler("crn", horizon=1, terminal=value).actions(np.arange(3), 0, 40)
+    ends = np.concatenate(seen)
+    assert ends.shape[1] == CLOSED_FEATURES
+    assert (ends[:, 7] >= PROBLEM.threshold).all()
+    assert np.count_nonzero(closed - plain > 999.0) == len(ends) > 0
+
+
+def test_the_decision_lists_every_candidate_with_its_fate():
+    decision = rollout()
+    assert len(decision.candidates) == 64
+    survivors = [c for c in decision.candidates if c.dropped_in_round is None]
+    assert [(c.x, c.y) for c in survivors] == [(decision.x, decision.y)]
+    assert sum(c.rollouts for c in decision.candidates) == decision.rollouts <= 600
+    assert survivors[0].rollouts == len(decision.times)
+    assert survivors[0].value == pytest.approx(decision.times.mean())
+
+
+def test_it_beats_its_base_policy_from_the_start():
+    """The ellipse policy flies abreast of the prior first; the rollout measures on the way (Table 4.2)."""
+    decision = rollout(budget=3000)
+    assert 0 < decision.y < 200
+    assert 90 < decision.x < 210
+    assert 45 < decision.times.mean() < 75
+
+
+def test_the_same_seed_gives_the_same_decision():
+    one, two = rollout(), rollout()
+    assert (one.x, one.y) == (two.x, two.y)
+    assert [c.value for c in one.candidates] == [c.value for c in two.candidates]
+    assert (one.times == two.times).all()
+
+
+def test_both_kernels_decide_alike():
+    fast, readable = rollout(budget=200), rollout(budget=200, kernel="reference")
+    assert (fast.x, fast.y) == (readable.x, readable.y)
+    assert [c.value for c in fast.candidates] == pytest.approx([c.value for c in readable.candidates], nan_ok=True)
+
+
+def test_deterministic_sampling_gives_each_action_a_power_of_two_of_paths():
+    decision = rollout(selection=uniform, sampling="deterministic", budget=64 * 11)
+    assert {c.rollouts for c in decision.candidates} == {8}
+
+
+def test_a_refused_place_is_not_offered_again():
+    first = rollout()
+    second = rollout(without=((first.x, first.y),))
+    assert (second.x, second.y) != (first.x, first.y)
+    assert len(second.candidates) == 63
+
+
+def test_places_without_a_way_are_no_candidates():
+    wall = replace(
+        PROBLEM, flight_area=(rectangle(0, -50, 300, 300),), no_fly=(rectangle(-10, 100, 310, 120),), action_grid=(5, 7)
+    )
+    decision = rollout(problem=wall)
+    assert max(c.y for c in decision.candidates) < 100
+
+
+def test_what_cannot_be_planned_is_said():
+    with pytest.raises(PlannerError, match="budget"):
+        rollout(selection=uniform, sampling="deterministic", budget=10)
+    with pytest.raises(PlannerError, match="budget"):
+        rollout(budget=0)
+    with pytest.raises(PlannerError, match="refused"):
+        rollout(problem=replace(PROBLEM, action_grid=(1, 1)), without=((150.0, 150.0),))
+
+
+def test_times_are_told_in_minutes_and_seconds():
+    assert clock(59.6) == "1:00"
+    assert clock(130.2) == "2:10"
