@@ -38,6 +38,7 @@ from hardware.readings import GeoPoint
 
 LONGEST_MISSION_S = 3_600.0
 PATIENCE_WALL_S = 60.0
+MOST_HOLDS = 5
 ENDED = frozenset({"done", "aborted", "failed"})
 
 
@@ -109,10 +110,11 @@ async def _demo(settings: Settings, headless: bool, json_: bool) -> dict[str, An
 
 @dataclass(slots=True)
 class MissionLog:
-    """Every event that the websocket told, in order."""
+    """Every event that the websocket told, in order. holds: why the mission stopped and was resumed."""
 
     mission_id: str
     recorded: list[Recorded] = field(default_factory=list)
+    holds: list[str] = field(default_factory=list)
 
     def all(self, kind: type[Any]) -> list[Any]:
         return [r.event for r in self.recorded if isinstance(r.event, kind)]
@@ -136,7 +138,7 @@ async def fly(running: RunningServer, settings: Settings) -> MissionLog:
                 raise DemoFailed(f"the start was refused: {reply['reason']}. {reply['remedy']}")
             try:
                 async with asyncio.timeout(LONGEST_MISSION_S / settings.time_factor):
-                    await _watch(socket, log)
+                    await _watch(socket, log, client)
             except TimeoutError:
                 last = log.all(PhaseChanged)[-1]
                 raise DemoFailed(
@@ -178,7 +180,8 @@ async def _preflight_passed(client: httpx.AsyncClient, mission_id: str) -> None:
         raise DemoFailed(f"preflight does not pass: {wrong}") from None
 
 
-async def _watch(socket: websockets.ClientConnection, log: MissionLog) -> None:
+async def _watch(socket: websockets.ClientConnection, log: MissionLog, client: httpx.AsyncClient) -> None:
+    """Until the mission has ended. A hold is resumed, as an operator would once all is well again."""
     read = TypeAdapter(Recorded)
     async for message in socket:
         if isinstance(message, bytes):
@@ -193,9 +196,29 @@ async def _watch(socket: websockets.ClientConnection, log: MissionLog) -> None:
             remark(f"{event.after}: {event.reason}")
             if event.after in ENDED:
                 return
-            if event.after in ("hold", "manual"):
-                raise DemoFailed(f"the mission stopped in {event.after}: {event.reason}")
+            if event.after == "manual":
+                raise DemoFailed(f"a pilot took control: {event.reason}")
+            if event.after == "hold":
+                log.holds.append(event.reason)
+                await _resume(client, log)
     raise DemoFailed("the websocket closed before the mission ended")
+
+
+async def _resume(client: httpx.AsyncClient, log: MissionLog) -> None:
+    """Raises DemoFailed when the mission keeps stopping, or cannot be resumed."""
+    reason = log.holds[-1]
+    if len(log.holds) > MOST_HOLDS:
+        raise DemoFailed(f"the mission stopped {len(log.holds)} times, at last because of: {reason}")
+    try:
+        async with asyncio.timeout(PATIENCE_WALL_S):
+            while True:
+                await asyncio.sleep(1.0)
+                command = {"command_id": str(uuid4()), "command": {"kind": "resume"}}
+                reply = _answer(await client.post(f"/api/missions/{log.mission_id}/commands", json=command))
+                if reply["accepted"]:
+                    return
+    except TimeoutError:
+        raise DemoFailed(f"the mission stopped and cannot be resumed: {reason}") from None
 
 
 def _answer(response: httpx.Response) -> dict[str, Any]:
@@ -231,6 +254,7 @@ def summary(log: MissionLog, settings: Settings, truth: GeoPoint | None) -> dict
         "database": settings.async_database_url.split(":///", 1)[-1],
         "outcome": ended.outcome,
         "reason": ended.reason,
+        "holds": log.holds,
         "seed": settings.seed,
         "mission_id": log.mission_id,
     }

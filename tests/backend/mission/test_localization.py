@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from ground import AREA, FRAME, HOME, bearing, towards
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,44 +19,14 @@ from backend.spec import (
     RingPriorSpec,
     SensorSpec,
 )
-from hardware.frame import LocalFrame
 from hardware.readings import GeoPoint
 from planner.belief.grid import digest
 from planner.types import GaussianPrior, RingPrior
-
-HOME = Place(lat=50.0, lon=7.0)
-FRAME = LocalFrame(GeoPoint(50.0, 7.0))
-CORNERS = [FRAME.to_geo(x, y) for x, y in ((0, 0), (300, 0), (300, 120), (0, 120), (0, 0))]
-AREA = Polygon(coordinates=[[(c.lon_deg, c.lat_deg) for c in CORNERS]])
 
 
 def task(outlier_probability: float = 0.0, **more: object) -> Localization:
     sensor = SensorSpec(outlier_probability=outlier_probability)
     return localization(MissionSpec(name="m", area=AREA, sensor=sensor, **more), HOME, 100.0)  # type: ignore[arg-type]
-
-
-def bearing(x: float, y: float, compass: float, sigma: float = 4.0, peaks: tuple[Peak, ...] = ()) -> BearingMeasured:
-    place = FRAME.to_geo(x, y)
-    return BearingMeasured(
-        bearing_id=f"{x}-{y}-{compass}",
-        sweep_id="s",
-        place_number=1,
-        place=Place(lat=place.lat_deg, lon=place.lon_deg),
-        altitude_amsl_m=140.0,
-        bearing_deg=compass,
-        sigma_deg=sigma,
-        quality=0.9,
-        peaks=list(peaks),
-        snr_db=None,
-        drift_m=0.0,
-        binned_db=[],
-        fitted_db=[],
-    )
-
-
-def towards(x: float, y: float, target: tuple[float, float], **more: object) -> BearingMeasured:
-    compass = math.degrees(math.atan2(target[0] - x, target[1] - y)) % 360
-    return bearing(x, y, compass, **more)  # type: ignore[arg-type]
 
 
 def test_north_is_up_and_east_is_right() -> None:

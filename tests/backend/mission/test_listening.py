@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from doubles import HummingReceiver
+
+from backend.mission.listening import Listening
+from hardware.clock import ScaledClock
+
+
+def made() -> tuple[Listening, HummingReceiver, ScaledClock]:
+    clock = ScaledClock(factor=50.0)
+    receiver = HummingReceiver(clock)
+    return Listening(receiver, clock, 868.3e6, silent_after_s=5.0), receiver, clock
+
+
+async def until(happened: Callable[[], bool]) -> None:
+    async with asyncio.timeout(10):
+        while True:
+            if happened():
+                return
+            await asyncio.sleep(0.002)
+
+
+async def test_samples_of_an_interval_come_in_order() -> None:
+    listening, _, clock = made()
+    assert listening.state == "off"
+    listening.start()
+    assert await listening.first_sample(5.0)
+    begin = clock.now()
+    await clock.sleep(3.0)
+    end = clock.now()
+    await clock.sleep(1.0)
+    found = listening.between(begin, end)
+    assert found
+    assert [s.at_s for s in found] == sorted(s.at_s for s in found)
+    assert all(begin <= s.at_s <= end for s in found)
+    assert listening.between(end + 100.0, end + 200.0) == []
+    assert listening.state == "ok"
+    await listening.stop()
+    assert listening.state == "off"
+
+
+async def test_silence_is_counted_in_time_that_was_watched() -> None:
+    listening, receiver, _ = made()
+    listening.start()
+    assert await listening.first_sample(5.0)
+    receiver.mute = True
+    await asyncio.sleep(0.2)
+    assert listening.state == "ok"
+    for _ in range(6):
+        listening.wait(1.0)
+    assert listening.state == "silent"
+    assert listening.trouble == "silent for 6 s"
+    receiver.mute = False
+    await until(lambda: listening.state == "ok")
+    await listening.stop()
+
+
+async def test_a_receiver_that_vanishes_is_lost_and_found_again() -> None:
+    listening, receiver, _ = made()
+    listening.start()
+    assert await listening.first_sample(5.0)
+    receiver.gone = True
+    await until(lambda: listening.state == "lost")
+    assert "unplugged" in listening.trouble
+    receiver.gone = False
+    await until(lambda: listening.state == "ok")
+    await listening.stop()
+
+
+async def test_a_mute_receiver_gives_no_first_sample() -> None:
+    listening, receiver, _ = made()
+    receiver.mute = True
+    listening.start()
+    assert not await listening.first_sample(0.1)
+    await listening.stop()

@@ -1,0 +1,94 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from ground import AREA, FRAME, HOME, towards
+
+from backend.mission.forecast import forecast, preview
+from backend.mission.localization import Localization, localization
+from backend.mission.planning import next_place, way_to
+from backend.spec import FlightSpec, MissionSpec, Place, PlannerSpec, Polygon
+from hardware.readings import GeoPoint
+
+
+def task(**more: object) -> Localization:
+    planner = more.pop("planner", PlannerSpec(budget=200))
+    return localization(MissionSpec(name="m", area=AREA, planner=planner, **more), HOME, 100.0)  # type: ignore[arg-type]
+
+
+def zone(*corners: tuple[float, float]) -> Polygon:
+    places = [FRAME.to_geo(*corner) for corner in (*corners, corners[0])]
+    return Polygon(coordinates=[[(p.lon_deg, p.lat_deg) for p in places]])
+
+
+def at(x: float, y: float) -> Place:
+    point = FRAME.to_geo(x, y)
+    return Place(lat=point.lat_deg, lon=point.lon_deg)
+
+
+@pytest.mark.parametrize("method", ["rollout", "base_policy"])
+def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None:
+    made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
+    seen = [towards(0.0, -20.0, (200.0, 80.0))]
+    belief = made.planning_belief(made.planner_bearings(seen))
+    bearings = made.planner_bearings(seen)
+    first, again = (next_place(made, belief, bearings, (0.0, -20.0), 2, (), 1) for _ in range(2))
+    assert first.place == again.place
+    assert first.place_number == 2
+    assert first.reason
+    assert first.plan_ms > 0
+    x, y = FRAME.to_enu(GeoPoint(first.place.lat, first.place.lon))
+    assert -61 <= x <= 361
+    assert -61 <= y <= 181
+    if method == "rollout":
+        assert first.expected_time_s is not None
+        assert first.time_90_s is not None
+        assert first.rollouts >= len(first.candidates) > 1
+        assert sum(c.dropped_in_round is None for c in first.candidates) == 1
+
+
+@pytest.mark.parametrize("method", ["rollout", "base_policy"])
+def test_a_refused_place_is_not_chosen_again(method: str) -> None:
+    made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
+    seen = [towards(0.0, -20.0, (200.0, 80.0))]
+    bearings = made.planner_bearings(seen)
+    belief = made.planning_belief(bearings)
+    refused: list[Place] = []
+    for _ in range(3):
+        choice = next_place(made, belief, bearings, (0.0, -20.0), 2, refused, 1).place
+        assert choice not in refused
+        refused.append(choice)
+
+
+def test_the_way_goes_around_a_zone_and_straight_without_one() -> None:
+    free = task()
+    (end,) = way_to(free, (0.0, 0.0), (200.0, 0.0))
+    assert end == pytest.approx((200.0, 0.0))
+    blocked = task(flight=FlightSpec(no_fly=[zone((80, -30), (120, -30), (120, 60), (80, 60))]))
+    way = way_to(blocked, (0.0, 0.0), (200.0, 0.0))
+    assert len(way) > 1
+    assert way[-1] == pytest.approx((200.0, 0.0))
+    length = sum(math.dist(a, b) for a, b in zip([(0.0, 0.0), *way], way, strict=False))
+    assert length > 205.0
+
+
+def test_a_forecast_tells_the_cost_and_what_is_forbidden() -> None:
+    made = task()
+    seen = [towards(0.0, -20.0, (200.0, 80.0))]
+    good = forecast(made, seen, at(0, -20), at(150, -30), None)
+    assert good.allowed
+    assert good.mean_s is not None
+    assert good.mean_s > 30.0
+    assert good.p90_s is not None
+    assert good.p90_s >= good.mean_s * 0.8
+    outside = forecast(made, seen, at(0, -20), at(900, 0), None)
+    assert not outside.allowed
+    assert "outside the fence" in outside.reason
+
+
+def test_a_preview_plans_from_the_prior() -> None:
+    seen = preview(task(), at(0, 0), threads=1)
+    assert seen.candidates
+    assert seen.mean_s == pytest.approx(sum(seen.times_s) / len(seen.times_s))
+    assert seen.rollouts <= 200

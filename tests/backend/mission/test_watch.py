@@ -1,0 +1,144 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from doubles import FRAME, Stage, spec
+from missions import Walk
+
+from backend.mission import inputs
+from backend.mission.equipment import Equipment
+from backend.mission.listening import Listening
+from backend.mission.localization import localization
+from backend.mission.safety import NOMINAL_DRAIN_PERCENT_S
+from backend.mission.state import MissionState
+from backend.mission.watch import Drain, Watch
+from backend.spec import Place
+
+
+class HandClock:
+    """Time moves when told."""
+
+    def __init__(self) -> None:
+        self.at = 1_000.0
+
+    def now(self) -> float:
+        return self.at
+
+    async def sleep(self, seconds: float) -> None:
+        self.at += seconds
+
+
+class Scene:
+    def __init__(self) -> None:
+        stage = Stage()
+        self.clock = HandClock()
+        self.vehicle, self.publisher = stage.vehicle, stage.publisher
+        self.vehicle.clock = self.clock  # type: ignore[assignment]
+        self.state: MissionState = Walk().to("flying").state
+        self.given: list[inputs.Input] = []
+        self.listening = Listening(stage.receiver, self.clock, 868.3e6, 5.0)
+        equipment = Equipment(
+            vehicle=stage.vehicle,
+            receiver=stage.receiver,
+            finder=stage.finder,
+            pattern=None,  # type: ignore[arg-type]
+            journal=stage.journal,
+            publisher=stage.publisher,
+            clock=self.clock,
+            software="test",
+        )
+        task = localization(spec(), Place(lat=50.0, lon=7.0), 100.0)
+        self.watch = Watch(equipment, task.limits, self.listening, lambda: self.state, self.given.append)
+        self.see(in_air=True, armed=True, altitude_relative_m=40.0, altitude_amsl_m=140.0)
+
+    def see(self, **values: object) -> None:
+        self.vehicle.state = replace(self.vehicle.state, **values)  # type: ignore[arg-type]
+
+    def tick(self, times: int = 1, step_s: float = 0.2) -> list[inputs.Input]:
+        self.given.clear()
+        for _ in range(times):
+            self.clock.at += step_s
+            self.watch.tick()
+        return self.given
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return Scene()
+
+
+def test_nothing_happens_while_all_is_well(scene: Scene) -> None:
+    assert scene.tick(20) == []
+
+
+def test_a_link_that_goes_and_comes_is_told_once_each_way(scene: Scene) -> None:
+    scene.tick()
+    scene.vehicle.heard = False
+    told = scene.tick(5)
+    assert [type(g) for g in told] == [inputs.LinkDown]
+    scene.vehicle.heard = True
+    (up,) = scene.tick(5)
+    assert isinstance(up, inputs.LinkUp)
+    assert up.outage_s == pytest.approx(1.0)
+
+
+def test_a_console_counts_only_after_one_was_there(scene: Scene) -> None:
+    assert scene.tick(3) == []
+    scene.publisher.consoles = 2
+    assert scene.tick(3) == []
+    scene.publisher.consoles = 0
+    assert scene.tick(3) == [inputs.LinkDown("console", "no console is connected")]
+
+
+def test_a_machine_that_stood_still_is_no_silent_receiver(scene: Scene) -> None:
+    scene.listening.start = lambda: None  # type: ignore[method-assign]
+    scene.tick()
+    scene.tick(1, step_s=60.0)
+    assert scene.listening._quiet_s < 2.0
+    scene.tick(30)
+    assert scene.listening._quiet_s > 5.0
+
+
+def test_the_battery_is_told_once_until_it_recovers(scene: Scene) -> None:
+    scene.see(battery_percent=26.0)
+    (low,) = scene.tick(5)
+    assert isinstance(low, inputs.BatteryLow)
+    scene.see(battery_percent=90.0)
+    assert scene.tick(2) == []
+
+
+def test_the_pilot_is_noticed_and_a_failsafe_found_after_a_restart_is_not_taken_for_one(scene: Scene) -> None:
+    scene.state = Walk().to("hold").state
+    scene.watch.tolerated_mode = "RETURN"
+    scene.see(controller="pilot", mode="RETURN")
+    assert scene.tick(3) == []
+    scene.see(mode="POSCTL")
+    assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
+
+
+def test_home_and_ground_are_told_when_they_are_reached(scene: Scene) -> None:
+    scene.state = Walk().to("returning").state
+    scene.see(position=FRAME.to_geo(50.0, 0.0))
+    assert scene.tick(3) == []
+    scene.see(position=FRAME.to_geo(2.0, 1.0))
+    assert scene.tick() == [inputs.HomeReached()]
+    scene.state = Walk().to("landing").state
+    scene.see(in_air=False)
+    assert inputs.Landed() not in scene.tick(2)
+    assert inputs.Landed() in scene.tick(6)
+
+
+def test_the_track_is_thinned_to_two_points_a_second(scene: Scene) -> None:
+    scene.tick(50)
+    assert 17 <= len(scene.watch.track) <= 20
+
+
+def test_drain_is_nominal_until_enough_was_used_to_tell() -> None:
+    drain = Drain()
+    flying = replace(Stage().vehicle.state, in_air=True)
+    for second in range(0, 600, 10):
+        drain.update(replace(flying, battery_percent=90.0 - 0.1 * second), float(second))
+        if second < 60:
+            assert drain.percent_s == NOMINAL_DRAIN_PERCENT_S
+    assert drain.percent_s == pytest.approx(0.1)
