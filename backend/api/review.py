@@ -44,7 +44,10 @@ BINARY: dict[int | str, dict[str, object]] = {
 FILE: dict[int | str, dict[str, object]] = {
     200: {
         "description": "The file",
-        "content": {media: {"schema": {"type": "string", "format": "binary"}} for media in MEDIA_TYPES.values()},
+        "content": {
+            media: {"schema": {"type": "object"} if media.endswith("json") else {"type": "string"}}
+            for media in MEDIA_TYPES.values()
+        },
     }
 }
 
