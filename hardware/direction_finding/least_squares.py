@@ -34,7 +34,7 @@ class LeastSquaresDirectionFinder:
         count = binned.count[binned.filled].astype(np.float64)
 
         def misfit(bearing: NDArray[np.float64]) -> NDArray[np.float64]:
-            residual = power - curve.gain_db(bearing[:, None] - heading)
+            residual = power - curve.gain_db(np.subtract.outer(bearing, heading))
             level = residual @ count / count.sum()
             return ((residual - level[:, None]) ** 2) @ count
 
@@ -63,7 +63,7 @@ class CorrelationDirectionFinder:
         measured = measured / max(float(np.linalg.norm(measured)), 1e-12)
 
         def distance(bearing: NDArray[np.float64]) -> NDArray[np.float64]:
-            shifted = 10.0 ** (curve.gain_db(bearing[:, None] - heading) / 10.0)
+            shifted = 10.0 ** (curve.gain_db(np.subtract.outer(bearing, heading)) / 10.0)
             # |a - b|^2 of unit vectors: 2 - 2 cos
             return 2.0 - 2.0 * (shifted @ measured) / np.linalg.norm(shifted, axis=1)
 
@@ -79,7 +79,7 @@ def _minimum(cost: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> tupl
     coarse = cost(grid)
     foot = float(grid[int(np.argmin(coarse))])
     reach = 1.0
-    fine = foot + np.linspace(-reach, reach, 9)
+    fine: NDArray[np.float64] = foot + np.linspace(-reach, reach, 9)
     second, first, zeroth = np.polyfit(fine - foot, cost(fine), 2)
     step = float(np.clip(-first / (2.0 * second), -reach, reach)) if second > 1e-12 else 0.0
     return (foot + step) % 360.0, max(2.0 * float(second), 0.0), float(zeroth - second * step**2)
@@ -96,7 +96,7 @@ def _reading(
 ) -> BearingReading:
     quality = cosine_quality(curve, binned, bearing, noise_db)
     accepted = quality >= minimum_quality
-    centre = (np.arange(BINS) + 0.5) * BIN_DEG
+    centre: NDArray[np.float64] = np.linspace(0.5 * BIN_DEG, 360.0 - 0.5 * BIN_DEG, BINS)
     return BearingReading(
         bearing_deg=bearing % 360.0,
         sigma_deg=min(sigma, 180.0),

@@ -24,14 +24,18 @@ class RecordedReceiver:
         else:
             step = (wanted or 0.05 * sweep.power_db.size) / sweep.power_db.size
             self._after_s = [k * step for k in range(sweep.power_db.size)]
+        self._frequency_hz = sweep.frequency_hz
         self._open = False
 
     async def open(self, frequency_hz: float) -> None:
         recorded = self._sweep.frequency_hz
+        if not frequency_hz > 0:
+            raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
         if recorded > 0 and abs(frequency_hz - recorded) > 0.01 * recorded:
             raise ReceiverError(
                 f"the sweep was recorded at {recorded / 1e6:.4f} MHz, not at {frequency_hz / 1e6:.4f} MHz"
             )
+        self._frequency_hz = recorded if recorded > 0 else frequency_hz
         self._open = True
 
     async def close(self) -> None:
@@ -46,7 +50,7 @@ class RecordedReceiver:
             await self._clock.sleep(max(begin_s + after_s - self._clock.now(), 0.0))
             if not self._open:
                 return
-            yield PowerSample(begin_s + after_s, self._sweep.frequency_hz, float(power_db), self._sweep.noise_floor_db)
+            yield PowerSample(begin_s + after_s, self._frequency_hz, float(power_db), self._sweep.noise_floor_db)
 
     def headings(self, begin_s: float) -> list[HeadingSample]:
         """The vehicle's headings as recorded, shifted to a playback that began at `begin_s`."""

@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hardware.payload.messages import Hello, Samples
+from hardware.payload.receiver import PayloadReceiver
+from hardware.payload.session import PayloadHub, PayloadSession
 from hardware.ports import Receiver, ReceiverError
 from hardware.readings import GeoPoint, PowerSample, Sweep, Telemetry
 from hardware.sdr.receiver import IqReceiver
@@ -65,9 +68,47 @@ def recorded(tmp_path: Path) -> Receiver:
     return RecordedReceiver(sweep, SteppedClock())
 
 
-@pytest.fixture(params=[simulated, simulated_iq, sigmf_recording, recorded])
-def receiver(request: pytest.FixtureRequest, tmp_path: Path) -> Receiver:
-    return request.param(tmp_path)
+class LoopbackPayload:
+    """A PayloadReceiver whose agent is a task in this process: batches of five samples as fast as they are wanted."""
+
+    def __init__(self) -> None:
+        self.hub = PayloadHub(("a-token-of-some-length",))
+        self.receiver = PayloadReceiver(self.hub)
+        self.session = PayloadSession(self.hub)
+        self.task: asyncio.Task[None] | None = None
+        self.next = 1
+
+    async def open(self, frequency_hz: float) -> None:
+        if self.task is None:
+            self.session.receive(Hello(protocol=1, agent="pi", stream="s", software="", first_seq=1).model_dump_json())
+            self.task = asyncio.create_task(self._send())
+        await self.receiver.open(frequency_hz)
+
+    async def _send(self) -> None:
+        while True:
+            rows = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False) for k in range(self.next, self.next + 5)]
+            message = Samples(first_seq=self.next, oldest_seq=1, clock_offset_s=None, samples=rows)
+            self.session.receive(message.model_dump_json())
+            self.next += 5
+            await asyncio.sleep(0.005)
+
+    async def close(self) -> None:
+        await self.receiver.close()
+
+    def samples(self) -> AsyncIterator[PowerSample]:
+        return self.receiver.samples()
+
+
+def payload(tmp_path: Path) -> Receiver:
+    return LoopbackPayload()
+
+
+@pytest.fixture(params=[simulated, simulated_iq, sigmf_recording, recorded, payload])
+async def receiver(request: pytest.FixtureRequest, tmp_path: Path) -> AsyncIterator[Receiver]:
+    made = request.param(tmp_path)
+    yield made
+    if isinstance(made, LoopbackPayload) and made.task is not None:
+        made.task.cancel()
 
 
 async def first(receiver: Receiver, count: int) -> list[PowerSample]:
