@@ -183,7 +183,10 @@ async def _preflight_passed(client: httpx.AsyncClient, mission_id: str) -> None:
 async def _watch(socket: websockets.ClientConnection, log: MissionLog, client: httpx.AsyncClient) -> None:
     """Until the mission has ended. A hold is resumed, as an operator would once all is well again."""
     read = TypeAdapter(Recorded)
+    resuming: asyncio.Task[None] | None = None
     async for message in socket:
+        if resuming is not None and resuming.done():
+            resuming.result()
         if isinstance(message, bytes):
             continue
         told = json.loads(message)
@@ -200,7 +203,7 @@ async def _watch(socket: websockets.ClientConnection, log: MissionLog, client: h
                 raise DemoFailed(f"a pilot took control: {event.reason}")
             if event.after == "hold":
                 log.holds.append(event.reason)
-                await _resume(client, log)
+                resuming = asyncio.create_task(_resume(client, log))
     raise DemoFailed("the websocket closed before the mission ended")
 
 
