@@ -1,15 +1,20 @@
 import { render } from "preact";
 import { App } from "./app/App";
 import { watchKeys } from "./app/keys";
+import { overlay } from "./app/overlay";
 import { applySettings } from "./app/settings";
 import { isFixture, prepareFixture, sourceFor } from "./app/sourceFor";
 import { open, source } from "./app/store";
 import { watchAlerts } from "./panels/alertSounds";
 import "./style.css";
 
+/** The example needs this long until there is something to show. */
+const TOUR_AFTER_MS = 4000;
+
 applySettings();
 watchKeys();
 watchAlerts();
 if (isFixture) await prepareFixture();
 render(<App />, document.getElementById("app")!);
+if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
 if (source.peek() === null) open(sourceFor(null));

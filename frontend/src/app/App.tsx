@@ -44,7 +44,7 @@ function Lazy({ name, quiet = false, ...properties }: { name: keyof typeof loade
 
 function Sheets() {
   const which = overlay.value;
-  if (which !== "settings" && which !== "keys" && which !== "tour") return null;
+  if (which !== "settings" && which !== "keys" && which !== "tour" && which !== "instruments") return null;
   return <Lazy name="sheets" quiet which={which} />;
 }
 

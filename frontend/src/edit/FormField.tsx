@@ -23,6 +23,9 @@ function Message({ id, text }: { id: string; text: string | null }) {
   ) : null;
 }
 
+const unitWords = (unit: string) =>
+  unit === "times" || unit === "places" || unit === "bearings" ? t(`unit.${unit}`) : unit;
+
 function NumberInput({ field, failed }: Properties<NumberField>) {
   const now = draft.value!;
   const { unit, scale } = shownUnit(field, settings.value.units);
@@ -50,7 +53,7 @@ function NumberInput({ field, failed }: Properties<NumberField>) {
             }
           }}
         />
-        <span class="unit">{unit}</span>
+        <span class="unit">{unitWords(unit)}</span>
       </span>
       <Message id={id} text={message} />
     </div>

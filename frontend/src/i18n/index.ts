@@ -6,10 +6,14 @@ export type { MessageKey } from "./en";
 export type Language = "en" | "de";
 export type Parameters = Record<string, string | number>;
 
+/** For numbers: which mark groups thousands, which one parts the decimals. */
+export const locale = signal<Language>("en");
+
 const table = signal<Record<MessageKey, string>>(en);
 
 export async function setLanguage(language: Language): Promise<void> {
   table.value = language === "de" ? (await import("./de")).de : en;
+  locale.value = language;
   document.documentElement.lang = language;
 }
 

@@ -1,4 +1,5 @@
 // The one screen: map, estimate, bearing, next place, timeline; live and review alike.
+import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import type { Route } from "../app/route";
@@ -9,8 +10,12 @@ import { AlertBanner } from "../panels/AlertsButton";
 import { EstimatePanel } from "../panels/EstimatePanel";
 import { PlanPanel } from "../panels/PlanPanel";
 import { PreflightPanel } from "../panels/PreflightPanel";
+import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
+
+/** The 3D scene instead of the map. */
+const scene = signal(false);
 
 function MapArea() {
   const [state, setState] = useState<"loading" | "none" | { Map: ComponentType }>("loading");
@@ -27,7 +32,12 @@ function MapArea() {
     <div class="map-area" data-tour="2">
       {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
       {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
-      {typeof state === "object" && <state.Map />}
+      {typeof state === "object" && (scene.value ? <Scene /> : <state.Map />)}
+      {typeof state === "object" && source.value?.kind === "live" && (
+        <button class="scene-switch" data-testid="scene-switch" aria-pressed={scene.value} onClick={() => (scene.value = !scene.value)}>
+          {t(scene.value ? "scene.map" : "scene.show")}
+        </button>
+      )}
       <AlertBanner />
     </div>
   );

@@ -1,6 +1,7 @@
 // All missions, newest first: open, edit, use again, take away.
 import { useEffect, useState } from "preact/hooks";
 import { go, missionAddress } from "../app/route";
+import { change, settings } from "../app/settings";
 import { sourceFor } from "../app/sourceFor";
 import { open, source } from "../app/store";
 import { asProblem } from "../commands/send";
@@ -123,6 +124,15 @@ export function MissionsPage() {
           {t("missions.new")}
         </a>
       </div>
+      {!settings.value.tourSeen && (
+        <div class="card page-head" data-testid="tour-offer">
+          <span class="grow">{t("tour.offer")}</span>
+          <button onClick={() => change("tourSeen", true)}>{t("tour.later")}</button>
+          <a class="button primary" href="?fixture&tour#/mission/example" data-testid="tour-take">
+            {t("tour.take")}
+          </a>
+        </div>
+      )}
       {broken && <p class="refused" role="alert">{broken}</p>}
       {problem && (
         <div class="problem" role="alert">

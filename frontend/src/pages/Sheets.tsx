@@ -6,6 +6,7 @@ import { change, settings, type Settings } from "../app/settings";
 import { t, type Language, type MessageKey } from "../i18n";
 import type { CoordinateFormat } from "../units/coordinates";
 import type { UnitSystem } from "../units/quantities";
+import { Instruments } from "../panels/Instruments";
 import { Tour } from "./Tour";
 
 const close = () => {
@@ -139,5 +140,12 @@ function KeysSheet() {
 export function Sheets({ which }: { which: Overlay }) {
   if (which === "settings") return <SettingsSheet />;
   if (which === "keys") return <KeysSheet />;
+  if (which === "instruments") {
+    return (
+      <Sheet title={t("instruments.title")} testId="instruments">
+        <Instruments />
+      </Sheet>
+    );
+  }
   return <Tour />;
 }

@@ -28,6 +28,7 @@ export function Tour() {
   const end = () => {
     change("tourSeen", true);
     overlay.value = null;
+    if (new URLSearchParams(location.search).has("tour")) location.href = location.pathname;
   };
   const at = box ? placeCard(box) : { left: innerWidth / 2 - CARD.width / 2, top: innerHeight / 2 - CARD.height / 2 };
   return (

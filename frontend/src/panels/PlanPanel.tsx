@@ -3,7 +3,7 @@ import { settings } from "../app/settings";
 import { cursor, live, mission, vehicle } from "../app/store";
 import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { t } from "../i18n";
+import { locale, t } from "../i18n";
 import { cancelProposal, confirmProposal, propose, proposal, type Proposal } from "../commands/proposal";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
@@ -205,7 +205,7 @@ export function PlanPanel() {
             <span class="muted">
               {fact.source === "planner"
                 ? t("plan.effort", {
-                    rollouts: fact.rollouts.toLocaleString("en"),
+                    rollouts: fact.rollouts.toLocaleString(locale.value),
                     candidates: fact.candidates.length,
                     time: fact.plan_ms.toFixed(0),
                   })

@@ -1,6 +1,7 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
 import { useState } from "preact/hooks";
 import { cursor, events, flying, live, mission, nowMs, shownTimeMs, vehicle } from "../app/store";
+import { toggle } from "../app/overlay";
 import { missionAddress } from "../app/route";
 import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
@@ -71,13 +72,13 @@ interface Reading {
 
 function Indicator({ label, testId, value, age, state, alert, more }: Reading) {
   return (
-    <div class={`indicator ${state} ${alert ?? ""}`} data-testid={testId} data-state={state}>
+    <span class={`indicator ${state} ${alert ?? ""}`} data-testid={testId} data-state={state}>
       <span class="indicator-label">{label}</span>
       <span class="indicator-value">{state === "gone" ? "–" : value}</span>
       <span class="indicator-more">
         {state === "old" && age !== null ? t("bar.age", { age: formatAge(age) }) : state === "fresh" ? more : ""}
       </span>
-    </div>
+    </span>
   );
 }
 
@@ -100,7 +101,7 @@ function Indicators() {
   const vehicleState = heard === undefined ? "bar.vehicle.never" : heard.connected ? "bar.vehicle.ok" : "bar.vehicle.lost";
   const poorFix = heard?.gps_fix != null && /no|2d|none/i.test(heard.gps_fix);
   return (
-    <div class="indicators">
+    <button class="indicators" data-testid="indicators" title={t("instruments.title")} onClick={() => toggle("instruments")}>
       <Indicator
         label={t("bar.link")}
         testId="link"
@@ -149,7 +150,7 @@ function Indicators() {
         alert={receiver === "lost" ? "warning" : receiver === "silent" ? "caution" : null}
         more={power === null ? "" : `${power.toFixed(0)} dB`}
       />
-    </div>
+    </button>
   );
 }
 

@@ -1,10 +1,12 @@
 // Lengths, areas, speeds and times for people. Input is always SI.
 
+import { locale } from "../i18n";
+
 export type UnitSystem = "metric" | "imperial";
 
 const FOOT = 0.3048;
 const grouped = (value: number, digits = 0) =>
-  value.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits });
+  value.toLocaleString(locale.value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 
 /** Two significant places for small values, none for large ones. */
 const digitsFor = (value: number) => (Math.abs(value) < 100 ? 1 : 0);

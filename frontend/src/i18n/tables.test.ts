@@ -1,0 +1,14 @@
+import { expect, it } from "vitest";
+import { de } from "./de";
+import { en, type MessageKey } from "./en";
+
+const places = (text: string) => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1]).toSorted();
+
+it("every translation has the same places to fill in", () => {
+  for (const key of Object.keys(en) as MessageKey[]) expect(places(de[key]), key).toEqual(places(en[key]));
+});
+
+it("nothing was left untranslated but what is the same in both", () => {
+  const same = (Object.keys(en) as MessageKey[]).filter((key) => en[key] === de[key] && /[a-z]{5}/.test(en[key].replace(/\{\w+\}/g, "")));
+  expect(same.length).toBeLessThan(12);
+});

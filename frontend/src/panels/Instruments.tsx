@@ -1,0 +1,115 @@
+// Vehicle and receiver in full: every value with its age, and the last five minutes as lines.
+import { signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import { settings } from "../app/settings";
+import { live, nowMs, serverNowMs } from "../app/store";
+import { t, type MessageKey } from "../i18n";
+import { ageS, freshness } from "../state/age";
+import { emptySeries, extend, type Series } from "../state/series";
+import { formatAge, formatBearing, formatLength, formatSpeed } from "../units/quantities";
+
+const series = signal<Series>(emptySeries);
+
+interface Row {
+  label: MessageKey;
+  value: string | null;
+  age: number | null;
+}
+
+function Values() {
+  const now = nowMs.value;
+  const units = settings.value.units;
+  const { telemetry, status } = live.value;
+  const value = telemetry?.value;
+  const at = telemetry?.atMs ?? null;
+  const length = (metres: number | null | undefined) => (metres == null ? null : formatLength(metres, units));
+  const position = ageS(value?.position_age_s, at, now);
+  const heard = ageS(status?.value.receiver_age_s, status?.atMs ?? null, now);
+  const rows: Row[] = [
+    { label: "instruments.autopilot", value: value?.autopilot ?? null, age: ageS(0, at, now) },
+    { label: "instruments.mode", value: value?.mode ?? null, age: ageS(value?.mode_age_s, at, now) },
+    { label: "instruments.armed", value: value?.armed == null ? null : t(value.armed ? "instruments.yes" : "instruments.no"), age: ageS(value?.mode_age_s, at, now) },
+    { label: "instruments.altitude", value: length(value?.altitude_relative_m), age: position },
+    { label: "instruments.amsl", value: length(value?.altitude_amsl_m), age: position },
+    { label: "instruments.speed", value: value?.ground_speed_m_s == null ? null : formatSpeed(value.ground_speed_m_s, units), age: position },
+    { label: "instruments.climb", value: value?.climb_m_s == null ? null : formatSpeed(value.climb_m_s, units), age: position },
+    { label: "instruments.heading", value: value?.heading_deg == null ? null : formatBearing(value.heading_deg), age: ageS(value?.heading_age_s, at, now) },
+    { label: "instruments.power", value: status?.value.receiver_power_db == null ? null : `${status.value.receiver_power_db.toFixed(1)} dB`, age: heard },
+    { label: "instruments.viewers", value: status ? String(status.value.viewers) : null, age: ageS(0, status?.atMs ?? null, now) },
+    { label: "instruments.database", value: status ? t(`instruments.database.${status.value.database}`) : null, age: ageS(0, status?.atMs ?? null, now) },
+    { label: "instruments.dropped", value: value ? String(value.dropped) : null, age: ageS(0, at, now) },
+  ]; // prettier-ignore
+  return (
+    <table class="keys">
+      <tbody>
+        {rows.map(({ label, value: shown, age }) => (
+          <tr key={label} class={freshness(age)}>
+            <td>{t(label)}</td>
+            <td>
+              {shown === null || freshness(age) === "gone" ? "–" : shown}{" "}
+              {freshness(age) === "old" && age !== null && <small>{t("bar.age", { age: formatAge(age) })}</small>}
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function style(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+function Chart({ pick, label }: { pick: (s: Series) => (number | null)[]; label: MessageKey }) {
+  const box = useRef<HTMLDivElement>(null);
+  const plot = useRef<uPlot | null>(null);
+  const theme = settings.value.theme;
+  useEffect(() => {
+    const axis = { stroke: style("--muted"), grid: { stroke: style("--line"), width: 0.5 }, ticks: { show: false }, font: "11px system-ui" };
+    plot.current = new uPlot(
+      {
+        width: box.current!.clientWidth,
+        height: 120,
+        legend: { show: false },
+        cursor: { show: false },
+        axes: [axis, { ...axis, size: 44 }],
+        series: [{}, { stroke: style("--power"), width: 2, spanGaps: false }],
+      },
+      [series.peek().t, pick(series.peek())],
+      box.current!,
+    );
+    return () => plot.current?.destroy();
+  }, [theme]);
+  useEffect(() => plot.current?.setData([series.value.t, pick(series.value)]), [series.value]);
+  return (
+    <figure class="chart">
+      <figcaption>{t(label)}</figcaption>
+      <div ref={box} role="img" aria-label={t(label)} />
+    </figure>
+  );
+}
+
+/** Called once the chunk is there: the lines begin with the first look. */
+export function collect(): void {
+  const { telemetry, status } = live.peek();
+  series.value = extend(series.peek(), {
+    t: serverNowMs.peek() / 1000,
+    powerDb: status?.value.receiver_power_db ?? null,
+    altitudeM: telemetry?.value.altitude_relative_m ?? null,
+    batteryPercent: telemetry?.value.battery_percent ?? null,
+  });
+}
+setInterval(collect, 1000);
+
+export function Instruments() {
+  return (
+    <>
+      <Values />
+      <Chart label="instruments.chart.power" pick={(s) => s.powerDb} />
+      <Chart label="instruments.chart.altitude" pick={(s) => s.altitudeM} />
+      <Chart label="instruments.chart.battery" pick={(s) => s.batteryPercent} />
+    </>
+  );
+}
