@@ -19,7 +19,7 @@ from shapely import Point
 from shapely.geometry import shape
 
 from backend.cli.edge import print_json, remark, stop
-from backend.cli.running import CannotServe, RunningServer, running_server, settings_of
+from backend.cli.running import CannotServe, RunningServer, running_server, settings_of, stop_on_signals
 from backend.events import (
     BearingMeasured,
     BeliefUpdated,
@@ -104,6 +104,7 @@ async def _demo(settings: Settings, headless: bool, json_: bool) -> dict[str, An
         if not headless:
             typer.echo(_sentence(result), err=json_)
             remark("the page stays open to look at; Ctrl-C stops the server")
+            stop_on_signals(running)
             await running.gone
         return result
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import socket
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, nullcontext
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,11 +48,16 @@ class RunningServer:
 
 
 class _Server(uvicorn.Server):
-    """Says when it answers."""
+    """Says when it answers. Leaves signals to `stop_on_signals`: uvicorn would raise them again once it has stopped,
+    and end the process before the vehicle and the journal are closed."""
 
     def __init__(self, config: uvicorn.Config) -> None:
         super().__init__(config)
         self.ready = asyncio.Event()
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
@@ -82,6 +88,18 @@ async def running_server(settings: Settings, leave_flying: bool = False) -> Asyn
                 await asyncio.gather(gone, return_exceptions=True)
     finally:
         bound.close()
+
+
+def stop_on_signals(running: RunningServer) -> None:
+    """Ctrl-C and SIGTERM end the server politely; a second one ends it at once."""
+    loop = asyncio.get_running_loop()
+
+    def stop(number: int) -> None:
+        running.stop()
+        loop.remove_signal_handler(number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, stop, number)
 
 
 def _bind(host: str, port: int) -> socket.socket:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from backend.cli.edge import print_json, stop
-from backend.cli.running import CannotServe, running_server, settings_of
+from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
 from backend.settings import Settings
 from backend.store.opening import DatabaseUnusable
 from hardware.ports import HardwareError
@@ -60,6 +60,7 @@ def serve(
 
 async def _serve(settings: Settings, json_: bool) -> None:
     async with running_server(settings, leave_flying=True) as running:
+        stop_on_signals(running)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         if json_:
             print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})
