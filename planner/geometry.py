@@ -113,6 +113,16 @@ def convex_hull(points: FloatArray) -> Ring:
     return np.array(half(ordered) + half(ordered[::-1]))
 
 
+def cells_hull(cells: np.ndarray, x0: float, y0: float, h: float) -> Ring:
+    """Counter-clockwise convex hull of the marked cells, (ny, nx) bool, of size h from the corner (x0, y0)."""
+    rows = np.flatnonzero(cells.any(axis=1))
+    first, past = cells[rows].argmax(axis=1), cells.shape[1] - cells[rows, ::-1].argmax(axis=1)
+    corners = [
+        np.column_stack([x0 + columns * h, y0 + (rows + above) * h]) for columns in (first, past) for above in (0, 1)
+    ]
+    return convex_hull(np.concatenate(corners))
+
+
 def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
     """Distance in m from each of (n, 2) points to a convex polygon (0 inside); the hull may be a point or a segment."""
     points = np.asarray(points, dtype=float).reshape(-1, 2)

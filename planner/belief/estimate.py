@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from planner.belief.grid import GridBelief, smallest_set
-from planner.geometry import convex_hull
+from planner.geometry import cells_hull
 from planner.types import Estimate, Estimator, FloatArray, Ring
 
 TIE_BITS = 20
@@ -59,13 +59,7 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:
     """Convex hull (n, 2), m ENU, of the smallest set of cells that holds `share` of the mass (6.2.1)."""
-    rows, columns = np.nonzero(smallest_set(belief, share))
-    corners = [
-        np.column_stack([belief.x0 + (columns + i) * belief.h, belief.y0 + (rows + j) * belief.h])
-        for i in (0, 1)
-        for j in (0, 1)
-    ]
-    return convex_hull(np.concatenate(corners))
+    return cells_hull(smallest_set(belief, share), belief.x0, belief.y0, belief.h)
 
 
 def mass_within(belief: GridBelief, x: float, y: float, radius: float) -> float:

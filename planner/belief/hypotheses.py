@@ -15,7 +15,7 @@ from scipy.ndimage import label
 from planner.belief.estimate import most_likely
 from planner.belief.grid import GridBelief, smallest_set
 from planner.belief.verdict import points_at
-from planner.geometry import convex_hull
+from planner.geometry import cells_hull
 from planner.types import Bearing, Ring
 
 
@@ -53,6 +53,5 @@ def _hypothesis(belief: GridBelief, bearings: Sequence[Bearing], cells: np.ndarr
     heaviest = most_likely(mass)
     x0, y0, h = belief.x0, belief.y0, belief.h
     x, y = float(x0 + (columns[heaviest] + 0.5) * h), float(y0 + (rows[heaviest] + 0.5) * h)
-    corners = [np.column_stack([x0 + (columns + i) * h, y0 + (rows + j) * h]) for i in (0, 1) for j in (0, 1)]
     supporting = tuple(k for k, bearing in enumerate(bearings) if points_at(bearing, x, y))
-    return Hypothesis(float(mass.sum()), x, y, convex_hull(np.concatenate(corners)), supporting)
+    return Hypothesis(float(mass.sum()), x, y, cells_hull(cells, x0, y0, h), supporting)

@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.belief.estimate import TIE_BITS
 from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS, aligned_range
-from planner.geometry import clip_half_plane, convex_hull, distance_to_convex
+from planner.geometry import cells_hull, clip_half_plane, distance_to_convex
 from planner.kernels.model import (
     ELLIPSE,
     EXPECTED_VALUE,
@@ -286,15 +286,7 @@ def confidence_hull(belief: Belief) -> FloatArray:
     counted = below_top < HISTOGRAM_BINS
     share = np.bincount(below_top[counted], weights=weight[counted])
     last = int(np.searchsorted(np.cumsum(share), CONFIDENCE * weight.sum() * (1.0 - NEARLY)))
-    heavy = below_top <= last
-    rows = np.flatnonzero(heavy.any(axis=1))
-    first, past = heavy[rows].argmax(axis=1), belief.weight.shape[1] - heavy[rows, ::-1].argmax(axis=1)
-    corners = [
-        np.column_stack([belief.x0 + columns * belief.h, belief.y0 + (rows + j) * belief.h])
-        for columns in (first, past)
-        for j in (0, 1)
-    ]
-    return convex_hull(np.concatenate(corners))
+    return cells_hull(below_top <= last, belief.x0, belief.y0, belief.h)
 
 
 def flight_time(rules: Rules, distance: float, turn: float) -> float:
