@@ -9,7 +9,7 @@ from typing import Any
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.firmware import ACCEPTED, UNSUPPORTED, Command, Firmware
-from hardware.sim.autopilot.telemetry import BUILDERS, autopilot_version
+from hardware.sim.autopilot.telemetry import autopilot_version, builders
 
 _DATA_STREAMS: dict[int, tuple[int, ...]] = {
     mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: (
@@ -34,6 +34,7 @@ class Station:
 
     def __init__(self, firmware: Firmware) -> None:
         self.firmware = firmware
+        self._builders = builders(firmware.name)
         self._encoder = mavlink.MAVLink(None, _SYSTEM, _COMPONENT)
         self._decoder = mavlink.MAVLink(None)
         self._decoder.robust_parsing = True
@@ -59,14 +60,14 @@ class Station:
             yield self.pack(firmware.outbox.popleft())
         if firmware.heartbeat_due:
             firmware.heartbeat_due = False
-            yield self.pack(BUILDERS[mavlink.MAVLINK_MSG_ID_HEARTBEAT](firmware))
+            yield self.pack(self._builders[mavlink.MAVLINK_MSG_ID_HEARTBEAT](firmware))
         for message, due in self._due.items():
             if now >= due:
                 self._due[message] = max(due + self._period[message], now)
-                yield self.pack(BUILDERS[message](firmware))
+                yield self.pack(self._builders[message](firmware))
 
     def _set_interval(self, message: int, hz: float) -> int:
-        if message not in BUILDERS:
+        if message not in self._builders:
             return UNSUPPORTED
         if hz <= 0.0:
             self._due.pop(message, None)
@@ -135,13 +136,13 @@ class Station:
                 default = {0.0: self.firmware.streams_by_default.get(int(message.param1), 1.0), -1.0: 0.0}
                 result = self._set_interval(int(message.param1), default.get(micros, 1e6 / micros if micros else 0.0))
             case mavlink.MAV_CMD_REQUEST_MESSAGE:
-                builder = BUILDERS.get(int(message.param1))
+                builder = self._builders.get(int(message.param1))
                 result = UNSUPPORTED if builder is None else ACCEPTED
                 answers = [] if builder is None else [builder(self.firmware)]
             case mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES:
                 result, answers = ACCEPTED, [autopilot_version(self.firmware)]
             case mavlink.MAV_CMD_GET_HOME_POSITION:
-                result, answers = ACCEPTED, [BUILDERS[mavlink.MAVLINK_MSG_ID_HOME_POSITION](self.firmware)]
+                result, answers = ACCEPTED, [self._builders[mavlink.MAVLINK_MSG_ID_HOME_POSITION](self.firmware)]
             case _:
                 result = self.firmware.command(_as_command(message))
         if result is None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.firmware import Firmware
@@ -158,7 +159,13 @@ def autopilot_version(firmware: Firmware) -> Message:
     )
 
 
-BUILDERS: dict[int, Callable[[Firmware], Any]] = {
+def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
+    """ArduPilot's word on its position estimate; MAVSDK asks for it as part of "health"."""
+    good = 0x33F if firmware.prearm_ok else 0x007  # attitude and velocity; all of position besides
+    return ardupilotmega.MAVLink_ekf_status_report_message(good, 0.1, 0.1, 0.1, 0.1, 0.0)
+
+
+_COMMON: dict[int, Callable[[Firmware], Any]] = {
     mavlink.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
     mavlink.MAVLINK_MSG_ID_CURRENT_MODE: current_mode,
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: sys_status,
@@ -172,4 +179,9 @@ BUILDERS: dict[int, Callable[[Firmware], Any]] = {
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: system_time,
     mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: autopilot_version,
 }
-"""Message id -> builder: what this autopilot can send when asked."""
+
+
+def builders(flavour: str) -> dict[int, Callable[[Firmware], Any]]:
+    """Message id -> builder: what this flavour can send when asked."""
+    own = {ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report} if flavour == "ardupilot" else {}
+    return _COMMON | own
