@@ -14,6 +14,7 @@ from backend.api.services import Services
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
 from backend.wiring import open_services
+from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES
 
 OpenServices = Callable[[Settings], AbstractAsyncContextManager[Services]]
 
@@ -40,7 +41,7 @@ def server_config(settings: Settings, app: FastAPI) -> uvicorn.Config:
         host=settings.host,
         port=settings.port,
         ws=LiveProtocol,
-        ws_max_size=64 * 1024,
+        ws_max_size=MAXIMUM_MESSAGE_BYTES,
         ws_per_message_deflate=False,
         ws_ping_interval=settings.live_ping_interval_s,
         ws_ping_timeout=settings.live_ping_timeout_s,

@@ -31,6 +31,9 @@ class Settings(BaseSettings):
     """Disk blocks taken in advance, so that a full disk does not stop the journal."""
     disk_low_bytes: int = Field(default=200 * 2**20, ge=0)
 
+    payload_tokens: tuple[str, ...] = ()
+    """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
+
     vehicle_url: str | None = None
     simulate: Literal["px4", "ardupilot"] = "px4"
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)

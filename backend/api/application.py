@@ -7,7 +7,7 @@ from contextlib import AbstractAsyncContextManager
 
 from fastapi import FastAPI
 
-from backend.api import live, problems, scene
+from backend.api import live, payload, problems, scene
 from backend.api.guard import Guard
 from backend.api.page import Page
 from backend.api.schema import ROUTERS, operation_id
@@ -33,6 +33,7 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     for router in ROUTERS:
         app.include_router(router)
     app.include_router(live.router)
+    app.include_router(payload.router)
     app.include_router(scene.pages)
     app.router.default = Page(settings.page_dir)
     app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))

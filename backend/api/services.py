@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from backend.live.hub import Hub
 from backend.settings import Settings
 from backend.store.journal import SqlJournal
+from hardware.payload.session import PayloadHub
 
 if TYPE_CHECKING:
     from backend.mission.service import MissionService
@@ -21,7 +22,7 @@ class Services:
     """Everything the endpoints use; made once by the application's start.
 
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
-    they never take the planner's threads from the flight.
+    they never take the planner's threads from the flight. payload: None where no companion computer may connect.
     """
 
     missions: MissionService
@@ -29,5 +30,6 @@ class Services:
     hub: Hub
     settings: Settings
     now: Callable[[], float]
+    payload: PayloadHub | None = None
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)

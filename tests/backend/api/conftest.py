@@ -25,8 +25,10 @@ from backend.spec import MissionSpec
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
+from hardware.payload.session import PayloadHub
 from hardware.readings import GeoPoint, Telemetry
 
+TOKEN = "a token of sixteen letters or more"
 NOW_S = 1_700_000_000.0
 
 
@@ -86,7 +88,8 @@ async def running_services(settings: Settings) -> AsyncIterator[Services]:
     journal = SqlJournal(make_engine(settings.async_database_url, 2.0), spool, lambda: NOW_S)
     hub = Hub(journal.read, lambda: NOW_S)
     try:
-        yield Services(PaperMissions(journal, hub), journal, hub, settings, lambda: NOW_S)
+        payload = PayloadHub((TOKEN,), lambda: NOW_S)
+        yield Services(PaperMissions(journal, hub), journal, hub, settings, lambda: NOW_S, payload)
     finally:
         await journal.close()
 

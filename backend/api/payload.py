@@ -1,0 +1,56 @@
+"""The websocket /api/payload on which companion computers deliver power samples (hardware.payload says what is said).
+
+An agent shows its token in the header "Authorization: Bearer TOKEN"; 401 when it is none of ours, 404 when this server
+takes no payload.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+
+from backend.api.problems import respond
+from backend.api.services import Services
+from backend.wire.problem import Problem
+
+router = APIRouter()
+
+NO_PAYLOAD = Problem(
+    title="No payload is expected",
+    status=404,
+    detail="This server takes no samples from a payload.",
+    remedy="Start it with CROSSFIX_PAYLOAD_TOKENS, a list of the tokens its payloads may show.",
+)
+UNKNOWN_TOKEN = Problem(
+    title="Unknown payload",
+    status=401,
+    detail="The token is none of those that this server knows.",
+    remedy="Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
+)
+
+
+@router.websocket("/api/payload")
+async def payload(websocket: WebSocket) -> None:
+    services: Services = websocket.app.state.services
+    hub = services.payload
+    scheme, _, token = websocket.headers.get("authorization", "").partition(" ")
+    if hub is None:
+        await websocket.send_denial_response(respond(NO_PAYLOAD))
+        return
+    if scheme.lower() != "bearer" or not hub.authenticate(token.strip()):
+        await websocket.send_denial_response(respond(UNKNOWN_TOKEN))
+        return
+    await websocket.accept()
+    with suppress(WebSocketDisconnect):
+        await hub.serve(lambda: _text(websocket), websocket.send_text)
+        await websocket.close(1008, "the payload was told why")
+
+
+async def _text(websocket: WebSocket) -> str:
+    """Binary messages are no part of the protocol: they are handed on as text that is refused there."""
+    message = await websocket.receive()
+    if message["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect(message.get("code", 1006))
+    text = message.get("text")
+    return (message.get("bytes") or b"").decode("utf-8", "replace") if text is None else text
