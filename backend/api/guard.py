@@ -70,10 +70,11 @@ class Guard:
     def _is_ours(self, host: str) -> bool:
         """An IP address cannot be rebound, a name can: only known names pass."""
         try:
-            name = urlsplit(f"//{host}").hostname
+            parts = urlsplit(f"//{host}")
+            name, _ = parts.hostname, parts.port
         except ValueError:
             return False
-        if not name:
+        if not name or parts.netloc != host:
             return False
         try:
             ipaddress.ip_address(name)

@@ -7,7 +7,17 @@ import pytest
 import websockets
 
 OWN = ["127.0.0.1", "127.0.0.1:8600", "localhost:8600", "[::1]:8600", "192.168.1.7:8600"]
-FOREIGN = ["evil.example", "localhost.evil.example", "evil.example:8600", "", "a b", "127.0.0.1.evil.example", "[::1"]
+FOREIGN = [
+    "evil.example",
+    "localhost.evil.example",
+    "evil.example:8600",
+    "",
+    "a b",
+    "127.0.0.1.evil.example",
+    "[::1",
+    "127.0.0.1:80;x",
+    "127.0.0.1/x",
+]
 
 
 @pytest.mark.parametrize("host", OWN)
