@@ -120,8 +120,8 @@ class PlannerSpec(Model):
     sampling: Literal["deterministic", "crn", "pmc"] = "crn"
     estimator: Literal["map", "expected_value", "geometric_median"] = "map"
     budget: int = Field(default=1000, ge=10, le=100_000)
-    action_spacing_m: Positive = 15.0
-    standoff_m: NonNegative = 50.0
+    action_spacing_m: float = Field(default=15.0, ge=1, le=5000)
+    standoff_m: float = Field(default=50.0, ge=0, le=5000)
     motion: MotionSpec = Field(default_factory=LinearConstantMotionSpec)
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
 
@@ -144,7 +144,7 @@ class FlightSpec(Model):
     maximum_altitude_relative_m: float = Field(default=120.0, ge=2, le=1000)
     speed_m_s: float = Field(default=7.0, gt=0, le=30)
     fence: Area | None = None
-    fence_margin_m: NonNegative = 60.0
+    fence_margin_m: float = Field(default=60.0, ge=0, le=5000)
     no_fly: list[Area] = Field(default_factory=list)
     reserve_battery_percent: float = Field(default=25.0, ge=5, le=90)
     automatic: bool = True
