@@ -56,6 +56,10 @@ def demo(
     vehicle: Annotated[
         str | None, typer.Option(help="Fly this autopilot instead, around its own home (udpin://0.0.0.0:14540 ...).")
     ] = None,
+    mend_failsafes: Annotated[
+        bool,
+        typer.Option(help="Set failsafe parameters of the autopilot that would not act, and say which."),
+    ] = True,
     data_dir: Annotated[
         Path | None, typer.Option(help="Where the database goes. Default: a new temporary directory.")
     ] = None,
@@ -80,7 +84,7 @@ def demo(
     except ValueError as error:
         stop(error)
     try:
-        result = asyncio.run(_demo(settings, headless, json_))
+        result = asyncio.run(_demo(settings, headless, json_, mend_failsafes))
     except (CannotServe, DatabaseUnusable, ValueError) as error:
         stop(error)
     except (DemoFailed, HardwareError, httpx.HTTPError, websockets.WebSocketException, OSError) as error:
@@ -94,12 +98,12 @@ def demo(
         typer.echo(_sentence(result))
 
 
-async def _demo(settings: Settings, headless: bool, json_: bool) -> dict[str, Any]:
+async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool) -> dict[str, Any]:
     async with running_server(settings) as running:
         if not headless:
             remark(f"the page: {running.url}")
             await asyncio.to_thread(webbrowser.open, running.url)
-        log = await fly(running, settings)
+        log = await fly(running, settings, mend)
         result = summary(log, settings, running.receiver.truth)
         if not headless:
             typer.echo(_sentence(result), err=json_)
@@ -121,10 +125,13 @@ class MissionLog:
         return [r.event for r in self.recorded if isinstance(r.event, kind)]
 
 
-async def fly(running: RunningServer, settings: Settings) -> MissionLog:
+async def fly(running: RunningServer, settings: Settings, mend: bool = False) -> MissionLog:
     """Draft and start the suggested mission by REST, then watch the websocket to its end. Raises DemoFailed."""
     async with httpx.AsyncClient(base_url=running.url, timeout=60.0) as client:
         await _vehicle_there(client)
+        if mend:
+            for line in await running.services.missions.mend_failsafes():
+                remark(line)
         defaults = _answer(await client.get("/api/defaults"))
         spec = defaults["spec"] | {"name": f"Demo, seed {settings.seed}"}
         spec["planner"] = spec["planner"] | {"seed": settings.seed}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import AsyncIterator, Callable
+from typing import Protocol, runtime_checkable
 
 from hardware.ports import Clock, Vehicle, VehicleUnreachable
 from hardware.readings import GeoPoint, HeadingSample, PreflightCheck, Telemetry
@@ -13,6 +14,15 @@ log = logging.getLogger("crossfix.mission")
 
 ATTEMPT_S = 10.0
 PAUSE_S = 2.0
+
+
+@runtime_checkable
+class MendsFailsafes(Protocol):
+    """A vehicle whose failsafe parameters can be set from here."""
+
+    async def mend_failsafes(self) -> list[str]:
+        """Set what would not act; one line a changed parameter. Raises VehicleError."""
+        ...
 
 
 class PatientVehicle:
@@ -82,6 +92,11 @@ class PatientVehicle:
             remedy = "switch it on and check its link and address"
             return [PreflightCheck("vehicle link", False, self.detail, remedy)]
         return await self._vehicle.preflight()
+
+    async def mend_failsafes(self) -> list[str]:
+        """Only on the operator's explicit wish. Nothing for a vehicle that has no such parameters."""
+        vehicle = self._present()
+        return await vehicle.mend_failsafes() if isinstance(vehicle, MendsFailsafes) else []
 
     async def take_off(self, altitude_relative_m: float) -> None:
         await self._present().take_off(altitude_relative_m)

@@ -21,7 +21,7 @@ from backend.mission.errors import MissionConflict, MissionNotFound
 from backend.mission.forecast import Forecast, Preview, forecast, preview
 from backend.mission.localization import Localization, localization
 from backend.mission.machine import transition
-from backend.mission.patient_vehicle import PatientVehicle
+from backend.mission.patient_vehicle import MendsFailsafes, PatientVehicle
 from backend.mission.ports import Status
 from backend.mission.runner import Runner
 from backend.mission.safety import Veto, battery_to_return_percent
@@ -232,6 +232,14 @@ class MissionService:
 
     def telemetry(self) -> Telemetry:
         return self._equipment.vehicle.telemetry()
+
+    async def mend_failsafes(self) -> list[str]:
+        """Set the autopilot's failsafe parameters that would not act, on the operator's explicit wish.
+
+        One line a changed parameter. Raises VehicleError.
+        """
+        vehicle = self._equipment.vehicle
+        return await vehicle.mend_failsafes() if isinstance(vehicle, MendsFailsafes) else []
 
     def vehicle_detail(self) -> str:
         """Why there is no vehicle; empty when there is one."""

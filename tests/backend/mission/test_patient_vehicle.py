@@ -41,3 +41,19 @@ async def test_a_vehicle_that_comes_late_is_connected_in_the_background(monkeypa
     patient._vehicle.take_control()
     assert "pilot" in await first
     await patient.close()
+
+
+class MendableVehicle(FlatVehicle):
+    async def mend_failsafes(self) -> list[str]:
+        return ["NAV_DLL_ACT set from 0 to 2"]
+
+
+@pytest.mark.parametrize(("kind", "lines"), [(FlatVehicle, []), (MendableVehicle, ["NAV_DLL_ACT set from 0 to 2"])])
+async def test_failsafes_are_mended_where_a_vehicle_can(kind: type[FlatVehicle], lines: list[str]) -> None:
+    clock = ScaledClock()
+    patient = PatientVehicle(lambda: kind(clock), clock, "udpin://somewhere")
+    with pytest.raises(VehicleUnreachable):
+        await patient.mend_failsafes()
+    await patient.connect(5.0)
+    assert await patient.mend_failsafes() == lines
+    await patient.close()
