@@ -34,6 +34,12 @@ class Settings(BaseSettings):
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
 
+    receiver: str | None = None
+    """"simulated", "payload", or a device: soapy:driver=NAME, rtl_tcp://HOST[:PORT], sigmf:FILE, recording:FILE. None:
+    the payload's when payloads may connect, else the simulated one."""
+    antenna_pattern: Path | None = None
+    """JSON pattern or turntable table of the antenna; None: the small Yagi that ships."""
+
     vehicle_url: str | None = None
     simulate: Literal["px4", "ardupilot"] = "px4"
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)
