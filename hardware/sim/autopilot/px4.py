@@ -140,6 +140,8 @@ class Px4(Firmware):
             case mavlink.MAV_CMD_NAV_LAND:
                 return self._select(self.modes["LAND"])
             case mavlink.MAV_CMD_DO_CHANGE_SPEED:
+                if not command.p2 > 0.0:
+                    return DENIED
                 self.flight.demand.speed = min(command.p2, self.parameters["MPC_XY_VEL_MAX"])
                 return ACCEPTED
             case _:

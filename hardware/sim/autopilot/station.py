@@ -8,7 +8,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import development as mavlink
 
-from hardware.sim.autopilot.firmware import ACCEPTED, UNSUPPORTED, Command, Firmware
+from hardware.sim.autopilot.firmware import ACCEPTED, DENIED, UNSUPPORTED, Command, Firmware
 from hardware.sim.autopilot.telemetry import autopilot_version, builders
 
 _DATA_STREAMS: dict[int, tuple[int, ...]] = {
@@ -127,10 +127,22 @@ class Station:
                 return []
 
     def _command(self, message: Any) -> list[Any]:
-        number = message.command
+        try:
+            result, answers = self._carry_out(message)
+        except (ValueError, OverflowError):  # NaN or infinity where a whole number belongs
+            result, answers = DENIED, []
+        if result is None:
+            return []
+        ack = mavlink.MAVLink_command_ack_message(
+            message.command, result, 0, 0, message.get_srcSystem(), message.get_srcComponent()
+        )
+        return [ack, *answers]
+
+    def _carry_out(self, message: Any) -> tuple[int | None, list[Any]]:
+        """(MAV_RESULT or None for no answer, messages that were asked for)."""
         answers: list[Any] = []
         result: int | None
-        match number:
+        match message.command:
             case mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
                 micros = message.param2
                 default = {0.0: self.firmware.streams_by_default.get(int(message.param1), 1.0), -1.0: 0.0}
@@ -145,12 +157,7 @@ class Station:
                 result, answers = ACCEPTED, [self._builders[mavlink.MAVLINK_MSG_ID_HOME_POSITION](self.firmware)]
             case _:
                 result = self.firmware.command(_as_command(message))
-        if result is None:
-            return []
-        ack = mavlink.MAVLink_command_ack_message(
-            number, result, 0, 0, message.get_srcSystem(), message.get_srcComponent()
-        )
-        return [ack, *answers]
+        return result, answers
 
     def _parameters(self, message: Any) -> list[Any]:
         table = self.firmware.parameters

@@ -274,3 +274,14 @@ def test_ordered_faults_spoil_as_many_commands_as_told(flavour: type[Px4]) -> No
     assert firmware.command(goto(9.0, 0.0)) == ACCEPTED
     run(firmware, 10.0)
     assert off(firmware, 9.0, 0.0) < 1.5
+
+
+@BOTH
+@pytest.mark.parametrize("speed", [math.nan, -math.inf, -1.0, 0.0])
+def test_a_speed_that_is_none_is_denied_and_it_flies_on(flavour: type[Px4], speed: float) -> None:
+    firmware = flying(flavour)
+    firmware.command(goto(40.0, 0.0))
+
+    assert firmware.command(Command(SPEED, 1.0, speed)) == DENIED
+    run(firmware, 25.0)
+    assert off(firmware, 40.0, 0.0) < 2.0

@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from hardware.sim.autopilot.firmware import Conditions
@@ -67,6 +67,7 @@ def test_a_wrong_order_is_answered_with_what_is_wrong(firmware: Px4, order: dict
     assert says in answer["error"]
 
 
+@example(b"[" * 4000)
 @given(
     st.one_of(
         st.binary(max_size=60),

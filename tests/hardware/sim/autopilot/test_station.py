@@ -5,6 +5,8 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.ardupilot import ArduCopter
@@ -134,6 +136,39 @@ def test_arducopters_failsafe_watches_the_station_named_by_its_parameter(system:
     ground.station.receive(bytes(beat.pack(encoder)))
 
     assert (ground.firmware.gcs_heard_at == 4.0) is counts
+
+
+NUMBERS = st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -1.0, 1.0, 4.0, 1e30, 300.0])
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    flavour=st.sampled_from([Px4, ArduCopter]),
+    number=st.sampled_from([20, 21, 22, 115, 176, 178, 192, 400, 410, 511, 512, 520, 31_000]),
+    params=st.tuples(*[NUMBERS] * 7),
+    as_int=st.booleans(),
+    in_air=st.booleans(),
+)
+def test_no_command_brings_it_down(
+    flavour: type[Firmware], number: int, params: tuple[float, ...], as_int: bool, in_air: bool
+) -> None:
+    ground = Ground(flavour)
+    ground.run(10.0)
+    ground.firmware.flight.arm()
+    if in_air:
+        ground.firmware.copter.up = 20.0
+        ground.firmware.set_mode("HOLD" if flavour is Px4 else "GUIDED")
+    ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, 100_000)
+    if as_int:
+        message = mavlink.MAVLink_command_int_message(1, 1, 5, number, 0, 0, *params[:4], 10, -10, params[6])
+    else:
+        message = mavlink.MAVLink_command_long_message(1, 1, number, 0, *params)
+
+    answers = ground.send(message)
+    heard = ground.counts(2.0)
+
+    assert answers[0].get_type() == "COMMAND_ACK"
+    assert heard["HEARTBEAT"] >= 1
 
 
 def test_a_place_given_as_nan_is_no_place() -> None:
