@@ -31,8 +31,11 @@ from hardware.clock import ScaledClock
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
-from hardware.ports import ReceiverError, Vehicle
+from hardware.payload.receiver import PayloadReceiver
+from hardware.payload.session import PayloadHub
+from hardware.ports import Receiver, ReceiverError, Vehicle
 from hardware.readings import GeoPoint, PowerSample
+from hardware.sdr.device import receiver_from
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, find_simulated, launch_simulated
 from hardware.sim.receiver import SimulatedReceiver
@@ -167,11 +170,23 @@ def _warm_up() -> None:
     preview(localization(spec, home, 0.0), home, threads=2)
 
 
+def _receiver(settings: Settings, vehicle: Vehicle, clock: ScaledClock, payload: PayloadHub | None) -> Receiver:
+    """Raises ReceiverError for a device of no known form."""
+    named = settings.receiver or ("simulated" if payload is None else "payload")
+    if named == "simulated":
+        return EmitterAroundHome(vehicle, clock, settings.seed)
+    if named == "payload":
+        if payload is None:
+            raise ReceiverError("a payload's receiver needs CROSSFIX_PAYLOAD_TOKENS, so that a payload may connect")
+        return PayloadReceiver(payload)
+    return receiver_from(named, clock)
+
+
 @asynccontextmanager
 async def open_services(settings: Settings) -> AsyncIterator[Services]:
     """Everything of a running server; taken down in the opposite order.
 
-    Raises ValueError for a vehicle address of no known form, DatabaseUnusable, HardwareError.
+    Raises ValueError for a vehicle address or an antenna pattern that cannot be read, DatabaseUnusable, HardwareError.
     """
     async with open_simulation(settings) as (services, _):
         yield services
@@ -180,12 +195,13 @@ async def open_services(settings: Settings) -> AsyncIterator[Services]:
 @asynccontextmanager
 async def open_simulation(
     settings: Settings, leave_flying: bool = True
-) -> AsyncIterator[tuple[Services, EmitterAroundHome]]:
-    """The same, with the simulated emitter's truth beside it (for whoever grades the answer).
+) -> AsyncIterator[tuple[Services, EmitterAroundHome | None]]:
+    """The same, with the simulated emitter beside it (for whoever grades the answer), None when the receiver is real.
 
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
+    pattern = load_pattern(settings.antenna_pattern or SMALL_YAGI)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor)
@@ -195,34 +211,36 @@ async def open_simulation(
         latest = await _latest_utc_s(journal)
         if latest is not None and latest > clock.now():
             clock = ScaledClock(latest, settings.time_factor)
-        hangar, simulated = Hangar(settings), None
-        if settings.vehicle_url is None:
-            simulated = await hangar.enter(bool(unfinished))
-        url = simulated.url if simulated is not None else settings.vehicle_url or ""
-        vehicle = PatientVehicle(lambda: MavsdkVehicle(url, clock), clock, url)
-        hub = Hub(journal.read, clock.now)
-        receiver = EmitterAroundHome(vehicle, clock, settings.seed)
-        missions = MissionService(
-            Equipment(
-                vehicle=vehicle,
-                receiver=receiver,
-                finder=SparseDirectionFinder(),
-                pattern=load_pattern(SMALL_YAGI),
-                journal=journal,
-                publisher=hub,
-                clock=clock,
-                software=VERSION,
-                database=lambda: journal.report().state,
-            )
-        )
+        hangar = Hangar(settings)
+        simulated = None if settings.vehicle_url else await hangar.enter(bool(unfinished))
+        missions = None
         try:
+            url = settings.vehicle_url if simulated is None else simulated.url
+            vehicle = PatientVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "")
+            hub = Hub(journal.read, clock.now)
+            payload = PayloadHub(settings.payload_tokens, clock.now) if settings.payload_tokens else None
+            receiver = _receiver(settings, vehicle, clock, payload)
+            missions = MissionService(
+                Equipment(
+                    vehicle=vehicle,
+                    receiver=receiver,
+                    finder=SparseDirectionFinder(),
+                    pattern=pattern,
+                    journal=journal,
+                    publisher=hub,
+                    clock=clock,
+                    software=VERSION,
+                    database=lambda: journal.report().state,
+                )
+            )
             await missions.start_up()
             await warming
-            services = Services(missions=missions, journal=journal, hub=hub, settings=settings, now=clock.now)
-            yield services, receiver
+            services = Services(missions, journal, hub, settings, clock.now, payload)
+            yield services, receiver if isinstance(receiver, EmitterAroundHome) else None
         finally:
             await asyncio.gather(warming, return_exceptions=True)
-            in_flight = missions.active_mission_id is not None
-            await missions.shut_down()
+            in_flight = missions is not None and missions.active_mission_id is not None
+            if missions is not None:
+                await missions.shut_down()
             if simulated is not None and not (leave_flying and in_flight):
                 await hangar.leave(simulated)

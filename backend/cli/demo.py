@@ -104,7 +104,7 @@ async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool) -> 
             remark(f"the page: {running.url}")
             await asyncio.to_thread(webbrowser.open, running.url)
         log = await fly(running, settings, mend)
-        result = summary(log, settings, running.receiver.truth)
+        result = summary(log, settings, None if running.receiver is None else running.receiver.truth)
         if not headless:
             typer.echo(_sentence(result), err=json_)
             remark("the page stays open to look at; Ctrl-C stops the server")

@@ -35,11 +35,11 @@ def settings_of(**given: Any) -> Settings:
 
 @dataclass(frozen=True, slots=True)
 class RunningServer:
-    """url: of the page, without a trailing slash. stop: ends it politely. gone: when it has ended."""
+    """url: of the page, without a trailing slash. receiver: the simulated one. gone: when the server has ended."""
 
     url: str
     services: Services
-    receiver: EmitterAroundHome
+    receiver: EmitterAroundHome | None
     server: uvicorn.Server
     gone: asyncio.Task[None]
 

@@ -26,6 +26,16 @@ def serve(
         str | None,
         typer.Option(help="Real vehicle: udpin://0.0.0.0:14540, tcpout://HOST:PORT, serial:///dev/ttyUSB0:57600."),
     ] = None,
+    receiver: Annotated[
+        str | None,
+        typer.Option(
+            help="simulated, payload, soapy:driver=NAME, rtl_tcp://HOST[:PORT], sigmf:FILE or recording:FILE. "
+            "Default: the payload's when CROSSFIX_PAYLOAD_TOKENS lets one in, else a simulated emitter."
+        ),
+    ] = None,
+    pattern: Annotated[
+        Path | None, typer.Option(help="Antenna pattern (JSON or turntable table). Default: a small Yagi.")
+    ] = None,
     flavour: Annotated[str | None, typer.Option(help="Simulated autopilot: px4 or ardupilot. Default: px4.")] = None,
     speedup: Annotated[
         float | None, typer.Option(help="Seconds of simulated time a second of the wall. Default: 1.")
@@ -44,6 +54,8 @@ def serve(
             database_url=database,
             data_dir=data_dir,
             vehicle_url=vehicle,
+            receiver=receiver,
+            antenna_pattern=pattern,
             simulate=flavour,
             time_factor=speedup,
             seed=seed,

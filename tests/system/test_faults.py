@@ -62,6 +62,7 @@ async def test_a_silent_receiver_holds_the_measurement_and_loses_nothing(
 ) -> None:
     await operator.order("start")
     await operator.until_phase("measuring")
+    assert server.receiver is not None
     server.receiver.silence(True)
     await operator.until_phase("hold")
     assert any(e["event"]["link"] == "receiver" for e in operator.of("link_lost"))

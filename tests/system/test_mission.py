@@ -32,6 +32,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
     assert operator.phases[-3:] == ["returning", "landing", "done"]
 
     last = operator.of("belief_updated")[-1]["event"]
+    assert server.receiver is not None
     truth = server.receiver.truth
     assert truth is not None
     error = math.hypot(*LocalFrame(truth).to_enu(GeoPoint(last["estimate"]["lat"], last["estimate"]["lon"])))
