@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.refine import Fit, PatternCurve, Spread, estimate_spread, fit_pattern
+from hardware.direction_finding.refine import Fit, PatternCurve, Spread, estimate_spread, fit_pattern, smooth_minimum
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BIN_DEG, BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
@@ -204,7 +204,8 @@ def _fit_from(
     shift = float(np.median(binned.power_db[binned.filled] - 10.0 * np.log10(predicted)))
     first = fit_pattern(curve, binned, np.array(bearing), np.array(level) + shift, noise_db, Spread())
     spread = estimate_spread(first.residual_db, first.predicted_db)
-    return fit_pattern(curve, binned, first.bearing_deg, first.level_db, noise_db, spread)
+    fit = fit_pattern(curve, binned, first.bearing_deg, first.level_db, noise_db, spread)
+    return smooth_minimum(curve, binned, fit, noise_db) if fit.bearing_deg.size == 1 else fit
 
 
 def _kernel(binned: BinnedSweep) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ squares problem there:  m_i = 10 log10( sum_k a_k G(phi_k - h_i) + N ) + w_i,  w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ LEAKAGES = (0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
 """Stray power, of the strongest bin's, that no pattern explains; with it, decibels near a null say little."""
 LEAKAGE_EVIDENCE = 4.0
 """Leakage is believed when it lowers -2 log likelihood by more than this."""
+SMOOTHING_DEG = 1.0
 HUBER = 3.0
 """Residuals beyond so many standard deviations count linearly, not quadratically."""
 _DB = 10.0 / np.log(10.0)
@@ -165,6 +166,29 @@ def fit_pattern(
         cost,
         ((weight * residual)[:, None] * jacobian)[:, both],
     )
+
+
+def smooth_minimum(curve: PatternCurve, binned: BinnedSweep, fit: Fit, noise_db: float | None) -> Fit:
+    """A single source's bearing at the foot of a parabola through the cost around it.
+
+    A measured pattern is a polygon: its corners make small steps in the cost that the exact minimum would fall into.
+    """
+    heading = binned.heading_deg[binned.filled]
+    noise = 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0)
+    off = np.linspace(-SMOOTHING_DEG, SMOOTHING_DEG, 9)
+    relative = fit.bearing_deg[0] + np.subtract.outer(off, heading)
+    predicted = _DB * np.log(10.0 ** ((fit.level_db[0] + curve.gain_db(relative)) / 10.0) + noise)
+    residual = binned.power_db[binned.filled] - predicted
+    level = residual @ fit.weight / fit.weight.sum()
+    residual = residual - level[:, None]
+    limit = _huber_limit(fit.residual_db, fit.weight)
+    size = np.abs(residual) * np.sqrt(fit.weight)
+    cost = np.sum(np.where(size <= limit, size**2, 2.0 * limit * size - limit**2), axis=1)
+    second, first, _ = np.polyfit(off, cost, 2)
+    if second <= 0.0:
+        return fit
+    step = float(np.clip(-first / (2.0 * second), -SMOOTHING_DEG, SMOOTHING_DEG))
+    return replace(fit, bearing_deg=(fit.bearing_deg + step) % 360.0)
 
 
 def _damped_step(normal: NDArray[np.float64], gradient: NDArray[np.float64], damping: float) -> NDArray[np.float64]:

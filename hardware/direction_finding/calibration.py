@@ -1,0 +1,155 @@
+"""Antenna calibration from a flight around an emitter at a known place, and the pre-flight check against one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.estimate import SparseDirectionFinder, unusable
+from hardware.direction_finding.pattern_file import MAXIMUM_GAP_DEG, PatternError, make_pattern
+from hardware.direction_finding.sweep import bin_sweep
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint, PreflightCheck, Sweep
+
+STEP_DEG = 5.0
+NEAREST_M = 15.0
+"""Nearer to the emitter its direction is too uncertain (a metre of GPS error is four degrees)."""
+WORN_OFF_DB = 6.0
+ALLOWED_OFFSET_DEG = 10.0
+DEAD_RANGE_DB = 4.0
+
+
+class CalibrationError(ValueError):
+    """The flight gives no pattern; says what was missing and how to fly it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """pattern: with its offset to the nose. residual_db: RMS of the samples about it. sweeps, samples: used."""
+
+    pattern: AntennaPattern
+    residual_db: float
+    sweeps: int
+    samples: int
+
+
+def true_bearing_deg(place: GeoPoint, target: GeoPoint) -> tuple[float, float]:
+    """(degrees clockwise from true north, distance in metres) from `place` to `target`."""
+    east, north = LocalFrame(place).to_enu(target)
+    return math.degrees(math.atan2(east, north)) % 360.0, math.hypot(east, north)
+
+
+def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarization: str | None = None) -> Calibration:
+    """The pattern that the sweeps show, each at its own level (distance). Raises CalibrationError.
+
+    A sample at heading h of an emitter at bearing b shows the gain at b - h right of the nose. Pattern (every 5
+    degrees) and levels are fitted in turn by least squares until they settle; the antenna's front is the middle of the lobe.
+    """
+    angles: list[NDArray[np.float64]] = []
+    powers: list[NDArray[np.float64]] = []
+    for sweep in sweeps:
+        bearing, distance = true_bearing_deg(sweep.position, emitter)
+        if distance < NEAREST_M:
+            raise CalibrationError(
+                f"a sweep was flown {distance:.0f} m from the emitter; stay at least {NEAREST_M:.0f} m away"
+            )
+        good = np.isfinite(sweep.heading_deg) & np.isfinite(sweep.power_db)
+        if sweep.clipped_samples > 0.05 * max(sweep.power_db.size, 1):
+            raise CalibrationError("the receiver was overdriven; lower its gain or fly further away")
+        angles.append((bearing - sweep.heading_deg[good]) % 360.0)
+        powers.append(sweep.power_db[good])
+    if not angles or sum(a.size for a in angles) < 72:
+        raise CalibrationError("too few samples (at least 72 are needed); turn slower, or fly more sweeps")
+    angle, power = np.concatenate(angles), np.concatenate(powers)
+    owner = np.repeat(np.arange(len(angles)), [a.size for a in angles])
+    cells = round(360.0 / STEP_DEG)
+    cell = np.round(angle / STEP_DEG).astype(np.int64) % cells
+    count = np.bincount(cell, minlength=cells)
+    level = np.array([np.median(p) for p in powers])
+    gain = np.zeros(cells)
+    for _ in range(50):
+        with np.errstate(invalid="ignore"):
+            gain = np.bincount(cell, power - level[owner], cells) / count
+        update = np.bincount(owner, power - gain[cell]) / np.bincount(owner)
+        settled = float(np.max(np.abs(update - level))) < 1e-4
+        level = update
+        if settled:
+            break
+    heard = count > 0
+    relative = np.arange(cells)[heard] * STEP_DEG
+    residual = float(np.sqrt(np.mean((power - level[owner] - gain[cell]) ** 2)))
+    offset = _front_deg(relative, gain[heard])
+    try:
+        pattern = make_pattern(
+            name,
+            (relative - offset) % 360.0,
+            gain[heard] - np.max(gain[heard]),
+            (offset + 180.0) % 360.0 - 180.0,
+            float(np.median([s.frequency_hz for s in sweeps])) or None,
+            polarization,
+        )
+    except PatternError as error:
+        raise CalibrationError(f"{error}; turn all the way round (gaps up to {MAXIMUM_GAP_DEG:.0f} degrees)") from error
+    return Calibration(pattern, residual, len(angles), int(angle.size))
+
+
+def _front_deg(relative_deg: NDArray[np.float64], gain_db: NDArray[np.float64]) -> float:
+    """Middle of the main lobe: mean direction of the linear power within 6 dB of the maximum and 60 degrees of it."""
+    top = float(relative_deg[int(np.argmax(gain_db))])
+    off = (relative_deg - top + 180.0) % 360.0 - 180.0
+    lobe = (gain_db > gain_db.max() - WORN_OFF_DB) & (np.abs(off) <= 60.0)
+    weight = 10.0 ** (gain_db[lobe] / 10.0)
+    return (top + float(off[lobe] @ weight / weight.sum())) % 360.0
+
+
+def check_antenna(
+    sweep: Sweep, pattern: AntennaPattern, emitter: GeoPoint, finder: SparseDirectionFinder | None = None
+) -> PreflightCheck:
+    """One sweep near an emitter at a known place tells whether antenna, pattern and offset belong together."""
+    finder = finder or SparseDirectionFinder()
+    truth, distance = true_bearing_deg(sweep.position, emitter)
+
+    def failed(detail: str, remedy: str) -> PreflightCheck:
+        return PreflightCheck("antenna", ok=False, detail=detail, remedy=remedy)
+
+    if distance < NEAREST_M:
+        return failed(
+            f"the test emitter is only {distance:.0f} m away", f"put it at least {NEAREST_M:.0f} m away and turn again"
+        )
+    binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
+    unable = unusable(sweep, binned)
+    if unable:
+        return failed(unable, "mend this and turn again")
+    db = binned.power_db[binned.filled]
+    spread = float(np.percentile(db, 95) - np.percentile(db, 5))
+    expected = float(np.ptp(pattern.gain_db))
+    if spread < min(DEAD_RANGE_DB, 0.5 * expected):
+        return failed(
+            f"the power changes by only {spread:.1f} dB over the turn, the pattern by {expected:.0f} dB: "
+            "the antenna seems dead or not connected",
+            "check the antenna's cable, connector and element; is the test emitter on?",
+        )
+    reading = finder.estimate(sweep, pattern)
+    if not reading.accepted:
+        return failed(
+            f"the sweep does not fit the antenna's pattern: {reading.reason}",
+            "is this the antenna of the chosen pattern, its element whole, the emitter's polarization the same?",
+        )
+    error = (truth - reading.bearing_deg + 180.0) % 360.0 - 180.0
+    if abs(error) > max(ALLOWED_OFFSET_DEG, 3.0 * reading.sigma_deg):
+        right = (pattern.offset_to_nose_deg + error + 180.0) % 360.0 - 180.0
+        return failed(
+            f"the emitter is at {truth:.0f} degrees but is measured at {reading.bearing_deg:.0f}: off by {error:+.0f}",
+            f"set the antenna's offset to {right:.0f} degrees "
+            "or turn the antenna; if both are right, calibrate the compass",
+        )
+    return PreflightCheck(
+        "antenna",
+        ok=True,
+        detail=f"measured {reading.bearing_deg:.0f} degrees, true {truth:.0f}, quality {reading.quality:.2f}",
+    )
