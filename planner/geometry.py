@@ -96,6 +96,11 @@ def wedge_polygon(x: float, y: float, angle: float, half_angle: float, length: f
     return np.vstack([[x, y], far])
 
 
+def centres(start: float, h: float, n: int) -> FloatArray:
+    """(n,) m: the middles of n intervals of length h from `start`."""
+    return np.asarray(start + (np.arange(n) + 0.5) * h, dtype=np.float64)
+
+
 def convex_hull(points: FloatArray) -> Ring:
     """Counter-clockwise convex hull of (n, 2) points by Andrew's monotone chain; collinear points are dropped."""
     ordered = np.unique(np.asarray(points, dtype=float).reshape(-1, 2), axis=0)
@@ -120,7 +125,7 @@ def cells_hull(cells: np.ndarray, x0: float, y0: float, h: float) -> Ring:
     corners = [
         np.column_stack([x0 + columns * h, y0 + (rows + above) * h]) for columns in (first, past) for above in (0, 1)
     ]
-    return convex_hull(np.concatenate(corners))
+    return convex_hull(np.asarray(np.concatenate(corners), dtype=np.float64))
 
 
 def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
@@ -147,7 +152,7 @@ def segments_cross(start: FloatArray, end: FloatArray, region: Region) -> np.nda
     p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
     side_a, side_b = _cross(p, q, a), _cross(p, q, b)
     side_p, side_q = _cross(a, b, p), _cross(a, b, q)
-    return ((side_a * side_b < 0) & (side_p * side_q < 0)).any(axis=1)
+    return np.asarray(((side_a * side_b < 0) & (side_p * side_q < 0)).any(axis=1))
 
 
 def segments_touch(start: FloatArray, end: FloatArray, region: Region) -> np.ndarray:
@@ -158,12 +163,12 @@ def segments_touch(start: FloatArray, end: FloatArray, region: Region) -> np.nda
     p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
     apart = (np.maximum(p, q) < np.minimum(a, b)).any(axis=2) | (np.minimum(p, q) > np.maximum(a, b)).any(axis=2)
     meet = (_cross(p, q, a) * _cross(p, q, b) <= 0) & (_cross(a, b, p) * _cross(a, b, q) <= 0)
-    return (meet & ~apart).any(axis=1)
+    return np.asarray((meet & ~apart).any(axis=1))
 
 
 def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> np.ndarray:
     """(ny, nx) bool: the square cells of size h from the south-west corner (x0, y0) that the region touches."""
-    columns, rows = np.meshgrid(x0 + h * np.arange(nx + 1), y0 + h * np.arange(ny + 1))
+    columns, rows = np.meshgrid(centres(x0 - 0.5 * h, h, nx + 1), centres(y0 - 0.5 * h, h, ny + 1))
     corners = contains(region, np.column_stack([columns.ravel(), rows.ravel()])).reshape(ny + 1, nx + 1)
     touched = corners[:-1, :-1] | corners[:-1, 1:] | corners[1:, :-1] | corners[1:, 1:]
     for p, q in zip(*edges(region), strict=True):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from planner.belief.grid import GridBelief, smallest_set
-from planner.geometry import cells_hull
+from planner.geometry import cells_hull, centres
 from planner.types import Estimate, Estimator, FloatArray, Ring
 
 TIE_BITS = 20
@@ -73,7 +73,8 @@ def _support(belief: GridBelief) -> tuple[FloatArray, FloatArray, FloatArray]:
     k = belief.copies
     density, h = belief.density[::k, ::k] * float(k * k), belief.h * k
     rows, columns = np.nonzero(density)
-    return density[rows, columns], belief.x0 + (columns + 0.5) * h, belief.y0 + (rows + 0.5) * h
+    x, y = centres(belief.x0, h, density.shape[1]), centres(belief.y0, h, density.shape[0])
+    return density[rows, columns], x[columns], y[rows]
 
 
 def _point(

@@ -14,7 +14,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planner.geometry import bounds, cells_touching, clip_convex, clip_wedge, convex_hull, signed_area, validate_region
+from planner.geometry import (
+    bounds,
+    cells_touching,
+    centres,
+    clip_convex,
+    clip_wedge,
+    convex_hull,
+    signed_area,
+    validate_region,
+)
 from planner.observation import WEDGE_SIGMAS, cuts, hard_likelihood, mixture_likelihood, validate_bearing
 from planner.types import (
     Bearing,
@@ -82,7 +91,7 @@ class GridBelief:
 
     def centres(self) -> tuple[FloatArray, FloatArray]:
         """x (nx,) and y (ny,) of the cell centres, m ENU."""
-        return self.x0 + (np.arange(self.nx) + 0.5) * self.h, self.y0 + (np.arange(self.ny) + 0.5) * self.h
+        return centres(self.x0, self.h, self.nx), centres(self.y0, self.h, self.ny)
 
     def hull(self) -> Ring:
         """Convex hull of the possible target positions, counter-clockwise."""
@@ -100,7 +109,7 @@ def prior_belief(problem: Problem) -> GridBelief:
     h = max(x_max - x_min, y_max - y_min) / FIRST_CELLS
     nx, ny = (max(1, int(np.ceil(extent / h - _ALIGN))) for extent in (x_max - x_min, y_max - y_min))
     density = cells_touching(area, x_min, y_min, h, nx, ny).astype(float)
-    x, y = np.meshgrid(x_min + (np.arange(nx) + 0.5) * h, y_min + (np.arange(ny) + 0.5) * h)
+    x, y = np.meshgrid(centres(x_min, h, nx), centres(y_min, h, ny))
     if isinstance(prior, GaussianPrior):
         density *= _gaussian(prior, x, y)
     elif isinstance(prior, RingPrior):

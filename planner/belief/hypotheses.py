@@ -41,8 +41,9 @@ def hypotheses(
 
     Cells that touch at a corner belong together.
     """
-    parts, count = label(smallest_set(belief, share), structure=np.ones((3, 3)))
-    found = [_hypothesis(belief, bearings, parts == number) for number in range(1, count + 1)]
+    parts = np.zeros(belief.density.shape, dtype=np.int32)
+    label(smallest_set(belief, share), structure=np.ones((3, 3)), output=parts)
+    found = [_hypothesis(belief, bearings, parts == number) for number in range(1, int(parts.max()) + 1)]
     kept = [one for one in found if one.mass >= least_mass]
     return tuple(sorted(kept, key=lambda one: -one.mass))
 

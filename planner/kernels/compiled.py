@@ -10,6 +10,8 @@ each parent twice. Nothing is allocated inside a rollout.
 One file, because numba's cache looks at the file of the compiled function only: a change in another would go unseen.
 """
 
+# pyright: reportCallIssue=false
+# An intrinsic is called without the typing context that its definition takes.
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -185,7 +187,7 @@ def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, 
     heading, lattice, cost = actions.headings[action], actions.lattice[action], actions.costs[action]
     x0, y0, h, corners, doubled = start.x0, start.y0, start.h, len(start.hull), False
     ny, nx = start.density.shape
-    now, bearings, localized = 1, start.bearings, False
+    now, bearings, localized, heaviest = 1, start.bearings, False, 0
     ex = ey = xx = xy = yy = 0.0
     step = 0
     while True:

@@ -131,4 +131,4 @@ def likelihood_polynomial(sigma: float) -> tuple[FloatArray, float]:
     fitted = chebyshev.chebfit(nodes, np.exp(-(error**2) / (2.0 * LIKELIHOOD_POWER * sigma**2)), LIKELIHOOD_DEGREE)
     in_nodes = np.polynomial.Polynomial(chebyshev.cheb2poly(fitted))
     coefficients = in_nodes(np.polynomial.Polynomial([-1.0, 2.0 / edge])).coef
-    return np.resize(coefficients, LIKELIHOOD_DEGREE + 1), edge
+    return np.resize(np.asarray(coefficients, dtype=np.float64), LIKELIHOOD_DEGREE + 1), edge

@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.belief.estimate import TIE_BITS
 from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS, aligned_range
-from planner.geometry import cells_hull, clip_half_plane, distance_to_convex
+from planner.geometry import cells_hull, centres, clip_half_plane, distance_to_convex
 from planner.kernels.model import (
     ELLIPSE,
     EXPECTED_VALUE,
@@ -86,11 +86,13 @@ def rollout(
     belief = Belief(weight, start.x0, start.y0, start.h, start.hull, start.bearings, doubled=False)
     place, heading = actions.places[action], float(actions.headings[action])
     lattice, cost = int(actions.lattice[action]), float(actions.costs[action])
-    for step in range(rules.horizon):
-        belief = measure(belief, rules, place, target, noise[step])
+    step = 0
+    while True:
+        belief = measure(belief, rules, place, target, float(noise[step]))
+        step += 1
         look = estimate(belief, rules.estimator, start.flat)
         localized = look.expected_rmse < rules.threshold  # (4.11)
-        if localized or step + 1 == rules.horizon:
+        if localized or step == rules.horizon:
             break
         following, next_lattice = base_policy(belief, look, rules, place)
         flight = following - place
@@ -102,7 +104,7 @@ def rollout(
         place, heading, lattice = following, direction, next_lattice
     left_over = rules.threshold if localized else look.expected_rmse
     end = [*place, look.x, look.y, look.xx, look.xy, look.yy, left_over, belief.bearings, localized]
-    return cost, step + 1, np.array(end, dtype=float)
+    return cost, step, np.array(end, dtype=float)
 
 
 def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray, noise: float) -> Belief:
@@ -182,7 +184,8 @@ def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, ahead
     across = np.cos(angle) * dy - np.sin(angle) * dx
     length2 = along**2 + across**2
     sin2 = np.where(along > ahead, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
-    return np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood) ** LIKELIHOOD_POWER
+    root = np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood)
+    return np.asarray(root**LIKELIHOOD_POWER, dtype=np.float64)
 
 
 def estimate(belief: Belief, estimator: int, flat: bool) -> Look:
@@ -190,7 +193,8 @@ def estimate(belief: Belief, estimator: int, flat: bool) -> Look:
     rows, columns = np.nonzero(belief.weight)
     weight = belief.weight[rows, columns]
     mass = weight / weight.sum()
-    x, y = belief.x0 + (columns + 0.5) * belief.h, belief.y0 + (rows + 0.5) * belief.h
+    x = centres(belief.x0, belief.h, belief.weight.shape[1])[columns]
+    y = centres(belief.y0, belief.h, belief.weight.shape[0])[rows]
     px, py = float(mass @ x), float(mass @ y)
     if estimator == GEOMETRIC_MEDIAN:
         px, py = _median(mass, x, y, px, py, 1e-3 * belief.h)

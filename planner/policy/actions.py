@@ -10,7 +10,7 @@ import numpy as np
 
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
-from planner.geometry import bounds, contains, distance_to_convex
+from planner.geometry import bounds, centres, contains, distance_to_convex
 from planner.types import FloatArray, PlannerError, Problem
 
 
@@ -60,9 +60,7 @@ def belief_grid(problem: Problem, belief: GridBelief) -> FloatArray:
     bottom, top = max(y_min - height, window[1]), min(y_max + height, window[3])
     if left >= right or bottom >= top:
         left, bottom, right, top = window
-    x = left + (np.arange(nx) + 0.5) * (right - left) / nx
-    y = bottom + (np.arange(ny) + 0.5) * (top - bottom) / ny
-    return _product(x, y)
+    return _product(centres(left, (right - left) / nx, nx), centres(bottom, (top - bottom) / ny, ny))
 
 
 def flight_window(problem: Problem) -> FloatArray:
@@ -84,7 +82,7 @@ def may_fly(problem: Problem, places: FloatArray) -> np.ndarray:
 
 def _centred(low: float, high: float, spacing: float) -> FloatArray:
     count = max(1, int((high - low) / spacing + 1e-9))
-    return 0.5 * (low + high) + (np.arange(count) - 0.5 * (count - 1)) * spacing
+    return centres(0.5 * (low + high - count * spacing), spacing, count)
 
 
 def _product(x: FloatArray, y: FloatArray) -> FloatArray:

@@ -56,7 +56,7 @@ def compute() -> dict[str, list[float] | dict[str, list[float]]]:
 
 def _axis(s: float) -> FloatArray:
     half = int(REACH * CELLS_PER_SIGMA)
-    return np.arange(-half, half + 1) * (s / CELLS_PER_SIGMA)
+    return np.linspace(-half, half, 2 * half + 1, dtype=np.float64) * (s / CELLS_PER_SIGMA)
 
 
 if __name__ == "__main__":

@@ -42,12 +42,12 @@ class RolloutSampler:
     _actions: Actions | None = None
     _pool: Paths | None = None
 
-    def actions(self, chosen: IntArray, path_from: int, path_to: int) -> FloatArray:
+    def sample(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s: the `Sample` over `places`."""
         if self._actions is None:
             self._actions = self.simulation.first_actions(self.places)
-        costs = self._costs(self._actions, np.asarray(chosen, dtype=np.int64), path_from, path_to)
-        for index, row in zip(chosen, costs, strict=True):
+        costs = self._costs(self._actions, np.asarray(actions, dtype=np.int64), path_from, path_to)
+        for index, row in zip(actions, costs, strict=True):
             self.seen.setdefault(int(index), []).append(row)
         return costs
 
@@ -130,7 +130,7 @@ class Rollout:
             paths = 2 ** int(np.log2(budget // len(places)))
             budget = paths * len(places)
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
-        result = self.selection(sampler.actions, len(places), budget, rng)
+        result = self.selection(sampler.sample, len(places), budget, rng)
         return _decision(places, result, sampler)
 
     def _places(self, problem: Problem, belief: GridBelief, simulation: Simulation) -> FloatArray:

@@ -43,25 +43,25 @@ def rollout(rng_seed=1, problem=PROBLEM, **options):
 
 def test_a_common_path_is_the_same_whoever_asks_first():
     one, two = sampler("crn"), sampler("crn")
-    whole = one.actions(np.arange(3), 0, 150)
-    pieces = [two.actions(np.array([k]), a, b) for a, b in ((0, 20), (20, 150)) for k in (2, 0, 1)]
+    whole = one.sample(np.arange(3), 0, 150)
+    pieces = [two.sample(np.array([k]), a, b) for a, b in ((0, 20), (20, 150)) for k in (2, 0, 1)]
     for k, order in enumerate((1, 2, 0)):
         assert (np.concatenate([pieces[order][0], pieces[order + 3][0]]) == whole[k]).all()
 
 
 def test_independent_paths_are_drawn_afresh():
     some = sampler("pmc")
-    assert (some.actions(np.array([0]), 0, 50) != some.actions(np.array([0]), 0, 50)).any()
+    assert (some.sample(np.array([0]), 0, 50) != some.sample(np.array([0]), 0, 50)).any()
 
 
 def test_common_paths_make_mirrored_places_comparable():
     """Places left and right of the prior's axis differ by luck only; common luck shrinks the difference's spread."""
-    common, independent = sampler("crn").actions(np.arange(2), 0, 400), sampler("pmc").actions(np.arange(2), 0, 400)
+    common, independent = sampler("crn").sample(np.arange(2), 0, 400), sampler("pmc").sample(np.arange(2), 0, 400)
     assert np.std(common[0] - common[1]) < np.std(independent[0] - independent[1])
 
 
 def test_every_cost_is_flight_and_measurement_at_least():
-    costs = sampler("crn").actions(np.arange(3), 0, 100)
+    costs = sampler("crn").sample(np.arange(3), 0, 100)
     places = sampler("crn").places
     least = np.hypot(*(places - np.array(HOME)).T) / 5.0 + 10.0
     assert (costs >= least[:, None] - 1e-9).all()
@@ -69,7 +69,7 @@ def test_every_cost_is_flight_and_measurement_at_least():
 
 def test_places_and_actions_ask_the_same_paths():
     one, two = sampler("crn"), sampler("crn")
-    assert (one.actions(np.arange(3), 0, 30) == two.anywhere(two.places, 0, 30)).all()
+    assert (one.sample(np.arange(3), 0, 30) == two.anywhere(two.places, 0, 30)).all()
 
 
 def test_a_cut_rollout_is_closed_by_the_terminal_value():
@@ -79,8 +79,8 @@ def test_a_cut_rollout_is_closed_by_the_terminal_value():
         seen.append(ends)
         return np.full(len(ends), 1000.0)
 
-    plain = sampler("crn", horizon=1).actions(np.arange(3), 0, 40)
-    closed = sampler("crn", horizon=1, terminal=value).actions(np.arange(3), 0, 40)
+    plain = sampler("crn", horizon=1).sample(np.arange(3), 0, 40)
+    closed = sampler("crn", horizon=1, terminal=value).sample(np.arange(3), 0, 40)
     ends = np.concatenate(seen)
     assert ends.shape[1] == CLOSED_FEATURES
     assert (ends[:, 7] >= PROBLEM.threshold).all()
