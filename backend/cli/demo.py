@@ -31,6 +31,7 @@ from backend.events import (
     SweepRejected,
 )
 from backend.settings import Settings
+from backend.store.journal import DatabaseAway, JournalUnavailable
 from backend.store.opening import DatabaseUnusable
 from hardware.frame import LocalFrame
 from hardware.ports import HardwareError
@@ -87,6 +88,9 @@ def demo(
         result = asyncio.run(_demo(settings, headless, json_, mend_failsafes))
     except (CannotServe, DatabaseUnusable, ValueError) as error:
         stop(error)
+    except (DatabaseAway, JournalUnavailable) as error:
+        typer.echo(f"crossfix: the database does not answer ({error}); try again", err=True)
+        raise typer.Exit(1) from None
     except (DemoFailed, HardwareError, httpx.HTTPError, websockets.WebSocketException, OSError) as error:
         typer.echo(f"crossfix: {' '.join(str(error).split())}", err=True)
         raise typer.Exit(1) from None

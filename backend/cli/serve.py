@@ -11,6 +11,7 @@ import typer
 from backend.cli.edge import print_json, stop
 from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
 from backend.settings import Settings
+from backend.store.journal import DatabaseAway, JournalUnavailable
 from backend.store.opening import DatabaseUnusable
 from hardware.ports import HardwareError
 
@@ -66,6 +67,8 @@ def serve(
         asyncio.run(_serve(settings, json_))
     except (CannotServe, DatabaseUnusable, HardwareError, ValueError) as error:
         stop(error)
+    except (DatabaseAway, JournalUnavailable) as error:
+        stop(f"the database does not answer ({error}); try again when the machine is less busy")
     except KeyboardInterrupt:
         raise typer.Exit(0) from None
 
