@@ -1,0 +1,162 @@
+"""Offline maps on the real page: drawn from this server's packages, labels included, with the network cut."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import time
+from collections.abc import Callable
+from functools import cache
+from urllib.parse import urlsplit
+
+import httpx
+import mapbox_vector_tile
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page
+from pmtiles.tile import Compression, TileType, zxy_to_tileid
+from pmtiles.writer import Writer
+from screen import Screen
+from served import Server
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+GREEN = (30, 160, 60)
+HOME_TILE = {zoom: (int((7.2046 + 180) / 360 * 2**zoom), int(0.336426 * 2**zoom)) for zoom in (13, 14, 15, 16)}
+"""The tile of the simulated vehicle's home; its Mercator ordinate is 0.336426."""
+
+PATIENCE_S = 60.0
+
+
+def archive(contents: Callable[[int], bytes], zooms: tuple[int, ...], vector: bool) -> bytes:
+    stream = io.BytesIO()
+    writer = Writer(stream)
+    for zoom in zooms:
+        column, row = HOME_TILE[zoom]
+        reach = 2 ** (zoom - 13) * 2
+        tiles = [(x, y) for x in range(column - reach, column + reach) for y in range(row - reach, row + reach)]
+        for tile_id in sorted(zxy_to_tileid(zoom, x, y) for x, y in tiles):
+            writer.write_tile(tile_id, contents(zoom))
+    header = {
+        "tile_type": TileType.MVT if vector else TileType.PNG,
+        "tile_compression": Compression.GZIP if vector else Compression.NONE,
+        "min_lon_e7": 71_000_000,
+        "min_lat_e7": 505_500_000,
+        "max_lon_e7": 73_000_000,
+        "max_lat_e7": 507_000_000,
+    }
+    fields = {"name": "String", "kind": "String"}
+    layers = [{"id": name, "fields": fields} for name in ("earth", "landuse", "roads", "water", "places")]
+    writer.finalize(header, {"name": "test", "attribution": "somebody", "vector_layers": layers if vector else []})
+    return stream.getvalue()
+
+
+@cache
+def green_tile(_: int) -> bytes:
+    stream = io.BytesIO()
+    Image.new("RGB", (256, 256), GREEN).save(stream, "PNG")
+    return stream.getvalue()
+
+
+@cache
+def tile(names: bool) -> bytes:
+    """Land everywhere, and sixteen places with a name."""
+    square = {"geometry": "POLYGON ((0 0, 4096 0, 4096 4096, 0 4096, 0 0))", "properties": {"kind": "earth"}}
+    places = [
+        {"geometry": f"POINT ({x} {y})", "properties": {"name": "Mühlenwörth", "kind": "locality"}}
+        for x in range(512, 4096, 1024)
+        for y in range(512, 4096, 1024)
+    ]
+    layers = [{"name": "earth", "features": [square]}, {"name": "places", "features": places if names else []}]
+    return gzip.compress(mapbox_vector_tile.encode(layers))
+
+
+class MapTab:
+    """The console with one offline map chosen; whatever is asked of another machine is refused and remembered."""
+
+    def __init__(self, browser: Browser, server: Server, map_id: str) -> None:
+        self.context = browser.new_context(viewport={"width": 1280, "height": 800})
+        self.context.add_init_script(
+            f"localStorage.setItem('crossfix.basemap', '{map_id}');"
+            """localStorage.setItem('crossfix.settings', '{"theme": "outdoor", "tourSeen": true, "tones": false}')"""
+        )
+        self.foreign: list[str] = []
+        self.asked: list[str] = []
+        self.page: Page = self.context.new_page()
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.context.route(lambda url: urlsplit(url).hostname not in {"127.0.0.1", None, ""}, self._refuse)
+        self.screen = Screen(self.page, server.url)
+
+    def _refuse(self, route) -> None:
+        self.foreign.append(route.request.url)
+        route.abort()
+
+    def picture(self) -> np.ndarray:
+        """(height, width, 3) of the map."""
+        shot = self.screen.part("map").screenshot()
+        return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+    def wait_for(self, condition: Callable[[], bool], what: str) -> None:
+        until = time.monotonic() + PATIENCE_S
+        while not condition():
+            assert time.monotonic() < until, f"{what} did not come"
+            self.page.wait_for_timeout(250)
+
+
+def upload(server: Server, content: bytes) -> str:
+    answer = httpx.post(f"{server.url.rstrip('/')}/api/maps", params={"name": "test"}, content=content, timeout=60)
+    answer.raise_for_status()
+    return answer.json()["map_id"]
+
+
+def near(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
+    """Share of the pixels that have about this colour."""
+    return float((np.abs(picture - np.array(colour)).max(axis=2) < 12).mean())
+
+
+def test_pictures_of_a_package_lie_under_the_mission(server: Server, browser: Browser) -> None:
+    map_id = upload(server, archive(green_tile, (13, 14, 15, 16), vector=False))
+    tab = MapTab(browser, server, map_id)
+    try:
+        tab.screen.open(server.draft())
+        tab.screen.map_ready()
+        tab.wait_for(lambda: near(tab.picture(), GREEN) > 0.3, "the picture tiles")
+        assert tab.foreign == []
+        assert any(url.endswith("/tiles.pmtiles") for url in tab.asked)
+    finally:
+        tab.context.close()
+
+
+def dark_pixels(picture: np.ndarray) -> int:
+    """In the middle of the map, inside the area, where nothing but the map is drawn before the start."""
+    height, width, _ = picture.shape
+    middle = picture[int(0.3 * height) : int(0.7 * height), int(0.28 * width) : int(0.72 * width)]
+    return int((middle.max(axis=2) < 130).sum())
+
+
+@pytest.mark.parametrize("names", [True, False])
+def test_vector_tiles_are_drawn_with_their_names_and_no_glyphs_are_fetched(
+    server: Server, browser: Browser, names: bool
+) -> None:
+    map_id = upload(server, archive(lambda _: tile(names), (13, 14, 15), vector=True))
+    layers = server.get(f"/api/maps/{map_id}/layers?theme=light")["layers"]
+    land = next(layer["paint"]["fill-color"] for layer in layers if layer["source-layer"] == "earth")
+    tab = MapTab(browser, server, map_id)
+    try:
+        tab.screen.open(server.draft())
+        tab.screen.map_ready()
+        tab.wait_for(lambda: near(tab.picture(), rgb(land)) > 0.2, "the land")
+        if names:
+            tab.wait_for(lambda: dark_pixels(tab.picture()) > 50, "the names")
+        else:
+            tab.page.wait_for_timeout(3000)
+            assert dark_pixels(tab.picture()) == 0
+        assert tab.foreign == []
+        assert not any("glyph" in url or url.endswith(".pbf") for url in tab.asked)
+    finally:
+        tab.context.close()
+
+
+def rgb(code: str) -> tuple[int, int, int]:
+    return int(code[1:3], 16), int(code[3:5], 16), int(code[5:7], 16)
