@@ -53,10 +53,12 @@ class Outbox:
         await self._waiting.join()
 
     async def close(self) -> None:
+        """Everything handed in is written first. What still comes afterwards is written too."""
         await self.flushed()
         if self._writer is not None:
-            self._writer.cancel()
-            await asyncio.gather(self._writer, return_exceptions=True)
+            writer, self._writer = self._writer, None
+            writer.cancel()
+            await asyncio.gather(writer, return_exceptions=True)
 
     async def _write(self) -> None:
         while True:

@@ -56,3 +56,6 @@ async def test_closing_waits_for_what_was_handed_in() -> None:
     outbox.record([ResumeOrdered(by="a")])
     await outbox.close()
     assert journal.kinds("m") == ["resume_ordered"]
+    outbox.record([HoldOrdered(by="a", reason="late")])
+    await outbox.close()
+    assert journal.kinds("m") == ["resume_ordered", "hold_ordered"]
