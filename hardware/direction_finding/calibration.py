@@ -48,7 +48,7 @@ def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarizatio
     """The pattern that the sweeps show, each at its own level (distance). Raises CalibrationError.
 
     A sample at heading h of an emitter at bearing b shows the gain at b - h right of the nose. Pattern (every 5
-    degrees) and levels are fitted in turn by least squares until they settle; the antenna's front is the middle of the lobe.
+    degrees) and levels are fitted in turn by least squares until they settle; the antenna's front is the lobe's middle.
     """
     angles: list[NDArray[np.float64]] = []
     powers: list[NDArray[np.float64]] = []
@@ -81,7 +81,7 @@ def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarizatio
         if settled:
             break
     heard = count > 0
-    relative = np.arange(cells)[heard] * STEP_DEG
+    relative: NDArray[np.float64] = np.linspace(0.0, 360.0, cells, endpoint=False)[heard]
     residual = float(np.sqrt(np.mean((power - level[owner] - gain[cell]) ** 2)))
     offset = _front_deg(relative, gain[heard])
     try:

@@ -31,7 +31,7 @@ def declination_deg(place: GeoPoint, at_s: float, altitude_m: float = 0.0) -> fl
     if not FIRST_YEAR <= year < LAST_YEAR:
         raise HeadingError(f"no magnetic model for {year:.1f}; update pygeomag, or set the declination by hand")
     # each model holds for five years from 2010, 2015, 2020, 2025
-    field = GeoMag(base_year=year).calculate(place.lat_deg, place.lon_deg, altitude_m / 1000.0, year)
+    field = GeoMag(base_year=moment).calculate(place.lat_deg, place.lon_deg, altitude_m / 1000.0, year)
     return float(field.d)
 
 

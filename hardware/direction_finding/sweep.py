@@ -150,7 +150,7 @@ def _largest_gap(ascending_deg: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def unheard_slices(heading_deg: NDArray[np.float64], slices: int = 16, pulses: int = 3) -> list[float]:
-    """Middles (degrees) of the slices of the circle that heard fewer than `pulses` samples; empty: the sweep is complete.
+    """Middles (degrees) of the slices of the circle that heard fewer than `pulses` samples; empty: all did.
 
     For pulsed tags: a turn at a steady rate may pass a slice between two pulses.
     """

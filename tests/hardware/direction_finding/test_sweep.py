@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.direction_finding.sweep import BINS, SweepError, assemble_sweep, bin_sweep, turned_deg, unheard_slices
@@ -21,6 +21,7 @@ def powers(times: np.ndarray, **more: object) -> list[PowerSample]:
     return [PowerSample(float(t), 868e6, -60.0 - 0.1 * float(t), **more) for t in times]
 
 
+@settings(deadline=None)
 @given(
     start=st.floats(0, 359.9),
     rate=st.floats(-90, 90).filter(lambda r: abs(r) > 5),
@@ -97,6 +98,7 @@ def test_empty_bins_are_nan_not_zero_and_means_are_of_decibels() -> None:
     assert binned.gap_start_deg == pytest.approx(90.0)
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(0, 359.999), min_size=1, max_size=500), st.floats(-400, 400))
 def test_every_sample_lands_in_one_bin_and_offset_turns_the_antenna(heading: list[float], offset: float) -> None:
     binned = bin_sweep(np.array(heading), np.zeros(len(heading)), offset)
