@@ -6,6 +6,7 @@ import json
 import shutil
 import sys
 from collections.abc import Generator, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from screen import OpenScreen, Screen
 from served import Server, started, url_of
 
-SPEEDUP = 6.0
+SPEEDUP = 3.0
 
 CHROMIUM = [
     "--no-sandbox",
@@ -44,14 +45,27 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     return report
 
 
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
-    arguments = ["--data-dir", str(tmp_path), "--speedup", str(SPEEDUP), "--seed", "3"]
+@contextmanager
+def serving(data_dir: Path) -> Iterator[Server]:
+    arguments = ["--data-dir", str(data_dir), "--speedup", str(SPEEDUP), "--seed", "3"]
     process = started([*arguments, "--port", "0"])
-    made = Server(url_of(process), tmp_path, arguments, process)
+    made = Server(url_of(process), data_dir, arguments, process)
     yield made
     made.process.terminate()
-    made.process.wait(timeout=30)
+    made.process.wait(timeout=60)
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    with serving(tmp_path) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def quiet_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One for a whole module, for tests that fly nothing."""
+    with serving(tmp_path_factory.mktemp("served")) as made:
+        yield made
 
 
 @pytest.fixture(scope="session")
@@ -88,7 +102,8 @@ def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Op
     for number, context in enumerate(contexts):
         if request.node.stash.get(FAILED, False):
             RESULTS.mkdir(exist_ok=True)
-            context.pages[0].screenshot(path=RESULTS / f"{request.node.name}-{number}.png")
+            for page in context.pages:
+                page.screenshot(path=RESULTS / f"{request.node.name}-{number}.png")
         context.close()
     assert faults == []
 

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from screen import OpenScreen, Screen
 from served import Server
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
 
 ENDLESS = {"expected_rmse_m": 0.1, "maximum_bearings": 200}
 """A goal that is never reached, so that a slow machine's mission does not end before the test has looked."""

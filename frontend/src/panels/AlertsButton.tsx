@@ -70,7 +70,7 @@ export function AlertsButton() {
         data-testid="alerts"
         data-count={count}
         aria-expanded={overlay.value === "alerts"}
-        aria-label={t("bar.alerts.count", { count })}
+        title={t("bar.alerts.count", { count })}
         onClick={() => toggle("alerts")}
       >
         <span>{t("bar.alerts")}</span>

@@ -9,7 +9,7 @@ import { rankCandidates, roundShade } from "../state/candidates";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
 import { highlighted } from "../app/highlight";
 import { formatPlace } from "../units/coordinates";
-import { formatBearing, formatDuration, formatLength } from "../units/quantities";
+import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
 import type { CandidateFact, PlanChosen } from "../wire";
 import { ProblemNote, ProblemText } from "./ProblemNote";
 
@@ -60,7 +60,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
               </button>
             </td>
             <td>{formatDuration(candidate.value_s)}</td>
-            <td>{candidate.std_error_s?.toFixed(1) ?? "–"}</td>
+            <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
             <td>{candidate.rollouts}</td>
             <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
           </tr>
@@ -207,7 +207,7 @@ export function PlanPanel() {
                 ? t("plan.effort", {
                     rollouts: fact.rollouts.toLocaleString(locale.value),
                     candidates: fact.candidates.length,
-                    time: fact.plan_ms.toFixed(0),
+                    time: formatNumber(fact.plan_ms, 0),
                   })
                 : t("plan.byOperator", { by: fact.by ?? "?" })}
             </span>

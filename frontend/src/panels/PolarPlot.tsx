@@ -1,7 +1,7 @@
 // The sweep by hand: power against heading, the pattern's fit, the bearing with its sigma, other peaks.
 import { t } from "../i18n";
 import { binnedPath, polarPoint, polarScale, radius, type PolarScale } from "../state/polar";
-import { formatBearing } from "../units/quantities";
+import { formatBearing, formatNumber } from "../units/quantities";
 
 export interface PolarData {
   binnedDb: readonly (number | null)[];
@@ -49,7 +49,7 @@ function Rings({ scale }: { scale: PolarScale | null }) {
 export function PolarPlot({ data }: { data: PolarData }) {
   const scale = polarScale([...data.binnedDb, ...data.samples.map((s) => s.db)]);
   const words = data.bearing
-    ? t("sweep.plot", { bearing: formatBearing(data.bearing.deg), quality: data.bearing.quality.toFixed(2) })
+    ? t("sweep.plot", { bearing: formatBearing(data.bearing.deg), quality: formatNumber(data.bearing.quality, 2) })
     : t("sweep.plotEmpty");
   return (
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">

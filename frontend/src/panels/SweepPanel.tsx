@@ -5,7 +5,7 @@ import { cursor, live, mission } from "../app/store";
 import { send } from "../commands/send";
 import { t } from "../i18n";
 import type { MissionState } from "../state/mission";
-import { formatBearing, formatLength } from "../units/quantities";
+import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, SweepProgress, SweepRejected } from "../wire";
 import { PolarPlot, type PolarData } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
@@ -58,7 +58,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
       <div class="sweep-facts">
         <strong>{t("sweep.place", { number: fact.place_number })}</strong>
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
-        <div>{t("sweep.quality", { quality: fact.quality.toFixed(2) })}</div>
+        <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: fact.reason })}</div>
       </div>
     );
@@ -70,16 +70,16 @@ function Facts({ sweep }: { sweep: Sweep }) {
         {excluded && ` (${t("sweep.excluded")})`}
       </strong>
       <div class="sweep-bearing" data-testid="sweep-bearing" data-value={fact.bearing_deg}>
-        {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: fact.sigma_deg.toFixed(1) })}
+        {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) })}
       </div>
-      <div>{t("sweep.quality", { quality: fact.quality.toFixed(2) })}</div>
-      {fact.snr_db !== null && <div>{t("sweep.snr", { snr: fact.snr_db.toFixed(0) })}</div>}
+      <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
+      {fact.snr_db !== null && <div>{t("sweep.snr", { snr: formatNumber(fact.snr_db, 0) })}</div>}
       <div>{t("sweep.drift", { length: formatLength(fact.drift_m, settings.value.units) })}</div>
       {fact.peaks.length > 0 && (
         <div>
           {t("sweep.peaks", {
             peaks: fact.peaks
-              .map((p) => t("sweep.peak", { bearing: formatBearing(p.bearing_deg), weight: p.weight.toFixed(2) }))
+              .map((p) => t("sweep.peak", { bearing: formatBearing(p.bearing_deg), weight: formatNumber(p.weight, 2) }))
               .join(", "),
           })}
         </div>

@@ -1,6 +1,6 @@
 // The state of the mission and its events as sentences.
 import { t, type MessageKey } from "../i18n";
-import { formatBearing, formatClock, formatDuration, formatLength, type UnitSystem } from "../units/quantities";
+import { formatBearing, formatClock, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { MissionEvent, Phase, Recorded } from "../wire";
 import type { MissionState } from "./mission";
 
@@ -134,13 +134,13 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         ? t("event.sweep_again", { number: event.place_number, attempt: event.attempt })
         : t("event.sweep_started", { number: event.place_number });
     case "sweep_rejected":
-      return t("event.sweep_rejected", { quality: event.quality.toFixed(2), reason: event.reason });
+      return t("event.sweep_rejected", { quality: formatNumber(event.quality, 2), reason: event.reason });
     case "bearing_measured":
       return t("event.bearing_measured", {
         bearing: formatBearing(event.bearing_deg),
-        sigma: event.sigma_deg.toFixed(1),
+        sigma: formatNumber(event.sigma_deg, 1),
         number: event.place_number,
-        quality: event.quality.toFixed(2),
+        quality: formatNumber(event.quality, 2),
       });
     case "bearing_excluded":
       return t("event.bearing_excluded", { by: event.by, reason: event.reason });

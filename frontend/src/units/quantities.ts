@@ -8,6 +8,8 @@ const FOOT = 0.3048;
 const grouped = (value: number, digits = 0) =>
   value.toLocaleString(locale.value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 
+export const formatNumber = grouped;
+
 /** Two significant places for small values, none for large ones. */
 const digitsFor = (value: number) => (Math.abs(value) < 100 ? 1 : 0);
 

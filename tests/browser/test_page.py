@@ -1,0 +1,201 @@
+"""The page itself: nothing from outside, small, its safety bar first, legible, usable without pointer or WebGL."""
+
+from __future__ import annotations
+
+import gzip
+from collections.abc import Iterator
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import Browser, Response, Route, expect
+from screen import OpenScreen, Screen
+from served import REPOSITORY, Server
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
+
+
+@pytest.fixture
+def server(quiet_server: Server) -> Server:
+    return quiet_server
+
+
+EXAMPLE = "?fixture#/mission/example"
+"""A mission that flies itself in the page: every panel filled, no vehicle needed."""
+
+WEIGHT_LIMIT_BYTES = 600_000
+BAR_LIMIT_BYTES = 60_000
+
+NO_WEBGL = """
+const plain = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return /webgl/.test(kind) ? null : plain.call(this, kind, ...rest);
+};
+"""
+
+
+@pytest.fixture
+def loaded(server: Server, browser: Browser) -> Iterator[list[Response]]:
+    """Everything a browser fetches until the example's map is drawn."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    responses: list[Response] = []
+    page.on("response", lambda response: responses.append(response))
+    page.goto(f"{server.url}{EXAMPLE}")
+    Screen(page, server.url).map_ready()
+    page.wait_for_timeout(1500)
+    yield responses
+    context.close()
+
+
+def test_no_request_leaves_the_machine_and_the_page_is_light(server: Server, loaded: list[Response]) -> None:
+    ours = urlsplit(server.url).netloc
+    foreign = [r.url for r in loaded if urlsplit(r.url).scheme.startswith("http") and urlsplit(r.url).netloc != ours]
+    assert foreign == []
+    assert [r.url for r in loaded if r.status >= 400] == []
+    bodies = {r.url: r.body() for r in loaded if urlsplit(r.url).scheme.startswith("http") and "/api/" not in r.url}
+    weight = {url: len(gzip.compress(body)) for url, body in bodies.items()}
+    print(f"page weight {sum(weight.values())} bytes gzipped in {len(weight)} files")
+    assert sum(weight.values()) < WEIGHT_LIMIT_BYTES
+
+
+def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Server, browser: Browser) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    context.add_init_script(NO_WEBGL)
+    page = context.new_page()
+    fetched: list[Response] = []
+    page.on("response", lambda response: fetched.append(response))
+    later = ("FlyPage", "FlyMap", "createMap", "EditMap", "maplibre")
+
+    def lose(route: Route) -> None:
+        if any(name in route.request.url for name in later):
+            route.abort()
+        else:
+            route.continue_()
+
+    page.route("**/assets/*", lose)
+    made = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
+    page.goto(f"{server.url}#/mission/{made}")
+    expect(page.get_by_test_id("link")).to_contain_text("connected")
+    expect(page.get_by_role("alert")).to_contain_text("could not be loaded")
+    weight = sum(len(gzip.compress(r.body())) for r in fetched if "/assets/" in r.url and r.ok)
+    print(f"safety bar {weight} bytes gzipped")
+    assert weight < BAR_LIMIT_BYTES
+    context.close()
+
+
+def test_everything_but_the_map_works_without_webgl(server: Server, browser: Browser) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    context.add_init_script(NO_WEBGL)
+    page = context.new_page()
+    page.goto(f"{server.url}{EXAMPLE}")
+    expect(page.get_by_text("no WebGL")).to_be_visible()
+    expect(page.get_by_test_id("polar")).to_be_visible()
+    page.get_by_test_id("hold").click()
+    expect(page.get_by_test_id("state-words")).to_have_attribute("data-phase", "hold")
+    context.close()
+
+
+PLACES = {
+    "missions": "#/",
+    "new": "#/new",
+    "maps": "#/maps",
+    "preflight": "?fixture=draft#/mission/example",
+    "flying": EXAMPLE,
+}
+
+
+@pytest.mark.parametrize("theme", ["outdoor", "indoor"])
+def test_axe_finds_nothing_serious(server: Server, open_screen: OpenScreen, theme: str) -> None:
+    axe = (REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js").read_text()
+    found: dict[str, list[str]] = {}
+    server.draft()
+    for name, path in PLACES.items():
+        screen = open_screen(server, path, {"theme": theme})
+        if name == "flying":
+            expect(screen.part("sweep-bearing")).to_be_visible()
+        if name == "preflight":
+            screen.part("preflight-run").click()
+        screen.page.wait_for_timeout(2500)
+        for sheet in ("", "alerts", "menu", "settings", "keys", "instruments") if name == "flying" else ("",):
+            _show(screen, sheet)
+            screen.evaluate(axe)
+            result = screen.evaluate("axe.run(document, {resultTypes: ['violations']})")
+            found[f"{name} {sheet}"] = [
+                f"{v['id']}: {v['nodes'][0]['html'][:120]}"
+                for v in result["violations"]
+                if v["impact"] in ("serious", "critical")
+            ]
+        screen.page.close()
+    assert {place: what for place, what in found.items() if what} == {}
+
+
+def _show(screen: Screen, sheet: str) -> None:
+    screen.page.keyboard.press("Escape")
+    if sheet in ("alerts", "menu"):
+        screen.part(sheet).click()
+    elif sheet == "instruments":
+        screen.part("indicators").click()
+    elif sheet:
+        screen.part("menu").click()
+        screen.part(f"menu-{sheet}").click()
+    screen.page.wait_for_timeout(400)
+
+
+def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, "?fixture=draft#/mission/example")
+    keyboard = screen.page.keyboard
+    screen.part("preflight-run").focus()
+    keyboard.press("Enter")
+    expect(screen.part("preflight")).to_have_attribute("data-passed", "true")
+    for _ in range(40):
+        if screen.evaluate("document.activeElement.dataset.testid") == "start":
+            break
+        keyboard.press("Tab")
+    keyboard.press("Enter")
+    expect(screen.part("start-slider")).to_be_focused()
+    keyboard.down(" ")
+    screen.page.wait_for_timeout(1900)
+    keyboard.up(" ")
+    screen.expect_phase("flying", "measuring")
+    keyboard.press("Alt+Shift+H")
+    screen.expect_phase("hold")
+    keyboard.press("?")
+    expect(screen.part("key-sheet")).to_be_visible()
+    keyboard.press("Escape")
+    expect(screen.part("key-sheet")).to_have_count(0)
+    keyboard.press("Alt+Shift+A")
+    screen.expect_phase("returning", "done")
+
+
+def test_a_single_stray_key_flies_nothing(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, EXAMPLE)
+    screen.expect_phase("flying")
+    for key in "ahr":
+        screen.page.keyboard.press(key)
+    screen.page.wait_for_timeout(500)
+    assert screen.part("event-log").locator("[data-kind=hold_ordered], [data-kind=abort_ordered]").count() == 0
+
+
+def test_the_page_speaks_german_and_remembers_it(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, EXAMPLE)
+    screen.part("menu").click()
+    screen.part("menu-settings").click()
+    screen.part("setting-language").select_option("de")
+    screen.part("setting-coordinates").select_option("mgrs")
+    screen.page.keyboard.press("Escape")
+    expect(screen.part("abort")).to_have_text("Abbruch")
+    expect(screen.part("estimate-coordinates")).to_contain_text("32U")
+    screen.page.reload()
+    expect(screen.part("abort")).to_have_text("Abbruch")
+    assert screen.evaluate("document.documentElement.lang") == "de"
+
+
+def test_the_tour_shows_every_part_and_ends(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, "", {"tourSeen": False})
+    screen.part("tour-take").click()
+    expect(screen.part("tour")).to_be_visible()
+    for _ in range(5):
+        screen.part("tour-next").click()
+    screen.part("tour-end").click()
+    expect(screen.part("missions")).to_be_visible()
+    expect(screen.part("tour-offer")).to_have_count(0)

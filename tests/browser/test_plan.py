@@ -1,0 +1,139 @@
+"""Planning: files, typed corners, refusals in plain words, nothing typed is lost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+from screen import Screen
+from served import Server
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
+
+
+@pytest.fixture
+def server(quiet_server: Server) -> Server:
+    return quiet_server
+
+
+RING = [[7.2030, 50.6234], [7.2060, 50.6234], [7.2060, 50.6250], [7.2030, 50.6250], [7.2030, 50.6234]]
+KML = """<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><Polygon><outerBoundaryIs>
+<LinearRing><coordinates>{}</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>"""
+
+
+@pytest.fixture
+def editor(screen: Screen) -> Screen:
+    screen.go("#/new")
+    screen.map_ready("edit-map")
+    expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
+    return screen
+
+
+def write(tmp_path: Path, name: str, text: str) -> Path:
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+def saved(server: Server, editor: Screen) -> dict:
+    editor.part("save").click()
+    expect(editor.part("preflight")).to_be_visible()
+    return server.get(f"/api/missions/{editor.mission_id}")["spec"]
+
+
+def test_an_area_comes_from_a_geojson_file(server: Server, editor: Screen, tmp_path: Path) -> None:
+    area = json.dumps({"type": "Polygon", "coordinates": [RING]})
+    editor.part("import-file").set_input_files(write(tmp_path, "meadow.geojson", area))
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "false")
+    corners = saved(server, editor)["area"]["coordinates"][0]
+    assert {tuple(c) for c in corners} == {tuple(c) for c in RING}
+
+
+def test_an_area_comes_from_a_kml_file(server: Server, editor: Screen, tmp_path: Path) -> None:
+    text = KML.format(" ".join(f"{lon},{lat},0" for lon, lat in RING))
+    editor.part("import-file").set_input_files(write(tmp_path, "meadow.kml", text))
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "false")
+    assert len(saved(server, editor)["area"]["coordinates"][0]) == 5
+
+
+def test_a_fence_and_its_holes_come_from_a_qgroundcontrol_plan(server: Server, editor: Screen, tmp_path: Path) -> None:
+    outer = [[50.6220, 7.2010], [50.6220, 7.2080], [50.6265, 7.2080], [50.6265, 7.2010]]
+    inner = [[50.6258, 7.2020], [50.6258, 7.2030], [50.6262, 7.2030]]
+    fence = {"polygons": [{"inclusion": True, "polygon": outer}, {"inclusion": False, "polygon": inner}]}
+    plan = json.dumps({"fileType": "Plan", "geoFence": fence})
+    editor.part("import-file").set_input_files(write(tmp_path, "field.plan", plan))
+    expect(editor.part("area-section")).to_contain_text("drawn:")
+    flight = saved(server, editor)["flight"]
+    assert flight["fence"]["coordinates"][0][0] == [7.2010, 50.6220]
+    assert len(flight["no_fly"]) == 1
+
+
+def test_a_file_that_is_no_area_is_named_with_its_reason(editor: Screen, tmp_path: Path) -> None:
+    editor.part("import-file").set_input_files(write(tmp_path, "notes.geojson", "buy milk"))
+    message = editor.part("area-message")
+    expect(message).to_contain_text("notes.geojson")
+    expect(editor.part("area-size")).to_have_attribute("data-suggested", "true")
+
+
+def test_corners_are_typed_in_mixed_notations(server: Server, editor: Screen) -> None:
+    editor.page.get_by_text("Paste GeoJSON or corner").click()
+    editor.part("paste-area").fill("50.6234 N 7.2030 E\n50.6234, 7.2060\n50°37′30.0″ N 7°12′21.6″ E\n50.625 7.203")
+    editor.part("paste-apply").click()
+    expect(editor.part("area-size")).to_contain_text("4 corners")
+    assert len(saved(server, editor)["area"]["coordinates"][0]) == 5
+
+
+def test_what_the_server_refuses_stands_at_the_form_and_nothing_is_lost(editor: Screen) -> None:
+    editor.part("field-name").fill("Quarry, second search")
+    editor.page.get_by_text("Paste GeoJSON or corner").click()
+    editor.part("paste-area").fill("50.6234 7.2030\n50.6250 7.2060\n50.6234 7.2060\n50.6250 7.2030")
+    editor.part("paste-apply").click()
+    editor.part("save").click()
+    expect(editor.part("edit-problem")).to_be_visible()
+    expect(editor.part("edit-problem")).to_contain_text("What to do")
+    expect(editor.part("field-name")).to_have_value("Quarry, second search")
+    editor.page.reload()
+    expect(editor.part("field-name")).to_have_value("Quarry, second search")
+
+
+def test_a_number_that_is_none_is_marked_and_kept(server: Server, editor: Screen) -> None:
+    altitude = editor.part("field-flight-altitude_relative_m")
+    altitude.fill("high up")
+    altitude.blur()
+    expect(altitude).to_have_attribute("aria-invalid", "true")
+    editor.part("save").click()
+    expect(editor.part("edit-problem")).to_be_visible()
+    expect(altitude).to_have_value("high up")
+    altitude.fill("55,5")
+    assert saved(server, editor)["flight"]["altitude_relative_m"] == 55.5
+
+
+def test_a_value_out_of_its_limits_is_refused_at_its_field(editor: Screen) -> None:
+    sigma = editor.part("field-sensor-sigma_deg")
+    sigma.fill("400")
+    sigma.blur()
+    editor.part("save").click()
+    expect(editor.page.locator("#field-sensor-sigma_deg-message")).to_be_visible()
+
+
+def test_the_preview_tells_the_time_before_take_off(editor: Screen) -> None:
+    editor.part("preview-run").click()
+    expect(editor.part("preview-time")).to_contain_text("Localized in about", timeout=120_000)
+
+
+def test_a_mission_is_used_again_and_edited(server: Server, editor: Screen) -> None:
+    editor.part("field-name").fill("First")
+    saved(server, editor)
+    first = editor.mission_id
+    editor.part("edit").click()
+    editor.part("field-name").fill("First, corrected")
+    editor.part("save").click()
+    expect(editor.part("preflight")).to_be_visible()
+    assert server.get(f"/api/missions/{first}")["name"] == "First, corrected"
+    editor.go(f"#/new/{first}")
+    expect(editor.part("field-name")).to_have_value("First, corrected")
+    saved(server, editor)
+    names = [m["name"] for m in server.get("/api/missions")["missions"]]
+    assert names.count("First, corrected") == 2
