@@ -8,6 +8,7 @@ import { NotAPlan, readPlan } from "../sources/qgcPlan";
 import { areaM2, cornerCount, cornersFromText, polygonsOf } from "../state/areas";
 import { formatArea } from "../units/quantities";
 import type { Area } from "../wire";
+import { coverage } from "./coverage";
 import { change, draft } from "./draft";
 import { add, remove, tool, what, type What } from "./drawing";
 import type { NumberField } from "./fields";
@@ -196,6 +197,11 @@ export function AreaSection({ failed, told, onTold, onFile }: Properties) {
           </button>
         )}
       </div>
+      {coverage.value && (
+        <p class={coverage.value.covered ? "muted" : ""} data-testid="coverage" data-covered={coverage.value.covered}>
+          {coverage.value.summary}
+        </p>
+      )}
       {(failed?.fieldMessage("area") || failed?.fieldMessage("area.coordinates")) && (
         <p class="field-message" role="alert">{failed.fieldMessage("area") ?? failed.fieldMessage("area.coordinates")}</p>
       )}

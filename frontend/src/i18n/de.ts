@@ -380,6 +380,11 @@ export const de: Record<MessageKey, string> = {
   "edit.noArea": "Zeichne zuerst das Suchgebiet oder lies es ein.",
   "edit.importFailed": "{name} ließ sich nicht lesen: {reason}",
 
+  "edit.profile": "Ausrüstung",
+  "edit.profile.keep": "Diese Ausrüstung für später behalten",
+  "edit.profile.what": "Behält Sensorwerte, Höhen, Geschwindigkeit, Akkureserve und Flugzeitmodell unter einem Namen.",
+  "edit.profile.name": "Name der Ausrüstung",
+  "edit.profile.save": "Behalten",
   "unit.times": "Mal",
   "unit.places": "Orten",
   "unit.bearings": "Peilungen",

@@ -379,6 +379,11 @@ export const en = {
   "edit.noArea": "Draw or import the search area first.",
   "edit.importFailed": "{name} could not be read: {reason}",
 
+  "edit.profile": "Equipment",
+  "edit.profile.keep": "Keep this equipment for later",
+  "edit.profile.what": "Keeps the sensor's values, altitudes, speed, battery reserve and flight time model under a name.",
+  "edit.profile.name": "Name of the equipment",
+  "edit.profile.save": "Keep",
   "unit.times": "times",
   "unit.places": "places",
   "unit.bearings": "bearings",

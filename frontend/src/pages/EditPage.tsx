@@ -6,10 +6,12 @@ import { sourceFor } from "../app/sourceFor";
 import { open, source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { AreaSection, importFile, importProblem } from "../edit/AreaSection";
+import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
 import { what } from "../edit/drawing";
 import { sections, type NumberField } from "../edit/fields";
 import { FormField, TextField } from "../edit/FormField";
+import { ProfileRow } from "../edit/ProfileRow";
 import { PreviewCard } from "../edit/PreviewCard";
 import { clearPreview } from "../edit/preview";
 import { presetNames, withPreset, type PresetName } from "../edit/presets";
@@ -79,6 +81,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
           ))}
         </select>
       </div>
+      <ProfileRow />
       <TextField path="emitter.label" label={t("edit.label")} failed={failed} />
       <FormField field={FREQUENCY} failed={failed} />
       <FormField
@@ -189,7 +192,11 @@ export function EditPage({ route }: { route: EditRoute }) {
       draft.value = null;
       load();
     }
-    return clearPreview;
+    const stopCoverage = watchCoverage();
+    return () => {
+      clearPreview();
+      stopCoverage();
+    };
   }, [key]);
 
   const onFile = (file: File) => {

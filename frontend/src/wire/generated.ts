@@ -257,7 +257,8 @@ export interface paths {
         };
         /**
          * Export Mission
-         * @description A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal).
+         * @description A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
+         *     data package for TAK), bundle (a zip with all of them).
          */
         get: operations["export_mission"];
         put?: never;
@@ -2289,7 +2290,7 @@ export interface operations {
             path: {
                 /** @description The mission's id */
                 mission_id: string;
-                format: "geojson" | "kml" | "csv" | "json";
+                format: "geojson" | "kml" | "csv" | "json" | "mcap" | "cot" | "bundle";
             };
             cookie?: never;
         };
@@ -2305,6 +2306,8 @@ export interface operations {
                     "application/vnd.google-earth.kml+xml": string;
                     "text/csv": string;
                     "application/json": Record<string, never>;
+                    "application/vnd.mcap": string;
+                    "application/zip": string;
                 };
             };
             /** @description What went wrong and how to mend it */

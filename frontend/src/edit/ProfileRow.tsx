@@ -1,0 +1,59 @@
+// Choosing, keeping and removing equipment profiles.
+import { useState } from "preact/hooks";
+import { t } from "../i18n";
+import { draft, update } from "./draft";
+import { profileOf, profiles, removeProfile, saveProfile, withProfile } from "./profiles";
+
+export function ProfileRow() {
+  const [name, setName] = useState("");
+  const known = profiles.value;
+  const use = (chosen: string) => {
+    const now = draft.peek();
+    const profile = known.find((p) => p.name === chosen);
+    setName(chosen);
+    if (now && profile) update({ ...now, spec: withProfile(now.spec, profile), text: {} });
+  };
+  return (
+    <>
+      {known.length > 0 && (
+        <div class="field">
+          <label for="profile">{t("edit.profile")}</label>
+          <select id="profile" data-testid="profile" value="" onChange={(e) => use(e.currentTarget.value)}>
+            <option value="">–</option>
+            {known.map((p) => (
+              <option value={p.name} key={p.name}>
+                {p.name}
+              </option>
+            ))}
+          </select>
+        </div>
+      )}
+      <details class="more">
+        <summary>{t("edit.profile.keep")}</summary>
+        <p class="muted">{t("edit.profile.what")}</p>
+        <div class="area-row">
+          <input
+            aria-label={t("edit.profile.name")}
+            placeholder={t("edit.profile.name")}
+            data-testid="profile-name"
+            value={name}
+            onInput={(e) => setName(e.currentTarget.value)}
+          />
+          <button
+            type="button"
+            data-testid="profile-save"
+            disabled={name.trim() === ""}
+            onClick={() => draft.peek() && saveProfile(profileOf(draft.peek()!.spec, name.trim()))}
+          >
+            {t("edit.profile.save")}
+          </button>
+          {known.some((p) => p.name === name) && (
+            <button type="button" onClick={() => removeProfile(name)}>
+              {t("edit.area.clear")}
+            </button>
+          )}
+        </div>
+      </details>
+    </>
+  );
+}
