@@ -16,24 +16,34 @@ from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.events import Recorded
 from backend.mission.ports import TrackPoint
 from backend.wire import export
+from backend.wire.bundle import bundle
+from backend.wire.cot_export import cot_package
+from backend.wire.mcap_export import mcap
 from backend.wire.resources import EventPage, SweepRecord, Track
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
-ExportFormat = Literal["geojson", "kml", "csv", "json"]
+ExportFormat = Literal["geojson", "kml", "csv", "json", "mcap", "cot", "bundle"]
 
-EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], Sequence[TrackPoint]], str]] = {
+EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], Sequence[TrackPoint]], str | bytes]] = {
     "geojson": export.geojson,
     "kml": export.kml,
     "csv": export.bearings_csv,
     "json": export.journal_json,
+    "mcap": mcap,
+    "cot": cot_package,
+    "bundle": bundle,
 }
 MEDIA_TYPES: dict[ExportFormat, str] = {
     "geojson": "application/geo+json",
     "kml": "application/vnd.google-earth.kml+xml",
     "csv": "text/csv",
     "json": "application/json",
+    "mcap": "application/vnd.mcap",
+    "cot": "application/zip",
+    "bundle": "application/zip",
 }
+ENDINGS: dict[ExportFormat, str] = {"cot": "tak.zip", "bundle": "zip"}
 
 BINARY: dict[int | str, dict[str, object]] = {
     200: {
@@ -102,12 +112,13 @@ async def get_track(mission_id: MissionId, services: ServicesDep) -> Track:
 
 @router.get("/export/{format}", response_class=Response, responses=FILE)
 async def export_mission(mission_id: MissionId, format: ExportFormat, services: ServicesDep) -> Response:
-    """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal)."""
+    """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
+    data package for TAK), bundle (a zip with all of them)."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read(mission_id)
     track = await services.journal.track(mission_id)
     return Response(
         await asyncio.to_thread(EXPORTS[format], recorded, track),
         media_type=MEDIA_TYPES[format],
-        headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{format}"'},
+        headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'},
     )

@@ -1,0 +1,147 @@
+"""A mission's result for TAK: Cursor on Target events, in a data package that ATAK and WinTAK import.
+
+The emitter is a point of unknown affiliation whose `ce` is the radius that holds it with 95 %; around it an ellipse of
+95 % (2.4477 standard deviations, from the chi-square distribution with two degrees of freedom). Each bearing that
+counts is a range-and-bearing line. CoT times are those of the facts; they go stale after a day.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
+from uuid import NAMESPACE_URL, uuid5
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import pymap3d.vincenty
+
+from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorded
+from backend.mission.ports import TrackPoint
+from backend.mission.state import MissionState, evolve
+
+SIGMAS_95 = 2.4477
+UNKNOWN = "9999999.0"
+STALE = timedelta(days=1)
+RAY_M = 500.0
+
+
+def cot_package(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> bytes:
+    """A zip with a manifest and one file an event. The track is not part of it."""
+    events = cot_events(recorded)
+    mission = recorded[0].mission_id if recorded else "none"
+    package = Element("MissionPackageManifest", version="2")
+    configuration = SubElement(package, "Configuration")
+    SubElement(configuration, "Parameter", name="uid", value=_uid(mission, "package"))
+    SubElement(configuration, "Parameter", name="name", value=_state(recorded)[0].mission.name if recorded else "empty")
+    contents = SubElement(package, "Contents")
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for event in events:
+            uid = event.get("uid", "")
+            name = f"{uid}/{uid}.cot"
+            content = SubElement(contents, "Content", ignore="false", zipEntry=name)
+            SubElement(content, "Parameter", name="uid", value=uid)
+            archive.writestr(_entry(name), _xml(event))
+        archive.writestr(_entry("MANIFEST/manifest.xml"), _xml(package))
+    return stream.getvalue()
+
+
+def cot_events(recorded: Sequence[Recorded]) -> list[Element]:
+    """The emitter with its ellipse when there is an estimate, and a line for each bearing that counts."""
+    if not recorded:
+        return []
+    state, belief_at = _state(recorded)
+    mission_id, estimate = recorded[0].mission_id, state.belief.estimate if state.belief else None
+    events = []
+    if estimate is not None and belief_at is not None and state.belief is not None:
+        words = "localized" if state.belief.localized else "not yet localized"
+        label = state.mission.emitter.label
+        events.append(_emitter(mission_id, estimate, belief_at, f"{label}: {words}"))
+        events.append(_ellipse(mission_id, estimate, belief_at, label))
+    taken = {record.event.bearing_id: record.at_utc for record in recorded if isinstance(record.event, BearingMeasured)}
+    for number, fact in enumerate(state.bearings, start=1):
+        events.append(_bearing(mission_id, number, fact, taken[fact.bearing_id], estimate))
+    return events
+
+
+def _emitter(mission_id: str, estimate: EstimateFact, at: datetime, remarks: str) -> Element:
+    radius_m = SIGMAS_95 * estimate.major_axis_m
+    event, detail = _event(_uid(mission_id, "emitter"), "a-u-G", at, estimate.lat, estimate.lon, radius_m)
+    SubElement(detail, "contact", callsign=remarks.split(":")[0])
+    SubElement(detail, "remarks").text = f"{remarks}, expected error {estimate.expected_rmse_m:.1f} m"
+    return event
+
+
+def _ellipse(mission_id: str, estimate: EstimateFact, at: datetime, label: str) -> Element:
+    """Axes in metres, angle of the major axis clockwise from true north."""
+    event, detail = _event(_uid(mission_id, "ellipse"), "u-d-c-e", at, estimate.lat, estimate.lon, None)
+    shape = SubElement(detail, "shape")
+    SubElement(
+        shape,
+        "ellipse",
+        major=f"{SIGMAS_95 * estimate.major_axis_m:.2f}",
+        minor=f"{SIGMAS_95 * estimate.minor_axis_m:.2f}",
+        angle=f"{estimate.major_axis_deg % 360.0:.2f}",
+    )
+    SubElement(detail, "contact", callsign=f"{label} 95 %")
+    return event
+
+
+def _bearing(
+    mission_id: str, number: int, fact: BearingMeasured, at: datetime, estimate: EstimateFact | None
+) -> Element:
+    event, detail = _event(
+        _uid(mission_id, fact.bearing_id), "u-rb-a", at, fact.place.lat, fact.place.lon, None, fact.altitude_amsl_m
+    )
+    range_m = RAY_M
+    if estimate is not None:
+        away_m, _ = pymap3d.vincenty.vdist(fact.place.lat, fact.place.lon, estimate.lat, estimate.lon)
+        range_m = 1.2 * float(away_m) + 20.0
+    SubElement(detail, "range", value=f"{range_m:.2f}")
+    SubElement(detail, "bearing", value=f"{fact.bearing_deg % 360.0:.2f}")
+    SubElement(detail, "inclination", value="0.0")
+    SubElement(detail, "contact", callsign=f"bearing {number}")
+    SubElement(detail, "remarks").text = f"sigma {fact.sigma_deg:.1f} degrees, quality {fact.quality:.2f}"
+    return event
+
+
+def _event(
+    uid: str, kind: str, at: datetime, lat: float, lon: float, radius_m: float | None, amsl_m: float | None = None
+) -> tuple[Element, Element]:
+    """`hae` is the height above the ellipsoid, which is not known here; heights above sea level are told beside it."""
+    event = Element("event", version="2.0", uid=uid, type=kind, how="m-g")
+    for name, moment in (("time", at), ("start", at), ("stale", at + STALE)):
+        event.set(name, moment.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ"))
+    ce = UNKNOWN if radius_m is None else f"{radius_m:.2f}"
+    SubElement(event, "point", lat=f"{lat:.7f}", lon=f"{lon:.7f}", hae=UNKNOWN, ce=ce, le=UNKNOWN)
+    detail = SubElement(event, "detail")
+    if amsl_m is not None:
+        SubElement(detail, "height_amsl", value=f"{amsl_m:.1f}")
+    return event, detail
+
+
+def _state(recorded: Sequence[Recorded]) -> tuple[MissionState, datetime | None]:
+    """The mission at its end, and when its belief was last updated."""
+    state, belief_at = MissionState(), None
+    for record in recorded:
+        state = evolve(state, record.event, record.at_utc.timestamp())
+        if isinstance(record.event, BeliefUpdated):
+            belief_at = record.at_utc
+    return state, belief_at
+
+
+def _uid(mission_id: str, what: str) -> str:
+    """The same mission exported twice replaces itself on the map."""
+    return str(uuid5(NAMESPACE_URL, f"crossfix/{mission_id}/{what}"))
+
+
+def _entry(name: str) -> zipfile.ZipInfo:
+    entry = zipfile.ZipInfo(name, date_time=(2020, 1, 1, 0, 0, 0))
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    return entry
+
+
+def _xml(element: Element) -> bytes:
+    indent(element)
+    return tostring(element, encoding="UTF-8", xml_declaration=True) + b"\n"
