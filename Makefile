@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench codegen setup setup-dev build browser unit system clean help
+.PHONY: run test check bench long fuzz load codegen setup setup-dev build browser unit system clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -54,10 +54,19 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	cd frontend && npm run --silent check
 
 unit: setup-dev ## tests without a vehicle or a browser
-	$(BIN)/pytest -n 2 -m "not system and not browser"
+	$(BIN)/pytest -n 2 -m "not system and not browser and not long"
 
 system: setup-dev build browser ## whole missions over real sockets, and the page in Chromium
 	$(BIN)/pytest -m "system or browser"
+
+long: setup-dev ## the kernel against its reference 10,000 times, and tables computed anew: a quarter of an hour
+	$(BIN)/pytest -m long --timeout 3600
+
+fuzz: setup-dev build ## 100,000 odd requests and messages against a running server; hours
+	CROSSFIX_FUZZ_REQUESTS=100000 CROSSFIX_FUZZ_MESSAGES=100000 $(BIN)/pytest tests/fuzz --timeout 86400
+
+load: setup-dev build ## a hundred viewers, five of them stalled: latency and memory over ten minutes
+	$(BIN)/python -m tests.benchmarks.live_load fanout
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json

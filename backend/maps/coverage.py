@@ -143,7 +143,7 @@ def to_plane(area: Area) -> BaseGeometry:
     """The area in the Mercator plane, 0..1 from west to east and from north to south."""
     try:
         geometry = shape(area.model_dump())
-    except (ValueError, shapely.errors.GEOSException) as error:
+    except (ValueError, IndexError, shapely.errors.GEOSException) as error:
         raise MapRefused(f"The area is not a polygon: {error}.", "Draw the area again.") from error
     if not geometry.is_empty and not geometry.is_valid:
         reason = explain_validity(geometry)

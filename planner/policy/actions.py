@@ -13,6 +13,9 @@ from planner.belief.grid import GridBelief
 from planner.geometry import bounds, centres, contains, distance_to_convex
 from planner.types import FloatArray, PlannerError, Problem
 
+MOST_PLACES = 20_000
+"""A finer lattice is refused: no budget could tell its places apart, and no map could show them."""
+
 
 def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
     """(n, 2) m: every place where the platform may measure, before the distance to C95 is looked at."""
@@ -44,6 +47,9 @@ def lattice(problem: Problem) -> FloatArray:
     if spacing is None or not (np.isfinite(spacing) and spacing > 0):
         raise PlannerError(f"the action lattice needs a positive spacing, got {spacing}")
     x_min, y_min, x_max, y_max = bounds(problem.area if problem.flight_area is None else problem.flight_area)
+    if (x_max - x_min) * (y_max - y_min) > MOST_PLACES * spacing**2:
+        finest = np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_PLACES)
+        raise PlannerError(f"places every {spacing:g} m are more than {MOST_PLACES}: use at least {np.ceil(finest):.0f} m")
     x, y = _centred(x_min, x_max, spacing), _centred(y_min, y_max, spacing)
     return _product(x, y)
 

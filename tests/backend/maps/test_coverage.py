@@ -34,6 +34,12 @@ def test_a_full_map_covers_everything_at_every_zoom() -> None:
     assert only.metres_per_pixel == pytest.approx(metres_per_pixel(16, 50.625), rel=1e-6)
 
 
+def test_a_set_with_an_empty_polygon_is_refused_in_words() -> None:
+    empty = MultiPolygon(coordinates=[[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]], []])
+    with pytest.raises(MapRefused, match="not a polygon"):
+        to_plane(empty)
+
+
 def test_resolution_at_the_equator_is_the_known_one() -> None:
     assert metres_per_pixel(0, 0.0) == pytest.approx(156_543.03, abs=0.01)
     assert metres_per_pixel(16, 60.0) == pytest.approx(156_543.03 / 2**17, rel=1e-6)

@@ -115,7 +115,7 @@ def test_compiled_is_the_reference(seed):
         assert disagreements(case, 12, seed) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.timeout(1800)
 def test_compiled_is_the_reference_over_ten_thousand_rollouts():
     wrong, done, seed = 0, 0, 1000

@@ -40,6 +40,11 @@ def test_the_grid_is_cut_with_the_flight_area():
     assert places.min(axis=0).tolist() == [7.5, -41.25]
 
 
+def test_a_lattice_of_more_places_than_can_be_compared_is_refused():
+    with pytest.raises(PlannerError, match="use at least"):
+        lattice(replace(FIELD, action_spacing=0.5))
+
+
 def test_a_lattice_fills_the_fence_and_never_stands_on_it():
     places = lattice(FIELD)
     assert len(places) == 28 * 16

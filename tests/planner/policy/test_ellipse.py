@@ -58,7 +58,7 @@ def test_between_tabulated_noises_the_table_is_linear():
     assert middle == pytest.approx(0.5 * (low + high))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_script_computes_the_shipped_table():
     stored = json.loads(TABLE.read_text())
     assert best_distance(2.0, np.deg2rad(15.0)) == pytest.approx(stored["distances"]["15"][RATIOS.index(2.0)], abs=1e-3)
