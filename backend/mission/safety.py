@@ -62,6 +62,12 @@ class Situation:
     now_s: float
     drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
 
+    @property
+    def position_age_s(self) -> float:
+        """Infinite while no position was heard."""
+        at = self.telemetry.position_at_s
+        return math.inf if at is None else self.now_s - at
+
 
 def battery_to_return_percent(limits: Limits, position: GeoPoint, drain_percent_s: float) -> float:
     """Charge that the flight home from `position` and the landing take, reserve not included."""
@@ -71,7 +77,7 @@ def battery_to_return_percent(limits: Limits, position: GeoPoint, drain_percent_
 
 def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
     """Is there a vehicle that may be commanded at all?"""
-    telemetry, now = situation.telemetry, situation.now_s
+    telemetry, age = situation.telemetry, situation.position_age_s
     found = []
     if telemetry.controller == "pilot":
         found.append(
@@ -81,8 +87,7 @@ def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
         found.append(
             Veto("link", "the link to the vehicle is lost", "restore the link; the autopilot's failsafe acts meanwhile")
         )
-    age = None if telemetry.position_at_s is None else now - telemetry.position_at_s
-    if telemetry.position is None or age is None:
+    if telemetry.position is None or math.isinf(age):
         found.append(Veto("position", "the vehicle has no position", "wait for a GPS fix"))
     elif age > POSITION_STALE_S:
         found.append(

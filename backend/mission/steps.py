@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -24,6 +25,9 @@ from hardware.readings import GeoPoint
 from planner.belief.grid import GridBelief
 from planner.types import PlannerError
 
+FRESH_S = 1.0
+PATIENCE_WALL_S = 1.0
+
 
 @dataclass(slots=True)
 class Steps:
@@ -38,7 +42,7 @@ class Steps:
     _belief: tuple[tuple[str, ...], GridBelief] | None = field(default=None)
 
     async def take_off(self, effect: effects.TakeOff) -> inputs.Input:
-        vehicle, now = self.equipment.vehicle, self.situation()
+        vehicle, now = self.equipment.vehicle, await self._heard()
         position = now.telemetry.position
         if now.telemetry.in_air and position is not None:
             altitude = self.task.limits.home_amsl_m + effect.altitude_relative_m
@@ -63,7 +67,7 @@ class Steps:
             return inputs.WorkVetoed((Veto("no_way", str(error), "choose another place"),))
         while way:
             last = GeoPoint(effect.place.lat, effect.place.lon)
-            vetoes = place_vetoes(self.task.limits, self.situation(), last, effect.altitude_amsl_m, way[:-1])
+            vetoes = place_vetoes(self.task.limits, await self._heard(), last, effect.altitude_amsl_m, way[:-1])
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
             (east, north), *way = way
@@ -74,7 +78,7 @@ class Steps:
         return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)
 
     async def measure(self, effect: effects.Measure) -> inputs.Input:
-        vetoes = turn_vetoes(self.task.limits, self.situation())
+        vetoes = turn_vetoes(self.task.limits, await self._heard())
         if vetoes:
             return inputs.WorkVetoed(vetoes)
         found = await measure(
@@ -88,7 +92,7 @@ class Steps:
                 return inputs.SweepRefused(sweep)
 
     async def plan(self, effect: effects.PlanNext, measured: Sequence[BearingMeasured]) -> inputs.Input:
-        position = self.situation().telemetry.position
+        position = (await self._heard()).telemetry.position
         if position is None:
             raise VehicleError("the vehicle has no position, so no place can be planned; wait for a GPS fix")
         platform = self.task.frame.to_enu(position)
@@ -142,6 +146,15 @@ class Steps:
         except PlannerError:
             return straight
         return place_vetoes(self.task.limits, self.situation(), point, altitude_amsl_m, way[:-1])
+
+    async def _heard(self) -> Situation:
+        """The situation, a moment later when telemetry was held up: that is waited for before it is held against it."""
+        until = time.monotonic() + PATIENCE_WALL_S
+        while True:
+            now = self.situation()
+            if now.position_age_s <= FRESH_S or time.monotonic() > until:
+                return now
+            await asyncio.sleep(0.02)
 
     def _way(self, end: tuple[float, float]) -> list[tuple[float, float]]:
         position = self.situation().telemetry.position
