@@ -17,7 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.refine import Fit, PatternCurve, Spread, estimate_spread, fit_pattern, smooth_minimum
+from hardware.direction_finding.refine import (
+    Fit,
+    PatternCurve,
+    Spread,
+    estimate_spread,
+    fit_pattern,
+    profile_minimum,
+    smooth_minimum,
+)
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BIN_DEG, BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
@@ -197,6 +205,8 @@ def _fit_from(
     curve: PatternCurve, binned: BinnedSweep, bearing: list[float], level: list[float], noise_db: float | None
 ) -> Fit:
     """Fit with even scatter first, then with the scatter that its residuals show."""
+    if len(bearing) == 1:
+        bearing = [profile_minimum(curve, binned, bearing[0], noise_db)]
     heading = binned.heading_deg[binned.filled]
     predicted = np.zeros(heading.size)
     for a, b in zip(bearing, level, strict=True):

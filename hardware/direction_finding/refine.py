@@ -168,6 +168,26 @@ def fit_pattern(
     )
 
 
+def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
+    """The bearing within half a beam of `bearing_deg` that fits best at its own best level, on a 0.5 degree grid.
+
+    The cost has several feet when few slices fall into the beam; the descent that follows finds only the nearest.
+    """
+    reach = round(curve.beam_deg / 2.0 / _STEP_DEG)
+    grid = bearing_deg + _STEP_DEG * np.arange(-reach, reach + 1)
+    gain = curve.gain_db(np.subtract.outer(grid, binned.heading_deg[binned.filled]))
+    power = binned.power_db[binned.filled]
+    count = binned.count[binned.filled].astype(np.float64)
+    level = (power - gain) @ count / count.sum()
+    if noise_db is not None:
+        # the level that the strongest bins show, so that bins at the noise floor do not pull it up
+        near = gain > gain.max(axis=1, keepdims=True) - 6.0
+        level = np.sum((power - gain) * near * count, axis=1) / np.sum(near * count, axis=1)
+    noise = 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0)
+    predicted = _DB * np.log(10.0 ** ((level[:, None] + gain) / 10.0) + noise)
+    return float(grid[int(np.argmin((power - predicted) ** 2 @ count))])
+
+
 def smooth_minimum(curve: PatternCurve, binned: BinnedSweep, fit: Fit, noise_db: float | None) -> Fit:
     """A single source's bearing at the foot of a parabola through the cost around it.
 
