@@ -26,6 +26,7 @@ def add_controls(gui: Any, show: Callable[[frozenset[SceneLayer]], None], look: 
     Both are called in viser's threads.
     """
     gui.set_panel_label("3D view")
+    gui.main_panel.minimize()
     boxes = [(gui.add_checkbox(words, True), layers) for words, layers in GROUPS]
 
     def switched(_: object) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import shapely
+from shapely import LineString, box
 from shapely.geometry.base import BaseGeometry
 
 from backend.scene.colours import Palette, between, fading, flat
@@ -63,7 +65,8 @@ def _bearing(
     """A line at the height of the antenna, its wedge of one sigma on the ground, and a curtain between the two."""
     quality = (sweep.quality - LOWEST_QUALITY) / (HIGHEST_QUALITY - LOWEST_QUALITY)
     colour = between(palette.bearing_low, palette.bearing_high, quality if sweep.counted else 0.0)
-    reach = _reach(sweep, area) + 0.12 * extent_m
+    colour = between(palette.grid_major, colour, max(0.45, 1.0 - 0.13 * age))
+    reach = _reach(sweep, area, extent_m)
     foot = np.array([sweep.x, sweep.y])
     here = sweep.bearing_deg or 0.0
     end = foot + reach * towards(here)
@@ -76,7 +79,7 @@ def _bearing(
         yield one_line(f"sweeps/{number}/peak/{index}", "bearings", other, weak, 1.0)
     if not sweep.counted:
         return
-    strength = max(0.35, 1.0 - 0.2 * age)
+    strength = max(0.2, 1.0 - 0.2 * age)
     steps = np.linspace(0.0, 1.0, 12)
     curtain, faces = wall(foot + steps[:, None] * (end - foot), 0.0, sweep.z, closed=False)
     veil = np.concatenate((0.03 * strength * (1 - steps), 0.16 * strength * (1 - steps) + 0.02))
@@ -88,12 +91,17 @@ def _bearing(
     yield Surface(f"sweeps/{number}/wedge", "bearings", wedge, faces, fading(colour, alphas))
 
 
-def _reach(sweep: SweepMark, area: BaseGeometry) -> float:
-    """Far enough to leave the area whatever the direction."""
+def _reach(sweep: SweepMark, area: BaseGeometry, extent_m: float) -> float:
+    """To where the bearing leaves the area's surroundings; half an extent when it does not meet them."""
     west, south, east, north = area.bounds
-    return float(
-        np.hypot(max(abs(west - sweep.x), abs(east - sweep.x)), max(abs(south - sweep.y), abs(north - sweep.y)))
-    )
+    margin = 0.04 * extent_m
+    around = box(west - margin, south - margin, east + margin, north + margin)
+    foot = np.array([sweep.x, sweep.y])
+    far = foot + 4 * extent_m * towards(sweep.bearing_deg or 0.0)
+    crossing = LineString([foot, far]).intersection(around)
+    if crossing.is_empty:
+        return 0.5 * extent_m
+    return float(np.linalg.norm(shapely.get_coordinates(crossing) - foot, axis=1).max())
 
 
 def _confidence(c95: BaseGeometry, palette: Palette, extent_m: float) -> Iterator[Item]:

@@ -56,6 +56,7 @@ class PaperGui:
     def __init__(self) -> None:
         self.boxes: dict[str, Any] = {}
         self.buttons: dict[str, Any] = {}
+        self.main_panel = SimpleNamespace(minimize=lambda: None)
 
     def set_panel_label(self, label: str) -> None: ...
 

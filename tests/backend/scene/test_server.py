@@ -6,6 +6,7 @@ import asyncio
 import queue
 import socket
 from collections.abc import Iterator
+from contextlib import suppress
 
 import msgspec
 import pytest
@@ -90,7 +91,8 @@ async def test_an_announced_connection_becomes_a_window_of_its_view(server: Scen
 
 async def test_whoever_comes_by_himself_is_turned_away(server: SceneServer, heard: Heard) -> None:
     connection = await connect(server, bound_socket())
-    await connection.send(camera_message())
+    with suppress(websockets.ConnectionClosed):
+        await connection.send(camera_message())
     async with asyncio.timeout(10):
         await connection.wait_closed()
     assert connection.close_code == 1008
