@@ -85,7 +85,11 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
     }
   };
 
-  const knobTravel = () => (track.current ? track.current.clientWidth - track.current.clientHeight : 1);
+  /** How far the knob has been drawn, 0..1, when the pointer is at `x`. */
+  const shareAt = (x: number) => {
+    const travel = track.current ? track.current.clientWidth - track.current.clientHeight : 1;
+    return Math.min(1, Math.max(0, (x - (dragFrom.current ?? x)) / travel));
+  };
 
   return (
     <div class="slide-row">
@@ -121,11 +125,10 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
           }}
           onPointerMove={(event) => {
             if (dragFrom.current === null) return;
-            const share = Math.min(1, Math.max(0, (event.clientX - dragFrom.current) / knobTravel()));
-            setPosition(share);
+            setPosition(shareAt(event.clientX));
           }}
-          onPointerUp={() => {
-            if (dragFrom.current !== null && position >= CONFIRM_AT) confirm();
+          onPointerUp={(event) => {
+            if (dragFrom.current !== null && shareAt(event.clientX) >= CONFIRM_AT) confirm();
             release();
           }}
           onPointerCancel={release}

@@ -299,7 +299,7 @@ export const de: Record<MessageKey, string> = {
   "edit.area.suggested": "ein Vorschlag um den Startplatz; eine Zeichnung ersetzt ihn",
   "edit.area.none": "Zeichne es auf der Karte oder lies eine Datei ein.",
   "edit.area.have": "{area}, {corners} Ecken",
-  "edit.area.draw": "Gebiet zeichnen",
+  "edit.area.draw": "Vieleck",
   "edit.area.rectangle": "Rechteck",
   "edit.area.edit": "Ecken verschieben",
   "edit.area.clear": "Entfernen",

@@ -298,7 +298,7 @@ export const en = {
   "edit.area.suggested": "a suggestion around the vehicle's home; drawing replaces it",
   "edit.area.none": "Draw it on the map, or import a file.",
   "edit.area.have": "{area}, {corners} corners",
-  "edit.area.draw": "Draw area",
+  "edit.area.draw": "Polygon",
   "edit.area.rectangle": "Rectangle",
   "edit.area.edit": "Move corners",
   "edit.area.clear": "Remove",

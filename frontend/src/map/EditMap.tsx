@@ -16,7 +16,7 @@ import type { Rings } from "../state/areas";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { createMap, fit } from "./createMap";
-import { areaPoints, candidateFeatures, collection, planFeatures } from "./features";
+import { areaPoints, candidateFeatures, collection, flightPoints, planFeatures } from "./features";
 import { missionLayers, SOURCES } from "./layers";
 import { palettes, type Palette } from "./palette";
 
@@ -153,7 +153,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
         if (!now || framed === now.key) return;
         framed = now.key;
         const at = vehicle.peek().at;
-        const bounds = boundsOf([...areaPoints(now.spec.area), ...(at ? [lonLat({ lon: at[0], lat: at[1] })] : [])]);
+        const bounds = boundsOf([...areaPoints(now.spec.area), ...flightPoints(now.spec), ...(at ? [lonLat({ lon: at[0], lat: at[1] })] : [])]);
         if (bounds) fit(map, bounds, false);
       }),
     );

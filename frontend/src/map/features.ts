@@ -54,6 +54,20 @@ export function planFeatures(spec: MissionSpec | null): Features {
   ]);
 }
 
+/** Measurement places so near to each other that their numbers would cover one another. */
+const ONE_PLACE_M = 3;
+
+function placeFeatures(mission: MissionState): GeoJSON.Feature[] {
+  const places: { at: LonLat; numbers: number[] }[] = [];
+  for (const { fact } of mission.bearings) {
+    const at = lonLat(fact.place);
+    const near = places.find((p) => distanceM(p.at, at) < ONE_PLACE_M);
+    if (!near) places.push({ at, numbers: [fact.place_number] });
+    else if (!near.numbers.includes(fact.place_number)) near.numbers.push(fact.place_number);
+  }
+  return places.map(({ at, numbers }) => point(at, { label: numbers.join(",") }));
+}
+
 /** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
 export function bearingFeatures(mission: MissionState): { lines: Features; wedges: Features; places: Features } {
   const reach = reachM(mission.spec);
@@ -73,12 +87,7 @@ export function bearingFeatures(mission: MissionState): { lines: Features; wedge
     const at = lonLat(fact.place);
     lines.push(line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" }));
   }
-  const places = new Map(mission.bearings.map(({ fact }) => [fact.place_number, fact.place]));
-  return {
-    lines: collection(lines),
-    wedges: collection(wedges),
-    places: collection([...places].map(([number, at]) => point(lonLat(at), { label: String(number) }))),
-  };
+  return { lines: collection(lines), wedges: collection(wedges), places: collection(placeFeatures(mission)) };
 }
 
 /** Received power around each measurement place as a rose; the newest strong, older ones fainter. */

@@ -81,7 +81,6 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
           ))}
         </select>
       </div>
-      <ProfileRow />
       <TextField path="emitter.label" label={t("edit.label")} failed={failed} />
       <FormField field={FREQUENCY} failed={failed} />
       <FormField
@@ -96,6 +95,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
         }}
         failed={failed}
       />
+      <ProfileRow />
     </fieldset>
   );
 }

@@ -8,7 +8,7 @@ import { live, nowMs, serverNowMs } from "../app/store";
 import { t, type MessageKey } from "../i18n";
 import { ageS, freshness } from "../state/age";
 import { emptySeries, extend, type Series } from "../state/series";
-import { formatAge, formatBearing, formatLength, formatSpeed } from "../units/quantities";
+import { formatAge, formatBearing, formatClock, formatLength, formatSpeed } from "../units/quantities";
 
 const series = signal<Series>(emptySeries);
 
@@ -62,6 +62,12 @@ function style(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+/** At least ten units high, so that a steady value is a steady line and not noise over the whole height. */
+function spread(low: number, high: number): [number, number] {
+  const more = Math.max(1, (10 - (high - low)) / 2);
+  return [low - more, high + more];
+}
+
 function Chart({ pick, label }: { pick: (s: Series) => (number | null)[]; label: MessageKey }) {
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
@@ -74,7 +80,8 @@ function Chart({ pick, label }: { pick: (s: Series) => (number | null)[]; label:
         height: 120,
         legend: { show: false },
         cursor: { show: false },
-        axes: [axis, { ...axis, size: 44 }],
+        axes: [{ ...axis, values: (_plot, at) => at.map((s) => formatClock(new Date(s * 1000).toISOString())) }, { ...axis, size: 44 }],
+        scales: { y: { range: (_plot, low, high) => spread(low, high) } },
         series: [{}, { stroke: style("--power"), width: 2, spanGaps: false }],
       },
       [series.peek().t, pick(series.peek())],

@@ -3,7 +3,8 @@ import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { settings } from "../app/settings";
 import { cursor, events, live, look, mission } from "../app/store";
-import { t } from "../i18n";
+import { t, type MessageKey } from "../i18n";
+import { isOver } from "../state/mission";
 import { eventWords, isMain, toneOf } from "../state/words";
 import { formatClock, formatLength } from "../units/quantities";
 import type { Recorded } from "../wire";
@@ -136,6 +137,12 @@ function Log({ all }: { all: readonly Recorded[] }) {
   );
 }
 
+function liveLabel(reviewing: boolean): MessageKey {
+  const over = isOver(live.value.mission.phase);
+  if (reviewing) return over ? "timeline.toEnd" : "timeline.goLive";
+  return over ? "timeline.review" : "timeline.live";
+}
+
 export function Timeline() {
   const all = events.value;
   const reviewing = cursor.value !== null;
@@ -152,7 +159,7 @@ export function Timeline() {
             look(null);
           }}
         >
-          {t(reviewing ? (live.value.mission.ended ? "timeline.toEnd" : "timeline.goLive") : mission.value.ended ? "timeline.review" : "timeline.live")}
+          {t(liveLabel(reviewing))}
         </button>
         <button class="icon" aria-label={t("timeline.previous")} data-testid="step-back" disabled={all.length === 0} onClick={() => stepEvent(-1)}>
           ◂
