@@ -66,7 +66,17 @@ class AcknowledgeAlert(Model):
 
 
 Command = Annotated[
-    Start | Hold | Resume | Return | Abort | Override | Accept | Veto | SetAutomatic | ExcludeBearing | AcknowledgeAlert,
+    Start
+    | Hold
+    | Resume
+    | Return
+    | Abort
+    | Override
+    | Accept
+    | Veto
+    | SetAutomatic
+    | ExcludeBearing
+    | AcknowledgeAlert,
     Field(discriminator="kind"),
 ]
 

@@ -48,8 +48,8 @@ def lattice(problem: Problem) -> FloatArray:
         raise PlannerError(f"the action lattice needs a positive spacing, got {spacing}")
     x_min, y_min, x_max, y_max = bounds(problem.area if problem.flight_area is None else problem.flight_area)
     if (x_max - x_min) * (y_max - y_min) > MOST_PLACES * spacing**2:
-        finest = np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_PLACES)
-        raise PlannerError(f"places every {spacing:g} m are more than {MOST_PLACES}: use at least {np.ceil(finest):.0f} m")
+        finest = np.ceil(np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_PLACES))
+        raise PlannerError(f"places every {spacing:g} m are more than {MOST_PLACES}: use at least {finest:.0f} m")
     x, y = _centred(x_min, x_max, spacing), _centred(y_min, y_max, spacing)
     return _product(x, y)
 
