@@ -183,7 +183,7 @@ async def test_server_away_and_back_gets_what_was_spooled(tmp_path: Path) -> Non
 
 async def test_receiver_fault_is_told_and_mended(tmp_path: Path) -> None:
     radio = CountingReceiver()
-    radio.fails = 1
+    radio.fails = 15
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         states = server.hub.agents
         await until(lambda: states and "unplugged" in states["payload"].receiver)
