@@ -27,13 +27,15 @@ class StartFacts:
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """An operator's command. `objections`: vetoes found beforehand (safety of an override, another mission flying)."""
+    """An operator's command. `objections`: vetoes found beforehand (safety of an override, another mission flying).
+    `on_ground`: the vehicle says that it stands on the ground."""
 
     command_id: str
     by: str
     command: Command
     objections: tuple[Veto, ...] = ()
     start: StartFacts | None = None
+    on_ground: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -260,10 +260,23 @@ def _vehicle(step: Step, given: BatteryLow | HomeReached | Landed) -> None:
         case Landed() if phase == "manual":
             finish(step, "the pilot landed the vehicle")
         case Landed() if phase == "hold" or (phase in AUTOMATIC and phase != "taking_off"):
-            step.do(CancelWork())
-            finish(step, "the vehicle landed without being told to")
+            _on_the_ground(step)
         case _:
             return
+
+
+def _on_the_ground(step: Step) -> None:
+    """It landed without being told to (a failsafe, or while the server was away). What it found is kept."""
+    if step.state.localized:
+        step.do(CancelWork())
+        finish(step, "the vehicle landed")
+        return
+    if step.state.phase in AUTOMATIC:
+        step.do(CancelWork())
+        step.go("hold", "the vehicle landed without being told to")
+    if not any(alert_id.startswith("ground-") for alert_id in step.state.open_alerts):
+        text = "the vehicle landed without being told to"
+        alert(step, "ground", "warning", text, "resume to take off again, abort to end the mission")
 
 
 def _timer(step: Step, given: TimerExpired) -> None:

@@ -45,7 +45,7 @@ from backend.mission.effects import (
 )
 from backend.mission.inputs import Commanded
 from backend.mission.state import AUTOMATIC, GROUND, HOMEWARD, TERMINAL
-from backend.mission.step import Step, clear_alerts, end, go_on
+from backend.mission.step import Step, clear_alerts, end, go_on, take_off
 
 NOT_STARTED = ("the mission has not started", "start it first")
 ENDED = ("the mission has ended", "draft a new one")
@@ -92,7 +92,7 @@ def _carry_out(step: Step, given: Commanded) -> None:
         case Hold():
             _hold(step, given)
         case Resume():
-            _resume(step, by)
+            _resume(step, given)
         case Return():
             _return(step, given)
         case Abort():
@@ -146,8 +146,8 @@ def _hold(step: Step, given: Commanded) -> None:
         step.go("hold", f"held by {by}")
 
 
-def _resume(step: Step, by: str) -> None:
-    state = step.state
+def _resume(step: Step, given: Commanded) -> None:
+    state, by = step.state, given.by
     if state.phase in GROUND:
         raise Refused(*NOT_STARTED)
     if state.phase in TERMINAL:
@@ -160,10 +160,13 @@ def _resume(step: Step, by: str) -> None:
     if state.pilot_has_control:
         step.record(ControlReleased(by=by))
     step.do(ReleasePilotLatch())
-    clear_alerts(step, "pilot", "failure", "safety", "vehicle")
+    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground")
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
-    go_on(step, f"resumed by {by}")
+    if given.on_ground and not state.localized:
+        take_off(step, f"resumed by {by}")
+    else:
+        go_on(step, f"resumed by {by}")
 
 
 def _return(step: Step, given: Commanded) -> None:

@@ -100,7 +100,8 @@ class Runner:
         if isinstance(command, Override):
             altitude = self.task.limits.home_amsl_m + self.task.mission.flight.altitude_relative_m
             objections = self.steps.override_vetoes(command.place, altitude)
-        return self.give(inputs.Commanded(command_id, by, command, objections))
+        on_ground = self._equipment.vehicle.telemetry().in_air is False
+        return self.give(inputs.Commanded(command_id, by, command, objections, on_ground=on_ground))
 
     def _carry_out(self, effect: effects.Effect) -> None:
         vehicle = self._equipment.vehicle

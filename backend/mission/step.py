@@ -32,7 +32,7 @@ from backend.mission.effects import (
 from backend.mission.safety import Veto
 from backend.mission.state import MissionState, evolve
 
-Topic = Literal["vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety"]
+Topic = Literal["vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety", "ground"]
 
 
 @dataclass(slots=True)
@@ -62,8 +62,7 @@ def go_on(step: Step, reason: str, accepted: bool = False) -> None:
     state = step.state
     spec = state.mission
     if not state.took_off:
-        step.go("taking_off", reason)
-        step.do(TakeOff(spec.flight.altitude_relative_m))
+        take_off(step, reason)
     elif not state.belief_current:
         step.go("planning", reason)
         step.do(UpdateBelief())
@@ -81,6 +80,11 @@ def go_on(step: Step, reason: str, accepted: bool = False) -> None:
     else:
         step.go("planning", reason)
         step.do(PlanNext(state.place_number + 1, state.avoid))
+
+
+def take_off(step: Step, reason: str) -> None:
+    step.go("taking_off", reason)
+    step.do(TakeOff(step.state.mission.flight.altitude_relative_m))
 
 
 def measure(step: Step, reason: str) -> None:

@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 from console import console, simulated_vehicle
 
+from hardware.sim.autopilot.launch import SimulatedAutopilot
+
 pytestmark = pytest.mark.system
 
 
@@ -35,17 +37,30 @@ async def server_process(data_dir: Path) -> AsyncIterator[tuple[str, asyncio.sub
             await process.wait()
 
 
-async def test_after_kill_9_in_flight_the_mission_holds_with_the_identical_belief(tmp_path: Path) -> None:
+async def seen_in(vehicle: SimulatedAutopilot, mode: str) -> None:
+    async with asyncio.timeout(30):
+        while True:
+            if (await vehicle.order("truth"))["mode"] == mode:
+                return
+            await asyncio.sleep(0.1)
+
+
+@pytest.mark.parametrize(("failsafe", "found_in"), [(1, "HOLD"), (2, "RETURN")])
+async def test_after_kill_9_in_flight_the_mission_holds_with_the_identical_belief(
+    tmp_path: Path, failsafe: int, found_in: str
+) -> None:
+    """Whatever the autopilot's own failsafe (NAV_DLL_ACT) made of the silence: it is not taken for a pilot."""
     async with server_process(tmp_path) as (url, process), console(url) as before:
         mission_id = await before.draft(planner={"seed": 3})
         await before.ready()
         vehicle = await simulated_vehicle(tmp_path)
-        await vehicle.order("set_param", name="NAV_DLL_ACT", value=1)
+        await vehicle.order("set_param", name="NAV_DLL_ACT", value=failsafe)
         await before.watch()
         assert (await before.order("start"))["accepted"]
         await before.until_event("flight_started", 2)
         process.kill()
         await process.wait()
+        await seen_in(vehicle, found_in)
     known = before.of("belief_updated")[-1]["event"]
     bearings = [e["event"]["bearing_id"] for e in before.of("bearing_measured")]
     assert bearings
@@ -62,7 +77,8 @@ async def test_after_kill_9_in_flight_the_mission_holds_with_the_identical_belie
         assert [e["event"]["bearing_id"] for e in after.of("bearing_measured")] == bearings
         await asyncio.sleep(1.0)
         assert after.phases[-1] == "hold"
-        assert after.messages["telemetry"][-1]["in_air"]
+        if failsafe == 1:
+            assert after.messages["telemetry"][-1]["in_air"]
         assert (await after.order("resume"))["accepted"]
         ended = await after.until_event("mission_ended", wall_s=120)
         assert ended["outcome"] == "localized"

@@ -28,7 +28,7 @@ def test_help_names_every_command_without_importing_one() -> None:
         assert name in output
 
 
-@pytest.mark.parametrize("name", ["serve", "demo", "sweep", "localize", "study", "bench"])
+@pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_is_there_and_explains_itself(name: str) -> None:
     result = runner.invoke(app, [name, "--help"])
     assert result.exit_code == 0

@@ -209,6 +209,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
     return [
         *(commanded(c, f"every-{i}") for i, c in enumerate(ordered)),
         commanded(commands.Override(place=HOME), "vetoed", objections=(VETO,)),
+        commanded(commands.Resume(), "on-ground", on_ground=True),
         commanded(commands.Start(), "refused", objections=(VETO,)),
         inputs.Edited(SPEC),
         inputs.PreflightDone((CHECK,)),

@@ -106,7 +106,9 @@ def test_on_any_walk_the_rules_hold_and_the_journal_gives_the_state_back(automat
         choices = every_input(walk.state)
         given_ = choices[pick % len(choices)]
         if isinstance(given_, inputs.Commanded):
-            given_ = commanded(given_.command, f"walk-{number}", objections=given_.objections)
+            given_ = commanded(
+                given_.command, f"walk-{number}", objections=given_.objections, on_ground=given_.on_ground
+            )
         before = walk.state
         effects = walk.give(given_)
         check_rules(before, given_, walk.state, effects)
@@ -278,6 +280,30 @@ def test_a_pilot_landing_ends_the_mission() -> None:
     walk = Walk().to("manual")
     walk.give(inputs.Landed())
     assert (walk.state.phase, walk.state.outcome) == ("done", "not_localized")
+
+
+def test_a_vehicle_that_landed_by_itself_waits_on_the_ground_and_takes_off_again_on_resume() -> None:
+    for phase in ("hold", "flying"):
+        walk = Walk().to(phase)
+        effects = walk.give(inputs.Landed())
+        assert not moves(effects)
+        assert walk.state.phase == "hold"
+        assert walk.give(inputs.Landed()) == ()
+        effects = walk.command(commands.Resume(), on_ground=True)
+        assert moves(effects) == [asked.TakeOff(SPEC.flight.altitude_relative_m)]
+        assert walk.state.phase == "taking_off"
+        assert not walk.state.open_alerts
+        walk.give(inputs.InTheAir(HOME, 40.0))
+        assert walk.state.phase == "flying"
+
+
+def test_a_localized_mission_whose_vehicle_landed_in_hold_is_done() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    walk.command(commands.Hold())
+    walk.give(belief_ready(walk.state, localized=True))
+    walk.give(inputs.Landed())
+    assert (walk.state.phase, walk.state.outcome) == ("done", "localized")
 
 
 def test_a_restart_in_flight_holds_and_rebuilds_the_belief() -> None:
