@@ -1,10 +1,10 @@
 import { render } from "preact";
 import { App } from "./app/App";
+import { followRoute } from "./app/follow";
 import { watchKeys } from "./app/keys";
 import { overlay } from "./app/overlay";
 import { applySettings } from "./app/settings";
-import { isFixture, prepareFixture, sourceFor } from "./app/sourceFor";
-import { open, source } from "./app/store";
+import { isFixture, prepareFixture } from "./app/sourceFor";
 import { watchAlerts } from "./panels/alertSounds";
 import "./style.css";
 
@@ -17,4 +17,4 @@ watchAlerts();
 if (isFixture) await prepareFixture();
 render(<App />, document.getElementById("app")!);
 if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
-if (source.peek() === null) open(sourceFor(null));
+followRoute();

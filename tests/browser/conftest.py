@@ -46,8 +46,8 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 @contextmanager
-def serving(data_dir: Path) -> Iterator[Server]:
-    arguments = ["--data-dir", str(data_dir), "--speedup", str(SPEEDUP), "--seed", "3"]
+def serving(data_dir: Path, speedup: float = SPEEDUP) -> Iterator[Server]:
+    arguments = ["--data-dir", str(data_dir), "--speedup", str(speedup), "--seed", "3"]
     process = started([*arguments, "--port", "0"])
     made = Server(url_of(process), data_dir, arguments, process)
     yield made
@@ -58,6 +58,13 @@ def serving(data_dir: Path) -> Iterator[Server]:
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[Server]:
     with serving(tmp_path) as made:
+        yield made
+
+
+@pytest.fixture
+def unhurried_server(tmp_path: Path) -> Iterator[Server]:
+    """In real time: the vehicle's own failsafe must not act while the server starts again."""
+    with serving(tmp_path, speedup=1.0) as made:
         yield made
 
 

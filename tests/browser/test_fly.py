@@ -191,7 +191,11 @@ def test_the_pilot_takes_over_and_keeps_control_until_resume(server: Server, scr
     screen.expect_phase("aborted", "returning", seconds=30)
 
 
-def test_the_server_is_killed_in_flight_and_comes_back_in_hold(server: Server, screen: Screen) -> None:
+def test_the_server_is_killed_in_flight_and_comes_back_in_hold(
+    unhurried_server: Server, open_screen: OpenScreen
+) -> None:
+    server = unhurried_server
+    screen = open_screen(server)
     made = server.draft(**ENDLESS)
     screen.fly(made)
     expect(screen.part("sweep-bearing")).to_be_visible(timeout=90_000)

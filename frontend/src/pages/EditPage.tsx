@@ -2,8 +2,6 @@
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { go, missionAddress, type Route } from "../app/route";
-import { sourceFor } from "../app/sourceFor";
-import { open, source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { AreaSection, importFile, importProblem } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
@@ -183,7 +181,6 @@ export function EditPage({ route }: { route: EditRoute }) {
     );
   };
   useEffect(() => {
-    if (source.peek()?.missionId !== null) open(sourceFor(null));
     clearPreview();
     const kept = route.page === "new" && route.from !== null ? null : storedDraft(key);
     setRestored(kept !== null);

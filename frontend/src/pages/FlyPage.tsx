@@ -2,9 +2,7 @@
 import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import type { Route } from "../app/route";
-import { mission, open, source } from "../app/store";
-import { sourceFor } from "../app/sourceFor";
+import { mission, source } from "../app/store";
 import { t } from "../i18n";
 import { AlertBanner } from "../panels/AlertsButton";
 import { EstimatePanel } from "../panels/EstimatePanel";
@@ -43,10 +41,7 @@ function MapArea() {
   );
 }
 
-export function FlyPage({ route }: { route: Extract<Route, { page: "mission" }> }) {
-  useEffect(() => {
-    if (source.peek()?.missionId !== route.missionId) open(sourceFor(route.missionId));
-  }, [route.missionId]);
+export function FlyPage() {
   const { phase, missionId } = mission.value;
   const before = phase === "draft" || phase === "ready";
   return (

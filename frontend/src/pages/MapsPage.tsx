@@ -1,7 +1,5 @@
 // Offline maps and overlays on this server: add, choose, check, remove. Nothing comes from outside.
 import { useEffect, useState } from "preact/hooks";
-import { sourceFor } from "../app/sourceFor";
-import { open, source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { basemap, chooseBasemap } from "../map/basemap";
@@ -117,7 +115,6 @@ export function MapsPage() {
     );
   };
   useEffect(() => {
-    if (source.peek()?.missionId !== null) open(sourceFor(null));
     read();
   }, []);
   return (

@@ -2,8 +2,6 @@
 import { useEffect, useState } from "preact/hooks";
 import { go, missionAddress } from "../app/route";
 import { change, settings } from "../app/settings";
-import { sourceFor } from "../app/sourceFor";
-import { open, source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { ProblemText } from "../panels/ProblemNote";
@@ -100,7 +98,6 @@ export function MissionsPage() {
   const [broken, setBroken] = useState<string | null>(null);
   const [wanted, setWanted] = useState("");
   useEffect(() => {
-    if (source.peek()?.missionId !== null) open(sourceFor(null));
     const read = () =>
       api.missions().then(
         ({ missions }) => {

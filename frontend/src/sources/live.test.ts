@@ -65,6 +65,28 @@ describe("the live source", () => {
     expect(FakeSocket.made.length).toBeGreaterThan(1);
   });
 
+  it("asks again for events that were promised and did not come", async () => {
+    start();
+    const status = { type: "status", phase: null };
+    FakeSocket.made[0]!.tell({ type: "hello", last_seq: 2, mission_id: "m", server_version: "", time_factor: 1 });
+    for (let second = 0; second < 12; second++) {
+      FakeSocket.made[0]!.tell(status);
+      await vi.advanceTimersByTimeAsync(1_000);
+    }
+    expect(FakeSocket.made.length).toBeGreaterThan(1);
+  });
+
+  it("is content when the promised events came", async () => {
+    start();
+    FakeSocket.made[0]!.tell({ type: "hello", last_seq: 1, mission_id: "m", server_version: "", time_factor: 1 });
+    FakeSocket.made[0]!.tell({ type: "event", recorded: record(someBearing())[0]! });
+    for (let second = 0; second < 12; second++) {
+      FakeSocket.made[0]!.tell({ type: "status", phase: null });
+      await vi.advanceTimersByTimeAsync(1_000);
+    }
+    expect(FakeSocket.made).toHaveLength(1);
+  });
+
   it("does not connect again once it was stopped", async () => {
     const source = start();
     source.stop();

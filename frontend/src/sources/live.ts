@@ -8,6 +8,8 @@ const FIRST_RETRY_MS = 500;
 const LONGEST_RETRY_MS = 8_000;
 /** Status comes once a second: a socket silent for this long is dead even when it says it is open. */
 const SILENCE_MS = 6_000;
+/** Events that were promised by the greeting but have not come after this long are asked for again. */
+const BACKLOG_MS = 8_000;
 
 export function retryDelayMs(attempt: number, random: number): number {
   const ceiling = Math.min(LONGEST_RETRY_MS, FIRST_RETRY_MS * 2 ** attempt);
@@ -23,6 +25,7 @@ export class LiveSource implements Source {
   private stopped = true;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private silenceTimer: ReturnType<typeof setTimeout> | undefined;
+  private backlogTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     readonly missionId: string | null,
@@ -39,6 +42,7 @@ export class LiveSource implements Source {
     this.stopped = true;
     clearTimeout(this.retryTimer);
     clearTimeout(this.silenceTimer);
+    clearTimeout(this.backlogTimer);
     this.socket?.close();
     this.socket = null;
   }
@@ -74,16 +78,31 @@ export class LiveSource implements Source {
 
   private watchSilence(socket: WebSocket): void {
     clearTimeout(this.silenceTimer);
-    this.silenceTimer = setTimeout(() => {
-      if (this.socket !== socket) return;
-      socket.onclose = null;
-      socket.close();
-      this.reconnect();
-    }, SILENCE_MS);
+    this.silenceTimer = setTimeout(() => this.abandon(socket), SILENCE_MS);
+  }
+
+  private watchBacklog(promised: number): void {
+    const socket = this.socket;
+    clearTimeout(this.backlogTimer);
+    if (!socket || promised <= this.lastSeq) return;
+    const had = this.lastSeq;
+    this.backlogTimer = setTimeout(() => {
+      if (this.lastSeq >= promised) return;
+      if (this.lastSeq > had) this.watchBacklog(promised);
+      else this.abandon(socket);
+    }, BACKLOG_MS);
+  }
+
+  private abandon(socket: WebSocket): void {
+    if (this.socket !== socket) return;
+    socket.onclose = null;
+    socket.close();
+    this.reconnect();
   }
 
   private reconnect(): void {
     clearTimeout(this.silenceTimer);
+    clearTimeout(this.backlogTimer);
     this.socket = null;
     if (this.stopped) return;
     this.listener({ type: "link", state: "closed", attempt: this.attempt });
@@ -101,6 +120,7 @@ export class LiveSource implements Source {
       if (message.recorded.seq <= this.lastSeq) return;
       this.lastSeq = message.recorded.seq;
     }
+    if (message.type === "hello" && this.missionId !== null) this.watchBacklog(message.last_seq);
     this.listener(message);
   }
 

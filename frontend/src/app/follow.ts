@@ -1,0 +1,13 @@
+// The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
+import { effect } from "@preact/signals";
+import { route } from "./route";
+import { sourceFor } from "./sourceFor";
+import { open, source } from "./store";
+
+export function followRoute(): () => void {
+  return effect(() => {
+    const wanted = route.value.page === "mission" ? route.value.missionId : null;
+    const now = source.peek();
+    if (now === null || now.missionId !== wanted) open(sourceFor(wanted));
+  });
+}
