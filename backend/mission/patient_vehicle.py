@@ -53,8 +53,9 @@ class PatientVehicle:
             try:
                 await candidate.connect(ATTEMPT_S)
             except VehicleUnreachable as error:
+                if str(error) != self.detail:
+                    log.warning("%s", error)
                 self.detail = str(error)
-                log.warning("%s", error)
                 await asyncio.sleep(PAUSE_S)
             except BaseException:
                 await candidate.close()
