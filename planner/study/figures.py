@@ -141,9 +141,9 @@ def localization_by_budget(results: pd.DataFrame, summaries: list[Summary], path
 def optimization_against_localization(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 2: whether better first actions make quicker missions, one point a cell."""
     chosen = _rollouts(summaries)
-    if len(chosen) < 3:
+    configs = [c for c in MEASUREMENT_TIMES if sum(s.cell.config == c for s in chosen) >= 3]
+    if not configs:
         return None
-    configs = sorted({s.cell.config for s in chosen}, key=list(MEASUREMENT_TIMES).index)
     figure, axes = _axes(len(configs))
     for panel, config in zip(axes, configs, strict=True):
         here = [s for s in chosen if s.cell.config == config]
@@ -151,7 +151,7 @@ def optimization_against_localization(results: pd.DataFrame, summaries: list[Sum
         for summary, x, y in zip(here, *points, strict=True):
             panel.errorbar(x, y, yerr=summary.ci95_s, marker="o", markersize=4, capsize=2, color="tab:blue")
         title = config
-        if len(here) > 2 and np.ptp(points[0]) > 0 and np.ptp(points[1]) > 0:
+        if np.ptp(points[0]) > 0 and np.ptp(points[1]) > 0:
             title += f": correlation {np.corrcoef(points)[0, 1]:.2f}"
         panel.set(title=title, xlabel="value of the first action, s", ylabel="time until localization, s")
     return figure
@@ -272,7 +272,7 @@ FIGURES: dict[str, tuple[Draw, str]] = {
     "localization_by_budget": (localization_by_budget, "rollout cells of scenario 2 with several budgets"),
     "optimization_against_localization": (
         optimization_against_localization,
-        "three rollout cells of scenario 2 or more",
+        "three rollout cells of scenario 2 or more with one --config",
     ),
     "sensitivity_to_grid": (sensitivity_to_grid, "cells that differ in --actions only"),
     "sensitivity_to_measurement_time": (
