@@ -169,7 +169,11 @@ function bind(map: GlMap): () => void {
   };
 }
 
+/** False as soon as the operator moves the map himself: then it stays where he put it. */
+let framing = true;
+
 function frameAll(map: GlMap, animate: boolean): void {
+  framing = true;
   const spec = mission.peek().spec;
   const at = vehicle.peek().at;
   const home = mission.peek().home;
@@ -274,6 +278,12 @@ export function FlyMap() {
     });
     created.on("click", (event: MapMouseEvent) => {
       if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
+    });
+    created.on("movestart", (event) => {
+      if ("originalEvent" in event && event.originalEvent) framing = false;
+    });
+    created.on("resize", () => {
+      if (framing) frameAll(created, false);
     });
     const stopHover = watchHover(created, (place, aborted) => {
       const id = mission.peek().missionId;
