@@ -134,8 +134,8 @@ def _field(measurement_time: float) -> Scenario:
     """The flown system's numbers (Tables 6.1-6.3); the configuration's measuring time does not apply."""
     del measurement_time
     area = rectangle(313.0, 120.0)
-    # The thesis prints 112 actions on a 15 m lattice, not their outline: 14 x 8 of them fit this one.
-    flight = np.array([[52.0, 0.0], [261.0, 0.0], [261.0, 119.0], [52.0, 119.0]])
+    # The thesis prints 112 actions on a 15 m lattice, not their outline: 14 x 8 squares of it fill this one.
+    flight = np.array([[51.5, 0.0], [261.5, 0.0], [261.5, 120.0], [51.5, 120.0]])
 
     def target(run: int, rng: np.random.Generator) -> FloatArray:
         return rng.uniform((0.0, 0.0), (313.0, 120.0))
