@@ -165,15 +165,15 @@ def _decision(places: FloatArray, result: SelectionResult, sampler: RolloutSampl
 
 
 def _reason(result: SelectionResult) -> str:
-    n = len(result.means)
     about = f"localized in about {clock(result.means[result.best])} by way of this place"
     others = np.delete(result.means, result.best)
-    if n == 1 or not np.isfinite(others).any():
-        return f"{about}, the only one allowed"
+    n = 1 + int(np.isfinite(others).sum())
+    if n == 1:
+        return f"{about}, the only one {'allowed' if len(result.means) == 1 else 'tried'}"
     gain = float(np.nanmin(others) - result.means[result.best])
     if gain >= 0.5:
-        return f"{about}, {gain:.0f} s sooner than by any other of {n} places"
-    return f"{about}; of {n} places it held its lead over the most simulated flights"
+        return f"{about}, {gain:.0f} s sooner than by any other of {n} places tried"
+    return f"{about}; of {n} places tried it held its lead over the most simulated flights"
 
 
 def clock(seconds: float) -> str:
