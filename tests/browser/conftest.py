@@ -51,8 +51,7 @@ def serving(data_dir: Path, speedup: float = SPEEDUP) -> Iterator[Server]:
     process = started([*arguments, "--port", "0"])
     made = Server(url_of(process), data_dir, arguments, process)
     yield made
-    made.process.terminate()
-    made.process.wait(timeout=60)
+    made.stop()
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import json
 import socket
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,14 @@ class Server:
     def kill(self) -> None:
         self.process.kill()
         self.process.wait()
+
+    def stop(self) -> None:
+        """The server, and the vehicle that it leaves flying when a mission is in the air."""
+        self.process.terminate()
+        self.process.wait(timeout=60)
+        if (self.data_dir / "simulated_vehicle.json").exists():
+            with suppress(OSError):
+                self.order("stop")
 
     def start_again(self) -> None:
         """On the same port, as after a power cut."""
