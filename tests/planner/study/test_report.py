@@ -23,6 +23,7 @@ def results(tmp_path_factory):
     return directory, frames
 
 
+@pytest.mark.slow
 def test_every_figure_is_drawn_and_every_cell_summed_up(results, tmp_path):
     directory, frames = results
     remarks: list[str] = []
