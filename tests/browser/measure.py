@@ -1,7 +1,8 @@
 """How quick and how light the page is, measured on a flying mission: one JSON object on standard output.
 
 `python tests/browser/measure.py --minutes 2 [--lite]`. belief_ms: from the arrival of a bearing's event in the browser
-to the frame that shows its belief (the server's update between them included). frame_ms: times between drawn frames
+to the frame that shows its belief (the server's update between them included); belief_drawing_ms: from the arrival
+of the belief itself. frame_ms: times between drawn frames
 while telemetry comes. Without a graphics card the map is drawn by the processor: frame times are then an upper bound.
 """
 
@@ -19,14 +20,14 @@ from playwright.sync_api import sync_playwright
 from screen import Screen
 
 WATCH = """
-window.measured = {bearings: [], beliefs: [], frames: [], bytes: 0, telemetry: 0, began: performance.now()};
+window.measured = {bearings: [], arrived: [], beliefs: [], frames: [], bytes: 0, telemetry: 0};
 const Plain = window.WebSocket;
 window.WebSocket = class extends Plain {
   constructor(...all) {
     super(...all);
     this.addEventListener('message', ({data}) => {
       measured.bytes += typeof data === 'string' ? data.length : data.byteLength;
-      if (typeof data !== 'string') return;
+      if (typeof data !== 'string') { measured.arrived.push(performance.now()); return; }
       if (data.includes('"bearing_measured"')) measured.bearings.push(performance.now());
       if (data.startsWith('{"type":"telemetry"')) measured.telemetry += 1;
     });
@@ -52,21 +53,28 @@ def share(values: list[float], part: float) -> float | None:
 
 
 def heap_mb(screen: Screen) -> float:
+    """What the page holds on to, after a collection."""
+    screen.page.context.new_cdp_session(screen.page).send("HeapProfiler.collectGarbage")
     return round(screen.evaluate("performance.memory.usedJSHeapSize") / 2**20, 1)
+
+
+def until_painted(came: list[float], beliefs: list[list[float]]) -> list[float]:
+    """ms from each arrival to the first belief painted after it."""
+    return [
+        min(at - begin for _, at in beliefs if at >= begin) for begin in came if any(at >= begin for _, at in beliefs)
+    ]
 
 
 def report(measured: dict[str, Any], heaps: list[float]) -> dict[str, Any]:
     minutes = (sum(measured["frames"]) / 1000) / 60
-    delays = [
-        min(at - came for _, at in measured["beliefs"] if at >= came)
-        for came in measured["bearings"]
-        if any(at >= came for _, at in measured["beliefs"])
-    ]
+    delays = until_painted(measured["bearings"], measured["beliefs"])
+    drawing = until_painted(measured["arrived"], measured["beliefs"])
     frames = measured["frames"]
     return {
         "minutes": round(minutes, 2),
         "bearings": len(delays),
         "belief_ms": {"median": share(delays, 0.5), "worst": share(delays, 1.0)},
+        "belief_drawing_ms": {"median": share(drawing, 0.5), "worst": share(drawing, 1.0)},
         "frame_ms": {"median": share(frames, 0.5), "p95": share(frames, 0.95), "p99": share(frames, 0.99)},
         "telemetry_hz": round(measured["telemetry"] / minutes / 60, 1),
         "kilobytes_a_minute": round(measured["bytes"] / minutes / 1000, 1),

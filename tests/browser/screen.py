@@ -98,6 +98,14 @@ class Screen:
         self.checked()
         self.start()
 
+    def expect_belief(self, bearings: int) -> None:
+        """The belief after so many bearings is painted on the map."""
+        for _ in range(300):
+            if self.evaluate("window.crossfixBeliefPainted?.bearings") == bearings:
+                return
+            self.page.wait_for_timeout(100)
+        raise AssertionError(f"the belief after {bearings} bearings was not painted within 30 s")
+
     def evaluate(self, script: str) -> Any:
         return self.page.evaluate(script)
 

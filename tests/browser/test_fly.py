@@ -52,7 +52,6 @@ def test_an_area_is_drawn_flown_and_the_emitter_localized(server: Server, screen
 
 def look_back(screen: Screen) -> None:
     """The mission opens again from the list, and its beliefs scrub."""
-    painted = "window.crossfixBeliefPainted?.bearings"
     screen.go("#/")
     screen.part("open-mission").first.click()
     screen.map_ready()
@@ -62,13 +61,13 @@ def look_back(screen: Screen) -> None:
     screen.page.locator("[data-testid=event-row][data-kind=plan_chosen]").nth(1).click()
     expect(screen.part("state-words")).to_contain_text("Review of")
     expect(screen.part("verdict")).to_have_attribute("data-localized", "false")
-    screen.page.wait_for_function(f"{painted} === 1")
+    screen.expect_belief(1)
     screen.page.locator("[data-testid=event-row][data-kind=mission_started]").click()
     expect(screen.part("outcome")).to_have_count(0)
-    screen.page.wait_for_function(f"{painted} === 0")
+    screen.expect_belief(0)
     screen.page.keyboard.press("l")
     expect(screen.part("outcome")).to_be_visible()
-    screen.page.wait_for_function(f"{painted} >= 2")
+    screen.expect_belief(len(screen.page.locator("[data-kind=bearing_measured]").all()))
 
 
 def test_abort_is_one_tap_and_reaches_the_vehicle(server: Server, screen: Screen) -> None:

@@ -5,8 +5,18 @@ import { locale } from "../i18n";
 export type UnitSystem = "metric" | "imperial";
 
 const FOOT = 0.3048;
-const grouped = (value: number, digits = 0) =>
-  value.toLocaleString(locale.value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+/** Making a formatter costs more than using it a thousand times. */
+const formatters = new Map<string, Intl.NumberFormat>();
+
+function grouped(value: number, digits = 0): string {
+  const key = `${locale.value}${digits}`;
+  let formatter = formatters.get(key);
+  if (!formatter) {
+    formatter = new Intl.NumberFormat(locale.value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    formatters.set(key, formatter);
+  }
+  return formatter.format(value);
+}
 
 export const formatNumber = grouped;
 
