@@ -69,6 +69,8 @@ class Station:
     def _set_interval(self, message: int, hz: float) -> int:
         if message not in self._builders:
             return UNSUPPORTED
+        if message == mavlink.MAVLINK_MSG_ID_HEARTBEAT or not math.isfinite(hz):  # a station must never lose the beat
+            return DENIED
         if hz <= 0.0:
             self._due.pop(message, None)
             self._period.pop(message, None)

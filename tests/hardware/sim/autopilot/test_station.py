@@ -138,6 +138,17 @@ def test_arducopters_failsafe_watches_the_station_named_by_its_parameter(system:
     assert (ground.firmware.gcs_heard_at == 4.0) is counts
 
 
+@BOTH
+@pytest.mark.parametrize("micros", [-1.0, 1e30, math.inf, math.nan])
+def test_the_heartbeat_cannot_be_turned_off(flavour: type[Firmware], micros: float) -> None:
+    ground = Ground(flavour)
+
+    (ack,) = ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_HEARTBEAT, micros)
+
+    assert ack.result == mavlink.MAV_RESULT_DENIED
+    assert ground.counts(5.0)["HEARTBEAT"] >= 4
+
+
 NUMBERS = st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -1.0, 1.0, 4.0, 1e30, 300.0])
 
 
