@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hardware.frame import LocalFrame
 from hardware.readings import GeoPoint
@@ -110,26 +111,33 @@ class World:
 
     def received_field(self, emitter: Emitter, pose: Pose) -> complex:
         """Complex amplitude at the antenna's terminals without fading and noise; |.|^2 in milliwatt."""
-        frame = LocalFrame(pose.place)
+        return complex(self.received_fields(emitter, pose.place, pose.height_m, np.array([pose.heading_deg]))[0])
+
+    def received_fields(
+        self, emitter: Emitter, place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+    ) -> NDArray[np.complex128]:
+        """(n,) the same for a vehicle that turns on one place: (n,) reported headings."""
+        frame = LocalFrame(place)
         east, north = frame.to_enu(emitter.place)
+        up = emitter.height_m - height_m
         wavelength = SPEED_OF_LIGHT_M_S / emitter.frequency_hz
-        direct = two_ray_gain(
-            math.hypot(east, north), emitter.height_m, pose.height_m, wavelength, self.ground_reflection
-        )
-        total = direct * self._antenna_field(east, north, emitter.height_m - pose.height_m, pose)
+        direct = two_ray_gain(math.hypot(east, north), emitter.height_m, height_m, wavelength, self.ground_reflection)
+        total = direct * self._antenna_fields(east, north, up, heading_deg)
         for reflector in self.reflectors:
             wall_east, wall_north = frame.to_enu(reflector.place)
             path = math.hypot(wall_east - east, wall_north - north) + math.hypot(wall_east, wall_north)
-            reflected = two_ray_gain(path, emitter.height_m, pose.height_m, wavelength, self.ground_reflection)
+            reflected = two_ray_gain(path, emitter.height_m, height_m, wavelength, self.ground_reflection)
             reflected *= 10.0 ** (-reflector.loss_db / 20.0) * np.exp(1j * reflector.phase_rad)
-            total += reflected * self._antenna_field(wall_east, wall_north, emitter.height_m - pose.height_m, pose)
-        return complex(total * 10.0 ** ((emitter.power_dbm - emitter.polarization_loss_db) / 20.0))
+            total = total + reflected * self._antenna_fields(wall_east, wall_north, up, heading_deg)
+        return total * 10.0 ** ((emitter.power_dbm - emitter.polarization_loss_db) / 20.0)
 
-    def _antenna_field(self, east: float, north: float, up: float, pose: Pose) -> complex:
+    def _antenna_fields(
+        self, east: float, north: float, up: float, heading_deg: NDArray[np.float64]
+    ) -> NDArray[np.complex128]:
         bearing = math.degrees(math.atan2(east, north))
-        front = pose.heading_deg + self.heading_error_deg + self.antenna_offset_deg
+        front = heading_deg + self.heading_error_deg + self.antenna_offset_deg
         elevation = math.atan2(up, max(math.hypot(east, north), 0.1))
-        return complex(self.antenna.field(np.array([math.radians(bearing - front)]), elevation)[0])
+        return self.antenna.field(np.radians(bearing - front), elevation)
 
 
 @dataclass(slots=True)
@@ -147,23 +155,37 @@ class RadioLink:
 
     def amplitude(self, at_s: float, pose: Pose) -> complex:
         """Faded complex amplitude at the antenna's terminals (sqrt mW); 0 without an emitter or between pulses."""
+        heading = np.array([pose.heading_deg])
+        return complex(self.amplitudes(np.array([at_s]), pose.place, pose.height_m, heading)[0])
+
+    def amplitudes(
+        self, at_s: NDArray[np.float64], place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+    ) -> NDArray[np.complex128]:
+        """(n,) the same at (n,) times and headings of a vehicle that turns on one place."""
         emitter = self.world.emitter_at(self.frequency_hz)
         if emitter is None:
-            return 0j
-        fading = self._fading.gain(at_s)
-        if emitter.pulse_period_s is not None and at_s % emitter.pulse_period_s >= emitter.pulse_width_s:
-            return 0j
-        return self.world.received_field(emitter, pose) * fading
+            return np.zeros(at_s.size, dtype=np.complex128)
+        fading = np.array([self._fading.gain(float(t)) for t in at_s])
+        received = self.world.received_fields(emitter, place, height_m, heading_deg) * fading
+        if emitter.pulse_period_s is None:
+            return received
+        return np.where(at_s % emitter.pulse_period_s < emitter.pulse_width_s, received, 0.0)
 
     def power_dbm(self, at_s: float, pose: Pose) -> tuple[float, bool]:
-        """(power reading dBm, clipped). Mean of |signal + noise|^2 over `averages` draws, with gain jitter."""
+        """(power reading dBm, clipped)."""
+        heading = np.array([pose.heading_deg])
+        reading, clipped = self.powers_dbm(np.array([at_s]), pose.place, pose.height_m, heading)
+        return float(reading[0]), bool(clipped[0])
+
+    def powers_dbm(
+        self, at_s: NDArray[np.float64], place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
         front_end = self.world.front_end
-        signal_mw = abs(self.amplitude(at_s, pose)) ** 2
+        signal_mw = np.abs(self.amplitudes(at_s, place, height_m, heading_deg)) ** 2
         noise_mw = 10.0 ** (front_end.noise_dbm / 10.0)
         # mean of n draws of |s + w|^2: mean S + N, variance (2 S N + N^2) / n
-        spread = math.sqrt((2.0 * signal_mw * noise_mw + noise_mw**2) / front_end.averages)
-        reading_mw = max(signal_mw + noise_mw + spread * self._rng.normal(), 0.05 * noise_mw)
-        reading_dbm = 10.0 * math.log10(reading_mw) + front_end.jitter_db * self._rng.normal()
-        if reading_dbm >= front_end.clip_dbm:
-            return front_end.clip_dbm, True
-        return reading_dbm, False
+        spread = np.sqrt((2.0 * signal_mw * noise_mw + noise_mw**2) / front_end.averages)
+        reading_mw = np.maximum(signal_mw + noise_mw + spread * self._rng.normal(size=at_s.size), 0.05 * noise_mw)
+        reading_dbm = 10.0 * np.log10(reading_mw) + front_end.jitter_db * self._rng.normal(size=at_s.size)
+        return np.minimum(reading_dbm, front_end.clip_dbm), reading_dbm >= front_end.clip_dbm
