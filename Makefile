@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench long fuzz load codegen setup setup-dev build browser unit system clean help
+.PHONY: run test check bench long fuzz load codegen compare-direction-finders setup setup-dev build browser unit system clean help
 
 help: ## this list
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
 
 run: setup build ## server, embedded SQLite, simulated vehicle and emitter; the page is open to use
 	$(BIN)/crossfix serve
@@ -71,6 +71,10 @@ load: setup-dev build ## a hundred viewers, five of them stalled: latency and me
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
 	cd frontend && npm run --silent codegen
+
+SWEEPS ?= 2000
+compare-direction-finders: setup-dev ## three direction finders on 2,000 simulated sweeps a condition: the table and plot of docs/direction-finding.md
+	$(BIN)/python -m hardware.direction_finding.comparison --sweeps $(SWEEPS) --reliability docs/images/sigma_reliability.svg
 
 bench: setup ## the planner's speed on this machine
 	$(BIN)/crossfix bench
