@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import numpy as np
 import typer
@@ -19,11 +19,23 @@ from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
 from planner.belief.verdict import verdict
 from planner.geometry import convex_hull
-from planner.types import Bearing, InconsistentBearings, LinearMotion, LocalizationRule, PlannerError, Problem, Region
+from planner.types import (
+    Bearing,
+    Estimator,
+    InconsistentBearings,
+    LinearMotion,
+    LocalizationRule,
+    PlannerError,
+    Problem,
+    Region,
+)
 
 SHORTEST_RANGE_M = 1000.0
 RANGE_BY_SPREAD = 3.0
 _DISC_CORNERS = 48
+ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
+MEDIAN: Estimator = "geometric_median"
+"""The place with the least expected error, the figure that is stated beside it."""
 
 
 def localize(
@@ -55,6 +67,12 @@ def localize(
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
     tag: Annotated[str | None, typer.Option(help="Use this tag's bearings when the file holds several tags.")] = None,
+    estimator: Annotated[
+        str,
+        typer.Option(
+            help=f"Point that is answered: {', '.join(ESTIMATORS)}. The default has the least expected error."
+        ),
+    ] = MEDIAN,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Cross bearings: estimate, expected error and 95 % region of a stationary emitter, or that the bearings disagree.
@@ -68,13 +86,20 @@ def localize(
         chosen = _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
-        answer = _localize(chosen, frame, region, outliers, threshold)
+        answer = _localize(chosen, frame, region, outliers, threshold, _known_estimator(estimator))
     except (RecordingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
         print_json(answer)
     else:
         typer.echo(_text(answer))
+
+
+def _known_estimator(name: str) -> Estimator:
+    for known in ESTIMATORS:
+        if name == known:
+            return known
+    raise ValueError(f'"{name}" is no estimator: choose one of {", ".join(ESTIMATORS)}')
 
 
 def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) -> list[RecordedBearing]:
@@ -137,13 +162,18 @@ def _rings(data: dict[str, Any]) -> list[list[list[float]]]:
 
 
 def _localize(
-    recorded: list[RecordedBearing], frame: LocalFrame, region: Region, outliers: float, threshold: float
+    recorded: list[RecordedBearing],
+    frame: LocalFrame,
+    region: Region,
+    outliers: float,
+    threshold: float,
+    estimator: Estimator,
 ) -> dict[str, Any]:
     bearings = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
         bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
-    problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0))
+    problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
     try:
         belief: GridBelief | None = fold(problem, bearings)
     except InconsistentBearings:
@@ -151,6 +181,7 @@ def _localize(
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
     answer: dict[str, Any] = {
         "estimate": None,
+        "estimator": estimator,
         "expected_rmse_m": None,
         "c95": None,
         "consistent": judged.consistent,

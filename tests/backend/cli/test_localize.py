@@ -88,3 +88,22 @@ def test_bad_input_is_one_line_on_stderr_and_exit_code_2(
     assert result.exit_code == 2
     assert result.stdout == ""
     assert len(result.stderr.strip().splitlines()) == 1
+
+
+def test_the_answer_is_the_place_with_the_least_expected_error(tmp_path: Path) -> None:
+    rows = [(x, y, bearing_to(x, y, 150.0, 90.0)) for x, y in ((0, 0), (60, -20))]
+    path = str(written(tmp_path, rows, sigma=7.0))
+    plain = json.loads(CliRunner().invoke(APP, [path, "--json"]).stdout)
+    others = [
+        json.loads(CliRunner().invoke(APP, [path, "--json", "--estimator", name]).stdout)
+        for name in ("map", "expected_value")
+    ]
+    assert plain["estimator"] == "geometric_median"
+    assert [o["estimator"] for o in others] == ["map", "expected_value"]
+    assert all(plain["expected_rmse_m"] < o["expected_rmse_m"] for o in others)
+
+
+def test_an_unknown_estimator_is_named_with_the_known_ones(tmp_path: Path) -> None:
+    result = CliRunner().invoke(APP, [str(written(tmp_path, [(0, 0, 45.0)])), "--estimator", "mode"])
+    assert result.exit_code == 2
+    assert '"mode" is no estimator: choose one of map, expected_value, geometric_median' in result.stderr
