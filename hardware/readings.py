@@ -26,7 +26,11 @@ Controller = Literal["crossfix", "pilot", "nobody"]
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC)."""
+    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC).
+
+    held_by_pilot: somebody else took control and has not given it back (the mode is still his): a command now would
+    take it from him.
+    """
 
     connected: bool
     at_s: float
@@ -50,6 +54,7 @@ class Telemetry:
     home: GeoPoint | None = None
     home_amsl_m: float | None = None
     controller: Controller = "nobody"
+    held_by_pilot: bool = False
     autopilot: Literal["px4", "ardupilot", "unknown"] = "unknown"
 
 

@@ -27,7 +27,8 @@ class StartFacts:
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """An operator's command. `objections`: vetoes found beforehand (safety of an override, another mission flying).
+    """An operator's command. `objections`: vetoes found beforehand (safety of an override, a pilot who has not given
+    control back when it is to be resumed, another mission flying).
     `on_ground`: the vehicle says that it stands on the ground."""
 
     command_id: str
@@ -127,8 +128,11 @@ class LinkDown:
 
 @dataclass(frozen=True, slots=True)
 class LinkUp:
+    """going_home: the vehicle is heard again in the autopilot's own return or landing, begun while it was not heard."""
+
     link: Link
     outage_s: float
+    going_home: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -239,7 +239,10 @@ def _link_up(step: Step, given: LinkUp) -> None:
         step.do(CancelTimer("console_hold"))
         step.do(CancelTimer("console_return"))
     elif given.link == "vehicle" and state.phase == "hold":
-        step.do(HoldVehicle())
+        if given.going_home:
+            _failsafe_flies(step, "its failsafe acted while the link was lost")
+        elif not state.pilot_has_control:
+            step.do(HoldVehicle())
     elif given.link == "vehicle" and state.phase in HOMEWARD:
         step.do(ReturnHome() if state.phase == "returning" else Land())
 
@@ -309,15 +312,14 @@ def _restarted(step: Step, given: Restarted) -> None:
         step.record(ControlTaken(mode="unknown", detail="the pilot had control when the server came back"))
         step.go("manual", "the pilot had control when the server came back")
     elif given.going_home:
-        alert(
-            step,
-            "vehicle",
-            "caution",
-            "the autopilot is on its own way home: its failsafe acted while the server was away",
-            "resume to go on searching, or let it land",
-        )
+        _failsafe_flies(step, "its failsafe acted while the server was away")
         step.go("hold", "the server restarted; the autopilot's failsafe is bringing the vehicle home")
     else:
         step.do(HoldVehicle())
         step.go("hold", "the server restarted")
     step.do(UpdateBelief())
+
+
+def _failsafe_flies(step: Step, why: str) -> None:
+    text = f"the autopilot is on its own way home: {why}"
+    alert(step, "vehicle", "caution", text, "resume to go on searching, or let it land")

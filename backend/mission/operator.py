@@ -156,6 +156,7 @@ def _resume(step: Step, given: Commanded) -> None:
         raise Refused("the mission is not held", "")
     if "vehicle" in state.links_down:
         raise Refused("the link to the vehicle is lost", "wait until the vehicle answers again")
+    _refuse_objections(step, given)
     step.record(ResumeOrdered(by=by))
     if state.pilot_has_control:
         step.record(ControlReleased(by=by))

@@ -11,7 +11,7 @@ import logging
 from collections.abc import Coroutine
 from typing import Literal, assert_never
 
-from backend.commands import Command, Override
+from backend.commands import Command, Override, Resume
 from backend.events import BeliefUpdated, Event
 from backend.mission import effects, inputs
 from backend.mission.equipment import Equipment
@@ -20,6 +20,7 @@ from backend.mission.localization import Localization
 from backend.mission.machine import transition
 from backend.mission.measuring import Measured
 from backend.mission.outbox import Outbox
+from backend.mission.safety import Veto, resume_vetoes
 from backend.mission.state import TERMINAL, MissionState
 from backend.mission.steps import Steps
 from backend.mission.watch import Watch
@@ -95,12 +96,15 @@ class Runner:
         return asked
 
     def command(self, command_id: str, by: str, command: Command) -> tuple[effects.Effect, ...]:
-        """An operator's command; safety's objections to an override are found first."""
-        objections = ()
+        """An operator's command; safety's objections to an override or to resuming are found first."""
+        telemetry = self._equipment.vehicle.telemetry()
+        objections: tuple[Veto, ...] = ()
         if isinstance(command, Override):
             altitude = self.task.limits.home_amsl_m + self.task.mission.flight.altitude_relative_m
             objections = self.steps.override_vetoes(command.place, altitude)
-        on_ground = self._equipment.vehicle.telemetry().in_air is False
+        elif isinstance(command, Resume):
+            objections = resume_vetoes(telemetry, self.watch.tolerated_mode)
+        on_ground = telemetry.in_air is False
         return self.give(inputs.Commanded(command_id, by, command, objections, on_ground=on_ground))
 
     def _carry_out(self, effect: effects.Effect) -> None:

@@ -96,6 +96,18 @@ def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
     return tuple(found)
 
 
+def resume_vetoes(telemetry: Telemetry, tolerated_mode: str | None = None) -> tuple[Veto, ...]:
+    """May an operator resume? Not before a pilot has given the vehicle back: any command would take it from him.
+
+    tolerated_mode: the autopilot's own return or landing that began while nobody listened; no pilot's.
+    """
+    if not telemetry.held_by_pilot or (tolerated_mode is not None and telemetry.mode == tolerated_mode):
+        return ()
+    detail = f"the pilot has not given control back: the vehicle is still in {telemetry.mode or 'a mode of his'}"
+    remedy = "the pilot selects HOLD (PX4) or BRAKE or GUIDED (ArduPilot) on his transmitter, then resume"
+    return (Veto("pilot", detail, remedy),)
+
+
 def battery_vetoes(
     limits: Limits, situation: Situation, flight_s: float = 0.0, end: GeoPoint | None = None
 ) -> tuple[Veto, ...]:

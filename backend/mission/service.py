@@ -26,6 +26,7 @@ from backend.mission.ports import Status
 from backend.mission.runner import Runner
 from backend.mission.safety import Veto, battery_to_return_percent
 from backend.mission.state import GROUND, TERMINAL, MissionState, fold
+from backend.mission.watch import GOING_HOME
 from backend.spec import MissionSpec, Place
 from hardware.frame import LocalFrame
 from hardware.ports import VehicleUnreachable
@@ -36,8 +37,6 @@ log = logging.getLogger("crossfix.mission")
 TELEMETRY_S = 0.1
 TICKS_A_STATUS = 10
 CONNECT_AT_START_S = 3.0
-GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
-"""Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
 
 
 class MissionService:

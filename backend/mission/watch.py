@@ -21,6 +21,9 @@ LONGEST_TICK_S = 1.0
 TRACK_S = 0.5
 HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
+GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
+"""Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
+
 MEASURED_DRAIN_AFTER_S = 60.0
 MEASURED_DRAIN_PERCENT = 2.0
 
@@ -47,7 +50,8 @@ class Drain:
 class Watch:
     """`give` takes the inputs; `state` is asked on every tick. Track points collect in `track` until taken.
 
-    tolerated_mode: the autopilot's own return or landing found after a restart; no pilot's, until it changes.
+    tolerated_mode: the autopilot's own return or landing, found after a restart or a lost link; no pilot's, until it
+    changes.
     """
 
     equipment: Equipment
@@ -89,6 +93,9 @@ class Watch:
         """Ask the vehicle who has control; also called the moment it says that something changed."""
         telemetry = self.equipment.vehicle.telemetry()
         mode = telemetry.mode or "unknown"
+        unheard = "vehicle" in self._down_since or not telemetry.connected
+        if unheard and telemetry.controller == "pilot" and mode in GOING_HOME:
+            self.tolerated_mode = mode
         if mode == self.tolerated_mode and self.state().phase == "hold":
             return
         self.tolerated_mode = None
@@ -111,7 +118,8 @@ class Watch:
             self._down_since[link] = now
             self.give(inputs.LinkDown(link, detail))
         elif up and link in self._down_since:
-            self.give(inputs.LinkUp(link, now - self._down_since.pop(link)))
+            going_home = link == "vehicle" and self.tolerated_mode is not None
+            self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 
     def _battery(self, telemetry: Telemetry) -> None:
         if not telemetry.in_air or telemetry.battery_percent is None:

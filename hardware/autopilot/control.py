@@ -34,6 +34,11 @@ class ControlLatch:
             return "pilot"
         return "nobody" if self._expected is None else "crossfix"
 
+    @property
+    def held(self) -> bool:
+        """Closed, and the vehicle is still in a mode in which it does not wait for orders: release would take it."""
+        return self._reason is not None and self._armed and self._mode not in self._calm
+
     def command(self, modes: frozenset[int]) -> None:
         """We are about to send a command after which these modes are ours."""
         self._expected = modes

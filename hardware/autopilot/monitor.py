@@ -35,6 +35,9 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (HOME_POSITION_ID, 0.5),
 )
 LINK_LOST_S, LINK_LOST_WALL_S = 3.0, 1.5
+GIVEN_BACK_S = 1.5
+"""A mode counts as the pilot's answer only when it was heard so much later than he took over: PX4 says that the sticks
+took over before it says the mode."""
 
 
 class Monitor:
@@ -53,6 +56,7 @@ class Monitor:
         self._heard_wall = -math.inf
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
+        self._taken_at_s = -math.inf
         self._tasks: list[asyncio.Task[None]] = []
 
     def _listen(self, calm: frozenset[int]) -> None:
@@ -132,11 +136,16 @@ class Monitor:
                 self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
                 self.announce("vehicle link lost")
                 self.news.tell()
-            elif not lost and not self.connected:
+            elif not lost and not self.connected and self._mode_heard_again:
                 self.connected = True
                 outage = self.clock.now() - (self._lost_at_s or self.clock.now())
                 self.announce(f"vehicle link restored after {outage:.1f} s")
                 self.news.tell()
+
+    @property
+    def _mode_heard_again(self) -> bool:
+        """Before anything is commanded after a silence, what the vehicle did meanwhile is known."""
+        return (self.snapshot.mode_at_s or -math.inf) > (self._lost_at_s or -math.inf)
 
     def _on_message(self, name: str, fields: Fields) -> None:
         now = self.clock.now()
@@ -174,6 +183,7 @@ class Monitor:
             self._take_over(reason)
 
     def _take_over(self, reason: str) -> None:
+        self._taken_at_s = self.clock.now()
         self.announce(f"pilot took over: {reason}")
         self.news.tell()
 
@@ -203,6 +213,14 @@ class Monitor:
         clock_s = math.inf if heard_at is None else self.clock.now() - heard_at
         return clock_s, time.monotonic() - self._heard_wall
 
+    @property
+    def held_by_pilot(self) -> bool:
+        """Somebody else took control, and the vehicle's mode does not say that it was given back."""
+        snapshot, latch = self.snapshot, self.latch
+        if latch.reason is None or not snapshot.armed:
+            return False
+        return latch.held or (snapshot.mode_at_s or -math.inf) < self._taken_at_s + GIVEN_BACK_S
+
     def telemetry(self) -> Telemetry:
         mode = self.snapshot.custom_mode
         return self.snapshot.telemetry(
@@ -210,6 +228,7 @@ class Monitor:
             self.connected,
             None if mode is None else self.mode_name(mode),
             self.latch.controller,
+            self.held_by_pilot,
             "unknown" if self._dialect is None else self._dialect.name,
         )
 

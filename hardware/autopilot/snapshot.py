@@ -155,6 +155,7 @@ class Snapshot:
         connected: bool,
         mode: str | None,
         controller: Controller,
+        held_by_pilot: bool,
         autopilot: Literal["px4", "ardupilot", "unknown"],
     ) -> Telemetry:
         north, east, down = self.velocity_ned or (None, None, None)
@@ -181,5 +182,6 @@ class Snapshot:
             home=self.home,
             home_amsl_m=self.home_amsl_m,
             controller=controller,
+            held_by_pilot=held_by_pilot,
             autopilot=autopilot,
         )

@@ -281,6 +281,7 @@ async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(r
         taken = await sim.order("pilot_mode")
     await _ends_with(flight, PilotHasControl, "Resume")
     assert vehicle.telemetry().controller == "pilot"
+    assert vehicle.telemetry().held_by_pilot
     assert any("pilot took over" in line for line in rig.lines)
 
     here = rig.place(0.0, 10.0)
@@ -297,6 +298,7 @@ async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(r
             await order()
     await sim.order("give_back")
     await rig.clock.sleep(3.0)
+    assert not vehicle.telemetry().held_by_pilot
     with pytest.raises(PilotHasControl):  # the mode switch alone gives nothing back
         await vehicle.goto(here, rig.amsl(), 5.0)
     received = (await sim.order("commands", since_s=taken["time_s"] + 1e-6))["commands"]

@@ -27,8 +27,14 @@ async def test_the_pilot_takes_over_and_nothing_is_sent_until_resume(operator: C
     flown = [c for c in told["commands"] if c[1] in FLIGHT]
     assert flown == []
     assert operator.phases[-1] == "manual"
+    refused = await operator.order("resume")
+    assert not refused["accepted"]
+    assert "not given control back" in refused["reason"]
+    assert (await vehicle.order("truth"))["mode"] == took["mode"]
     await vehicle.order("give_back")
-    assert (await operator.order("resume"))["accepted"]
+    async with asyncio.timeout(10):
+        while not (await operator.order("resume"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
+            await asyncio.sleep(0.1)
     ended = await operator.until_event("mission_ended", wall_s=120)
     assert ended["outcome"] == "localized"
 

@@ -149,11 +149,14 @@ class FlatVehicle:
         self.state = replace(self.state, armed=False, in_air=False, altitude_relative_m=0.0)
 
     def take_control(self) -> None:
-        self.state = replace(self.state, controller="pilot", mode="POSCTL")
+        self.state = replace(self.state, controller="pilot", mode="POSCTL", held_by_pilot=True)
         self.lines.put_nowait("pilot took over: POSCTL")
 
+    def give_back(self) -> None:
+        self.state = replace(self.state, mode="HOLD", held_by_pilot=False)
+
     def release_pilot_latch(self) -> None:
-        self.state = replace(self.state, controller="crossfix")
+        self.state = replace(self.state, controller="crossfix", held_by_pilot=False)
 
     @property
     def names(self) -> list[str]:

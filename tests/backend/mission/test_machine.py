@@ -31,6 +31,7 @@ from backend.mission import effects as asked
 from backend.mission import inputs
 from backend.mission.effects import Effect
 from backend.mission.machine import transition
+from backend.mission.safety import Veto
 from backend.mission.state import AUTOMATIC, HOMEWARD, TERMINAL, MissionState, fold
 
 MOVES = (asked.TakeOff, asked.FlyTo, asked.Measure, asked.ReturnHome, asked.Land)
@@ -59,6 +60,9 @@ def check_rules(before: MissionState, given_: inputs.Input, after: MissionState,
         ordered = isinstance(command, commands.Resume | commands.Return | commands.Abort)
         timer = isinstance(given_, inputs.TimerExpired) and given_.name == "console_return"
         assert ordered or timer, f"{given_} moved a held vehicle"
+    if isinstance(command, commands.Resume) and given_.objections:  # type: ignore[union-attr]
+        assert not any(isinstance(e, (*VEHICLE, asked.ReleasePilotLatch)) for e in effects)
+        assert (after.phase, after.pilot_has_control) == (before.phase, before.pilot_has_control)
     if before.phase in TERMINAL:
         assert after.phase == before.phase
         assert after.outcome == before.outcome
@@ -263,6 +267,25 @@ def test_resume_after_the_pilot_releases_the_latch_first() -> None:
     released = effects.index(asked.ReleasePilotLatch())
     assert all(effects.index(move) > released for move in moves(effects))
     assert not walk.state.pilot_has_control
+
+
+@pytest.mark.parametrize("phase", PHASES)
+def test_resume_takes_nothing_from_a_pilot_who_has_not_given_back_in_whatever_phase(phase: str) -> None:
+    walk = walk_in(phase)
+    effects = walk.command(commands.Resume(), objections=(Veto("pilot", "still in POSCTL", "switch to HOLD"),))
+    assert not answer(effects).accepted
+    assert walk.state.phase == phase
+    if phase in ("hold", "manual"):
+        assert answer(effects) == asked.Reply("c" + str(walk._commands), False, "still in POSCTL", "switch to HOLD")
+
+
+def test_after_a_lost_link_the_failsafe_that_brings_the_vehicle_home_is_not_interrupted() -> None:
+    walk = Walk().to("flying")
+    walk.give(inputs.LinkDown("vehicle", "silent"))
+    effects = walk.give(inputs.LinkUp("vehicle", 12.0, going_home=True))
+    assert not any(isinstance(e, VEHICLE) for e in effects)
+    assert any("on its own way home" in r.event.text for r in walk.recorded if r.event.kind == "alert_raised")
+    assert moves(walk.command(commands.Resume())) or walk.state.phase == "planning"
 
 
 def test_the_pilot_in_control_is_never_commanded_not_even_by_hold_return_or_abort() -> None:

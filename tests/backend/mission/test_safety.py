@@ -15,6 +15,7 @@ from backend.mission.safety import (
     Situation,
     battery_to_return_percent,
     place_vetoes,
+    resume_vetoes,
     start_vetoes,
     turn_vetoes,
     vehicle_vetoes,
@@ -125,6 +126,17 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
     assert "30 m outside" in outside[0].detail
     drifted = situation(in_air=False, east=-50.0 - 0.5 * EDGE_TOLERANCE_M)
     assert start_vetoes(LIMITS, drifted) == ()
+
+
+def test_resuming_is_vetoed_until_the_pilot_has_given_back_unless_it_is_the_failsafe_that_was_found() -> None:
+    assert resume_vetoes(telemetry(controller="pilot", mode="HOLD")) == ()
+    assert resume_vetoes(telemetry()) == ()
+    held = telemetry(controller="pilot", mode="RETURN", held_by_pilot=True)
+    (veto,) = resume_vetoes(held)
+    assert "RETURN" in veto.detail
+    assert "HOLD" in veto.remedy
+    assert resume_vetoes(held, tolerated_mode="RETURN") == ()
+    assert resume_vetoes(held, tolerated_mode="LAND") == (veto,)
 
 
 def test_every_veto_says_how_to_mend_it() -> None:

@@ -113,8 +113,13 @@ async def test_the_pilot_silences_the_mission_until_an_operator_resumes(stage: S
     for command in (commands.Hold(), commands.Return(), commands.Override(place=Place(lat=50.0003, lon=7.0))):
         assert not (await order(stage, mission_id, command)).accepted
     await stage.clock.sleep(10)
-    assert stage.vehicle.commands == sent
     stage.vehicle.stuck = False
+    refused = await order(stage, mission_id, commands.Resume())
+    assert not refused.accepted
+    assert "POSCTL" in refused.reason
+    assert stage.vehicle.commands == sent
+    assert stage.vehicle.state.controller == "pilot"
+    stage.vehicle.give_back()
     assert (await order(stage, mission_id, commands.Resume())).accepted
     await stage.until(mission_id, "place_reached")
     assert len(stage.vehicle.commands) > len(sent)

@@ -117,6 +117,27 @@ def test_the_pilot_is_noticed_and_a_failsafe_found_after_a_restart_is_not_taken_
     assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
 
 
+def test_a_return_that_began_while_the_link_was_lost_is_the_failsafes_one_seen_to_begin_is_the_pilots(
+    scene: Scene,
+) -> None:
+    scene.vehicle.heard = False
+    assert isinstance(scene.tick()[0], inputs.LinkDown)
+    scene.state = Walk().to("hold").state
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    scene.vehicle.heard = True
+    (up,) = scene.tick()
+    assert isinstance(up, inputs.LinkUp)
+    assert up.going_home
+    assert scene.tick(3) == []
+    scene.see(mode="LAND")
+    assert isinstance(scene.tick()[0], inputs.PilotTookOver)
+    scene.vehicle.heard = False
+    scene.tick()
+    scene.see(controller="pilot", mode="POSCTL")
+    scene.vehicle.heard = True
+    assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
+
+
 def test_home_and_ground_are_told_when_they_are_reached(scene: Scene) -> None:
     scene.state = Walk().to("returning").state
     scene.see(position=FRAME.to_geo(50.0, 0.0))

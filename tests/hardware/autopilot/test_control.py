@@ -64,6 +64,24 @@ def test_after_release_the_mode_of_that_moment_is_accepted_and_another_latches_a
     assert flying(control, RETURN) is not None
 
 
+def test_it_is_held_until_an_airborne_vehicle_waits_for_orders_again() -> None:
+    control = latch()
+    control.command(frozenset({GUIDED}))
+    flying(control, GUIDED)
+    assert not control.held
+    flying(control, POSCTL)
+    assert control.held
+    flying(control, RETURN)
+    assert control.held
+    flying(control, HOLD)
+    assert not control.held
+    assert control.reason is not None
+    flying(control, POSCTL)
+    assert control.held
+    control.observe(POSCTL, armed=False, in_air=False)
+    assert not control.held
+
+
 def test_a_vehicle_found_in_the_air_is_nobodys_while_it_waits_and_the_pilots_when_it_does_not() -> None:
     waiting, flown = latch(), latch()
 

@@ -35,7 +35,7 @@ def test_wire_units_become_named_units() -> None:
     snapshot.fold("EXTENDED_SYS_STATE", {"landed_state": 2}, T0)
     snapshot.fold("HOME_POSITION", {"latitude": 473000000, "longitude": 85000000, "altitude": 488_000}, T0)
 
-    t = snapshot.telemetry(T0 + 1.0, True, "GUIDED", "nobody", "ardupilot")
+    t = snapshot.telemetry(T0 + 1.0, True, "GUIDED", "nobody", False, "ardupilot")
 
     assert t.position is not None
     assert (t.position.lat_deg, t.position.lon_deg) == pytest.approx((47.3977419, 8.5455938))
@@ -47,7 +47,7 @@ def test_wire_units_become_named_units() -> None:
 
 
 def test_what_was_never_heard_is_none() -> None:
-    t = Snapshot().telemetry(T0, False, None, "nobody", "unknown")
+    t = Snapshot().telemetry(T0, False, None, "nobody", False, "unknown")
 
     assert t.position is None
     assert t.heading_deg is None
