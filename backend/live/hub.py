@@ -98,7 +98,11 @@ def event_text(record: Recorded) -> str:
 
 @dataclass(eq=False, slots=True)
 class Viewer:
-    """One websocket. sending_since: loop time at which the send began that has not returned yet, None between sends."""
+    """One websocket. sending_since: loop time at which the send began that has not returned yet, None between sends.
+
+    sent_at: loop time at which a value of each slot was last sent. withheld: slots whose newest value waits for its
+    time (a lite viewer's); what is left out on purpose was not missed.
+    """
 
     mission_id: str | None
     lite: bool
@@ -107,6 +111,8 @@ class Viewer:
     seen: dict[SlotName, int] = field(default_factory=dict)
     dropped: int = 0
     sending_since: float | None = None
+    sent_at: dict[SlotName, float] = field(default_factory=dict)
+    withheld: set[SlotName] = field(default_factory=set)
 
 
 class Hub:
@@ -141,8 +147,8 @@ class Hub:
         message = SweepProgress(
             mission_id=mission_id,
             place_number=place_number,
-            heading_deg=heading_deg[::step],
-            power_db=power_db[::step],
+            heading_deg=[round(heading, 1) for heading in heading_deg[::step]],
+            power_db=[round(power, 1) for power in power_db[::step]],
             turned_deg=turned_deg,
         )
         self.feed(mission_id).progress.put(message.model_dump_json())

@@ -1,18 +1,25 @@
-"""The loop that serves one viewer: stored events first, then whatever is new, at the viewer's own pace."""
+"""The loop that serves one viewer: stored events first, then whatever is new, at the viewer's own pace.
+
+A lite viewer (a thin link) gets telemetry and the running sweep once a second only; events it gets as all others do.
+"""
 
 from __future__ import annotations
 
 import asyncio
 from collections import deque
 from collections.abc import Awaitable, Callable, Sequence
+from contextlib import suppress
 
 from backend.events import Recorded
-from backend.live.hub import BeliefFrame, Hub, SlotName, Viewer, event_text
+from backend.live.hub import BeliefFrame, Hub, Slot, SlotName, Viewer, event_text
 
 Send = Callable[[str | bytes], Awaitable[None]]
 
 EVENTS_AT_ONCE = 50
 """After so many events a look at the slots, so that telemetry lives while a long journal is caught up with."""
+
+LITE_PERIOD_S: dict[SlotName, float] = {"telemetry": 1.0, "sweep_progress": 1.0}
+"""Least time between two values of a slot for a lite viewer, in the wall's seconds."""
 
 SEND_S = 20.0
 
@@ -32,14 +39,35 @@ async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
             item = waiting.popleft()
             await _send(viewer, send, item if isinstance(item, str) else event_text(item))
             viewer.cursor += 1
+        patience_s = None
         for name, slot in hub.slots(viewer).items():
-            missed = slot.version - viewer.seen[name] - 1
-            if missed < 0:
+            missed = max(0, slot.version - viewer.seen[name] - 1)
+            if slot.version <= viewer.seen[name] and name not in viewer.withheld:
                 continue
             viewer.seen[name] = slot.version
-            if slot.value is not None:
+            viewer.withheld.discard(name)
+            early_s = _too_early_s(viewer, name, slot)
+            if early_s > 0:
+                viewer.withheld.add(name)
+                patience_s = min(early_s, patience_s or early_s)
+            elif slot.value is not None:
+                viewer.sent_at[name] = asyncio.get_running_loop().time()
                 await _send(viewer, send, _content(viewer, name, slot.value, missed))
         if not waiting:
+            await _woken(viewer, patience_s)
+
+
+def _too_early_s(viewer: Viewer, name: SlotName, slot: Slot) -> float:
+    """How long a lite viewer's next value must still wait."""
+    if not viewer.lite or name not in LITE_PERIOD_S or name not in viewer.sent_at or slot.value is None:
+        return 0.0
+    return viewer.sent_at[name] + LITE_PERIOD_S[name] - asyncio.get_running_loop().time()
+
+
+async def _woken(viewer: Viewer, patience_s: float | None) -> None:
+    """Returns when something is new, or when a value that had to wait is due."""
+    with suppress(TimeoutError):
+        async with asyncio.timeout(patience_s):
             await viewer.wake.wait()
 
 

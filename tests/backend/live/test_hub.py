@@ -241,6 +241,36 @@ async def test_the_running_sweep_is_thinned_and_forgotten_when_a_new_one_begins(
     assert late.of("sweep_progress") == []
 
 
+async def test_a_lite_viewer_gets_telemetry_once_a_second_the_last_value_too_and_every_event(bench, monkeypatch):
+    loop, began = asyncio.get_running_loop(), asyncio.get_running_loop().time()
+    full, lite = bench.watch(), bench.watch(lite=True)
+    for tick in range(26):
+        monkeypatch.setattr(loop, "time", lambda tick=tick: began + tick / 10)
+        bench.hub.telemetry(replace(TELEMETRY, battery_percent=float(tick)), 100.0 + tick / 10)
+        bench.happen(1)
+        await settle()
+    assert len(full.of("telemetry")) == 26
+    assert [m["battery_percent"] for m in lite.of("telemetry")] == [0.0, 10.0, 20.0]
+    monkeypatch.setattr(loop, "time", lambda: began + 3.1)
+    await settle()
+    assert [m["battery_percent"] for m in lite.of("telemetry")] == [0.0, 10.0, 20.0, 25.0]
+    assert {m["dropped"] for m in lite.of("telemetry")} == {0}, "what is left out on purpose was not missed"
+    assert lite.seqs() == full.seqs() == list(range(1, 27))
+
+
+async def test_a_lite_viewer_is_told_at_once_that_the_sweep_is_over(bench):
+    lite = bench.watch(lite=True)
+    bench.hub.sweep_progress("m", 1, [1.04], [-60.06], 10.0)
+    await settle()
+    bench.hub.sweep_progress("m", 1, [1.0, 2.0], [-60.0, -61.0], 20.0)
+    bench.stored.append(fact(1, event=SweepStarted(place_number=1, attempt=2)))
+    bench.hub.events(bench.stored)
+    bench.hub.status(STATUS)
+    await settle()
+    assert [(m["heading_deg"], m["power_db"]) for m in lite.of("sweep_progress")] == [([1.0], [-60.1])]
+    assert lite.seqs() == [1]
+
+
 async def test_a_viewer_that_stands_still_is_no_watcher_and_is_let_go(bench, monkeypatch):
     link, awake = bench.watch(), bench.watch()
     now = asyncio.get_running_loop().time()
