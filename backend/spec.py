@@ -147,6 +147,8 @@ class FlightSpec(Model):
     fence_margin_m: float = Field(default=60.0, ge=0, le=5000)
     no_fly: list[Area] = Field(default_factory=list)
     reserve_battery_percent: float = Field(default=25.0, ge=5, le=90)
+    battery_telemetry: bool = True
+    """False: the vehicle is known to report no charge, and nothing but its own failsafe looks after its battery."""
     automatic: bool = True
     """True: the next place is flown to at once; False: it waits for the operator's accept, veto or override."""
 

@@ -168,6 +168,7 @@ def localization(mission: MissionSpec, home: Place, home_amsl_m: float) -> Local
         maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
         home_amsl_m=home_amsl_m,
         reserve_percent=flight.reserve_battery_percent,
+        battery_telemetry=flight.battery_telemetry,
         speed_m_s=flight.speed_m_s,
         measurement_time_s=sensor.measurement_time_s,
     )

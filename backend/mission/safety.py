@@ -50,6 +50,7 @@ class Limits:
     maximum_altitude_relative_m: float
     home_amsl_m: float
     reserve_percent: float
+    battery_telemetry: bool
     speed_m_s: float
     measurement_time_s: float
 
@@ -113,11 +114,16 @@ def battery_vetoes(
 ) -> tuple[Veto, ...]:
     """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?
 
-    A vehicle that never reported a battery is not judged: preflight says so, the autopilot's own failsafe acts.
+    A charge that is not known is no charge, unless the mission says that the vehicle has no battery telemetry.
     """
     telemetry = situation.telemetry
     end = end or telemetry.position
-    if telemetry.battery_percent is None or end is None:
+    if telemetry.battery_percent is None:
+        if not limits.battery_telemetry:
+            return ()
+        remedy = "set up the battery monitor; or say in the mission that this vehicle reports no battery"
+        return (Veto("battery_unknown", "the vehicle does not report its battery", remedy),)
+    if end is None:
         return ()
     if telemetry.battery_at_s is not None and situation.now_s - telemetry.battery_at_s > BATTERY_STALE_S:
         return (Veto("battery_stale", "the battery's charge is no longer reported", "check the battery monitor"),)

@@ -10,7 +10,7 @@ from backend.mission import inputs
 from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
 from backend.mission.ports import TrackPoint
-from backend.mission.safety import NOMINAL_DRAIN_PERCENT_S, Limits, Situation, battery_vetoes
+from backend.mission.safety import BATTERY_STALE_S, NOMINAL_DRAIN_PERCENT_S, Limits, Situation, battery_vetoes
 from backend.mission.state import MissionState
 from hardware.readings import Telemetry
 
@@ -65,6 +65,7 @@ class Watch:
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
     _console_seen: bool = False
     _battery_told: bool = False
+    _battery_unheard_since: float | None = None
     _on_ground_since: float | None = None
     _tracked_at: float = -math.inf
     _ticked_at: float = math.inf
@@ -85,7 +86,7 @@ class Watch:
         self.drain.update(telemetry, now)
         self.notice_pilot("")
         self._links(telemetry, now)
-        self._battery(telemetry)
+        self._battery(telemetry, now)
         self._way_down(telemetry, now)
         self._track(telemetry, now)
 
@@ -121,10 +122,17 @@ class Watch:
             going_home = link == "vehicle" and self.tolerated_mode is not None
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 
-    def _battery(self, telemetry: Telemetry) -> None:
-        if not telemetry.in_air or telemetry.battery_percent is None:
+    def _battery(self, telemetry: Telemetry, now: float) -> None:
+        if not telemetry.in_air:
             return
         vetoes = battery_vetoes(self.limits, self.situation())
+        if telemetry.battery_percent is not None:
+            self._battery_unheard_since = None
+        elif vetoes:
+            if self._battery_unheard_since is None:
+                self._battery_unheard_since = now
+            if now - self._battery_unheard_since < BATTERY_STALE_S:
+                return
         if vetoes and not self._battery_told:
             self.give(inputs.BatteryLow(vetoes[0].detail))
         self._battery_told = bool(vetoes)

@@ -38,7 +38,7 @@ export const exampleSpec = (corners: LonLat[]): MissionSpec => ({
   localization: { expected_rmse_m: 10, minimum_places: 2, minimum_place_distance_m: 10, minimum_crossing_angle_deg: 20, maximum_bearings: 20 },
   flight: {
     altitude_relative_m: 40, minimum_altitude_relative_m: 10, maximum_altitude_relative_m: 120, speed_m_s: 7, fence: null,
-    fence_margin_m: 60, no_fly: [], reserve_battery_percent: 25, automatic: true,
+    fence_margin_m: 60, no_fly: [], reserve_battery_percent: 25, battery_telemetry: true, automatic: true,
   },
   timers: { console_lost_hold_s: 10, console_lost_return_s: 60, receiver_silent_s: 5, vehicle_command_s: 60 },
 }); // prettier-ignore

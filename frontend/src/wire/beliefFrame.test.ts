@@ -29,7 +29,7 @@ async function frame(encoding: string, nx: number, ny: number, body: Uint8Array)
 describe("decodeBeliefFrame", () => {
   it("gives back the float32 cells it was made of", async () => {
     const cells = Float32Array.from({ length: 6 }, (_, i) => i / 5);
-    const decoded = await decodeBeliefFrame(await frame("f32-shuffle-zlib", 3, 2, shuffle(cells)));
+    const decoded = decodeBeliefFrame(await frame("f32-shuffle-zlib", 3, 2, shuffle(cells)));
     expect([...decoded.cells]).toEqual([...cells]);
     expect(decoded).toMatchObject({ missionId: "m", bearings: 2, nx: 3, ny: 2, peak: 0.25 });
     expect(decoded.bounds[2]).toEqual([7.1, 50.1]);
@@ -38,19 +38,20 @@ describe("decodeBeliefFrame", () => {
   it("reads the thin encoding to within half a step of its logarithm", async () => {
     const wanted = [1, 0.5, 0.01, 1e-5];
     const bytes = Uint8Array.from([...wanted.map((p) => Math.round(255 * (1 + Math.log10(p) / 6))), 0, 0]);
-    const decoded = await decodeBeliefFrame(await frame("u8-log-zlib", 3, 2, bytes));
+    const decoded = decodeBeliefFrame(await frame("u8-log-zlib", 3, 2, bytes));
     wanted.forEach((p, i) => expect(Math.abs(Math.log10(decoded.cells[i]! / p))).toBeLessThan(6 / 255 / 2 + 1e-6));
     expect([...decoded.cells.slice(4)]).toEqual([0, 0]);
   });
 
   it("refuses a body that does not fill the grid", async () => {
-    const cells = shuffle(new Float32Array(5));
-    await expect(decodeBeliefFrame(await frame("f32-shuffle-zlib", 3, 2, cells))).rejects.toThrow(BrokenFrame);
+    const short = await frame("f32-shuffle-zlib", 3, 2, shuffle(new Float32Array(5)));
+    expect(() => decodeBeliefFrame(short)).toThrow(BrokenFrame);
   });
 
   it("refuses a frame that ends inside its header", async () => {
     const whole = await frame("u8-log-zlib", 1, 1, Uint8Array.of(9));
-    await expect(decodeBeliefFrame(whole.slice(0, 20))).rejects.toThrow(BrokenFrame);
-    await expect(decodeBeliefFrame(new ArrayBuffer(2))).rejects.toThrow(BrokenFrame);
+    expect(() => decodeBeliefFrame(whole.slice(0, 20))).toThrow(BrokenFrame);
+    expect(() => decodeBeliefFrame(whole.slice(0, -6))).toThrow(BrokenFrame);
+    expect(() => decodeBeliefFrame(new ArrayBuffer(2))).toThrow(BrokenFrame);
   });
 });

@@ -1,4 +1,6 @@
 // One belief as it travels: 4-byte little-endian header length, JSON header, body (see backend/wire/belief_frame.py).
+// Read in one go: a stream's turns through a busy event loop take longer than the inflating itself.
+import { unzlibSync } from "fflate";
 
 export type LonLat = [number, number];
 
@@ -28,9 +30,12 @@ interface Header {
 
 export class BrokenFrame extends Error {}
 
-async function inflate(body: Uint8Array): Promise<Uint8Array> {
-  const stream = new Blob([body as BlobPart]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+function inflate(body: Uint8Array): Uint8Array {
+  try {
+    return unzlibSync(body);
+  } catch (error) {
+    throw new BrokenFrame(`The belief frame cannot be inflated: ${error instanceof Error ? error.message : String(error)}.`);
+  }
 }
 
 function unshuffle(bytes: Uint8Array, count: number): Float32Array {
@@ -44,13 +49,13 @@ function unshuffle(bytes: Uint8Array, count: number): Float32Array {
 /** p = 10^(6 (u/255 - 1)), 0 stays 0: the inverse of u = round(255 (1 + log10(p) / 6)). */
 const LOG_LEVELS = Float32Array.from({ length: 256 }, (_, u) => (u === 0 ? 0 : 10 ** (6 * (u / 255 - 1))));
 
-export async function decodeBeliefFrame(buffer: ArrayBuffer): Promise<BeliefFrame> {
+export function decodeBeliefFrame(buffer: ArrayBuffer): BeliefFrame {
   if (buffer.byteLength < 4) throw new BrokenFrame("The belief frame is shorter than its own header length.");
   const headerLength = new DataView(buffer).getUint32(0, true);
   if (4 + headerLength > buffer.byteLength) throw new BrokenFrame("The belief frame ends inside its header.");
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, headerLength))) as Header;
   if (header.type !== "belief") throw new BrokenFrame(`A frame of type ${header.type} is not a belief.`);
-  const body = await inflate(new Uint8Array(buffer, 4 + headerLength));
+  const body = inflate(new Uint8Array(buffer, 4 + headerLength));
   const count = header.nx * header.ny;
   const expected = header.encoding === "f32-shuffle-zlib" ? 4 * count : count;
   if (body.length !== expected) {

@@ -861,6 +861,8 @@ export interface components {
             /** @default 25 */
             reserve_battery_percent: number;
             /** @default true */
+            battery_telemetry: boolean;
+            /** @default true */
             automatic: boolean;
         };
         /** @description How and where the vehicle may fly. `fence` None: the target area with `fence_margin_m` around it. */
@@ -879,6 +881,8 @@ export interface components {
             no_fly?: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
             /** @default 25 */
             reserve_battery_percent: number;
+            /** @default true */
+            battery_telemetry: boolean;
             /** @default true */
             automatic: boolean;
         };

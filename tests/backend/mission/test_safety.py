@@ -33,6 +33,7 @@ LIMITS = Limits(
     maximum_altitude_relative_m=120.0,
     home_amsl_m=100.0,
     reserve_percent=25.0,
+    battery_telemetry=True,
     speed_m_s=7.0,
     measurement_time_s=30.0,
 )
@@ -93,8 +94,15 @@ def test_the_pilot_a_lost_link_and_an_old_position_veto_everything() -> None:
             assert rule in [v.rule for v in vetoes]
 
 
-def test_a_battery_that_fell_silent_vetoes_one_that_never_spoke_does_not() -> None:
-    assert turn_vetoes(LIMITS, situation(battery_percent=None)) == ()
+def test_a_battery_that_is_not_known_vetoes_unless_the_mission_says_that_it_never_is() -> None:
+    unknown = situation(battery_percent=None)
+    assert [v.rule for v in turn_vetoes(LIMITS, unknown)] == ["battery_unknown"]
+    assert [v.rule for v in start_vetoes(LIMITS, situation(battery_percent=None, in_air=False))] == ["battery_unknown"]
+    assert rules(50, 100, unknown) == ["battery_unknown"]
+    assert turn_vetoes(replace(LIMITS, battery_telemetry=False), unknown) == ()
+
+
+def test_a_battery_that_fell_silent_vetoes() -> None:
     assert turn_vetoes(LIMITS, situation(battery_at_s=990.0)) == ()
     assert [v.rule for v in turn_vetoes(LIMITS, situation(battery_at_s=960.0))] == ["battery_stale"]
 

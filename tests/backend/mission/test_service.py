@@ -283,6 +283,16 @@ async def test_facts_wait_for_a_database_that_is_away_and_nothing_is_lost_or_dou
     )
 
 
+async def test_a_vehicle_that_reports_no_battery_is_not_started_unless_the_mission_says_so(stage: Stage) -> None:
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=None)
+    mission_id = await stage.service.create(spec(), "anna")
+    assert not (await stage.service.preflight(mission_id)).passed
+    refused = await order(stage, mission_id, commands.Start())
+    assert "does not report its battery" in refused.reason
+    knowing = await stage.service.create(spec(battery_telemetry=False), "anna")
+    assert (await order(stage, knowing, commands.Start())).accepted
+
+
 async def test_without_a_vehicle_the_start_is_refused_with_a_remedy() -> None:
     stage = Stage()
     stage.vehicle.heard = False

@@ -108,6 +108,15 @@ def test_the_battery_is_told_once_until_it_recovers(scene: Scene) -> None:
     assert scene.tick(2) == []
 
 
+def test_a_battery_that_stays_unknown_in_the_air_sends_the_vehicle_home(scene: Scene) -> None:
+    scene.see(battery_percent=None)
+    assert scene.tick(100) == []
+    (unknown,) = scene.tick(100)
+    assert isinstance(unknown, inputs.BatteryLow)
+    assert "does not report" in unknown.detail
+    assert scene.tick(50) == []
+
+
 def test_the_pilot_is_noticed_and_a_failsafe_found_after_a_restart_is_not_taken_for_one(scene: Scene) -> None:
     scene.state = Walk().to("hold").state
     scene.watch.tolerated_mode = "RETURN"
