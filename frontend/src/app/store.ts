@@ -100,7 +100,11 @@ effect(() => {
   beliefs.clear();
 });
 
+/** In flight the belief follows its event on the same socket: only when it does not is it asked for. */
+const PUSHED_WITHIN_MS = 1_500;
+
 const liveBelief = computed(() => live.value.belief);
+const beliefIsPushed = computed(() => cursor.value === null && source.value?.kind === "live" && inFlight(liveMission.value.phase));
 const beliefWanted = computed(() => (mission.value.spec ? (mission.value.belief?.fact.bearings ?? 0) : null));
 
 effect(() => {
@@ -117,16 +121,16 @@ effect(() => {
     belief.value = known;
     return;
   }
-  void from.belief(id, wanted).then(
-    (frame) => {
-      if (frame) beliefs.set(wanted, frame);
-      if (beliefWanted.peek() === wanted) belief.value = frame;
-    },
-    () => {
-      if (beliefWanted.peek() === wanted) belief.value = null;
-    },
-  );
+  const timer = setTimeout(() => void ask(from, id, wanted), beliefIsPushed.value ? PUSHED_WITHIN_MS : 0);
+  return () => clearTimeout(timer);
 });
+
+async function ask(from: Source, id: string, wanted: number): Promise<void> {
+  const frame = await from.belief(id, wanted).catch(() => null);
+  if (source.peek() !== from || beliefWanted.peek() !== wanted) return;
+  if (frame) beliefs.set(wanted, frame);
+  belief.value = frame;
+}
 
 const status = computed(() => live.value.status);
 const statusMission = computed(() => status.value?.value.mission_id ?? null);
@@ -156,12 +160,13 @@ export const shownTimeMs = computed<number>(() => {
   return reviewTimeMs.value ?? (ended ? Date.parse(ended.at) : serverNowMs.value);
 });
 
-/** Newest-wins messages are folded at most once a frame; events and link changes at once. */
+/** Messages are folded at most once a frame; a belief at once, so that the map draws it in the very next frame. */
 let pending: SourceMessage[] = [];
 let scheduled = false;
 
 function flush(): void {
   scheduled = false;
+  if (pending.length === 0) return;
   const messages = pending;
   pending = [];
   const time = performance.now();
@@ -170,6 +175,7 @@ function flush(): void {
 
 function receive(message: SourceMessage): void {
   pending.push(message);
+  if (message.type === "belief") return flush();
   if (scheduled) return;
   scheduled = true;
   if (document.hidden) setTimeout(flush, 50);

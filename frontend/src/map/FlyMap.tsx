@@ -25,10 +25,10 @@ import { palettes } from "./palette";
 const hidden = signal<ReadonlySet<Switch>>(new Set());
 const follow = signal(false);
 
-/** Times of the last belief: when it came and when it was painted, for the measurement in tests. */
+/** Of the last belief drawn: when the map was given its picture and when it had drawn it, for tests and measurements. */
 declare global {
   interface Window {
-    crossfixBeliefPainted?: { bearings: number; atMs: number };
+    crossfixBeliefPainted?: { bearings: number; givenMs: number; atMs: number };
   }
 }
 
@@ -36,38 +36,27 @@ function put(map: GlMap, name: SourceName, data: Features): void {
   map.getSource<GeoJSONSource>(name)?.setData(data);
 }
 
-function beliefBitmap(): HTMLCanvasElement | null {
-  const frame = belief.value;
-  if (!frame) return null;
-  const canvas = document.createElement("canvas");
-  canvas.width = frame.nx;
-  canvas.height = frame.ny;
-  canvas.getContext("2d")!.putImageData(new ImageData(beliefPixels(frame), frame.nx, frame.ny), 0, 0);
-  return canvas;
-}
-
 function paintBelief(map: GlMap): void {
   const frame = belief.value;
-  const image = beliefBitmap();
-  const shown = map.getSource<ImageSource>("belief");
-  if (!frame || !image) {
-    if (shown) map.setLayoutProperty("belief", "visibility", "none");
-    return;
-  }
-  const coordinates = imageCorners(frame);
-  if (!shown) {
-    map.addSource("belief", { type: "image", url: image.toDataURL(), coordinates });
-    map.addLayer(
-      { id: "belief", type: "raster", source: "belief", paint: { "raster-fade-duration": 0, "raster-resampling": "linear" } },
-      "no-fly",
-    );
-  } else {
-    shown.updateImage({ image, coordinates });
-  }
-  map.setLayoutProperty("belief", "visibility", hidden.value.has("belief") ? "none" : "visible");
+  const visible = frame !== null && !hidden.value.has("belief");
+  map.setLayoutProperty("belief", "visibility", visible ? "visible" : "none");
+  if (!frame) return;
+  const image = new ImageData(beliefPixels(frame), frame.nx, frame.ny);
+  map.getSource<ImageSource>("belief")!.updateImage({ image, coordinates: imageCorners(frame) });
+  const givenMs = performance.now();
   map.once("render", () => {
-    window.crossfixBeliefPainted = { bearings: frame.bearings, atMs: performance.now() };
+    window.crossfixBeliefPainted = { bearings: frame.bearings, givenMs, atMs: performance.now() };
   });
+}
+
+/** Empty at first; every belief is put into it. */
+function addBelief(map: GlMap): void {
+  const anywhere = imageCorners({ bounds: [[0, 0], [1, 0], [1, 1], [0, 1]] });
+  map.addSource("belief", { type: "image", coordinates: anywhere });
+  map.addLayer(
+    { id: "belief", type: "raster", source: "belief", paint: { "raster-fade-duration": 0, "raster-resampling": "linear" } },
+    "no-fly",
+  );
 }
 
 function vehicleElement(): HTMLElement {
@@ -272,6 +261,7 @@ export function FlyMap() {
     created.on("load", () => {
       for (const name of SOURCES) created.addSource(name, { type: "geojson", data: collection([]) });
       for (const layer of missionLayers(palettes[theme])) created.addLayer(layer);
+      addBelief(created);
       unbind = bind(created);
       void addBasemap(created, theme === "indoor" ? "dark" : "light", "no-fly").catch(() => undefined);
       box.current?.setAttribute("data-ready", "true");

@@ -24,24 +24,34 @@ const STANDS_OUT = 6;
 
 /** Factor from `cells` (relative to the peak) to the share that is coloured: about a sixth everywhere when nothing is known. */
 export function contrast(cells: Float32Array): number {
-  const sum = cells.reduce((total, cell) => total + cell, 0);
+  let sum = 0;
+  for (let i = 0; i < cells.length; i++) sum += cells[i]!;
   return 1 / Math.max(1, (STANDS_OUT * sum) / cells.length);
 }
 
+const LEVELS = 1024;
+
+/** RGBA by the square root of the share: what is faint has the finer steps. */
+const COLOURS = Uint8ClampedArray.from({ length: 4 * LEVELS }, (_, i) => {
+  const root = Math.floor(i / 4) / (LEVELS - 1);
+  return [...cividis(root), 255 * opacity(root * root)][i % 4]!;
+});
+
 /** RGBA bytes, row 0 in the north (as pictures are); cells come from the south. */
 export function beliefPixels({ nx, ny, cells }: Pick<BeliefFrame, "nx" | "ny" | "cells">): Uint8ClampedArray<ArrayBuffer> {
-  const pixels = new Uint8ClampedArray(4 * nx * ny);
+  const picture = new Uint8ClampedArray(4 * nx * ny);
+  const pixels = new Uint32Array(picture.buffer);
+  const colours = new Uint32Array(COLOURS.buffer);
   const factor = contrast(cells);
   for (let row = 0; row < ny; row++) {
     for (let column = 0; column < nx; column++) {
       const share = factor * cells[(ny - 1 - row) * nx + column]!;
       if (!(share > 0)) continue;
-      const [r, g, b] = cividis(Math.sqrt(share));
-      pixels.set([r, g, b, 255 * opacity(share)], 4 * (row * nx + column));
+      pixels[row * nx + column] = colours[Math.min(LEVELS - 1, Math.ceil(Math.sqrt(share) * (LEVELS - 1)))]!;
     }
   }
-  return pixels;
+  return picture;
 }
 
 /** NW, NE, SE, SW: the order in which MapLibre wants an image's corners. */
-export const imageCorners = ({ bounds: [sw, se, ne, nw] }: BeliefFrame): [LonLat, LonLat, LonLat, LonLat] => [nw, ne, se, sw];
+export const imageCorners = ({ bounds: [sw, se, ne, nw] }: Pick<BeliefFrame, "bounds">): [LonLat, LonLat, LonLat, LonLat] => [nw, ne, se, sw];

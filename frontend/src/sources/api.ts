@@ -117,7 +117,7 @@ export async function events(id: string): Promise<Recorded[]> {
 export async function belief(id: string, bearings: number): Promise<BeliefFrame | null> {
   try {
     const response = await request(`${missionPath(id)}/beliefs/${bearings}`);
-    return await decodeBeliefFrame(await response.arrayBuffer());
+    return decodeBeliefFrame(await response.arrayBuffer());
   } catch (error) {
     if (error instanceof RequestFailed && error.problem.status === 404) return null;
     throw error;

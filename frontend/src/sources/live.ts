@@ -67,9 +67,11 @@ export class LiveSource implements Source {
     socket.onmessage = (received: MessageEvent<string | ArrayBuffer>) => {
       this.attempt = 0;
       this.watchSilence(socket);
-      this.receive(received.data).catch((error: unknown) => {
+      try {
+        this.receive(received.data);
+      } catch (error) {
         this.listener({ type: "unreadable", detail: error instanceof Error ? error.message : String(error) });
-      });
+      }
     };
     socket.onclose = () => {
       if (this.socket === socket) this.reconnect();
@@ -110,9 +112,9 @@ export class LiveSource implements Source {
     this.attempt += 1;
   }
 
-  private async receive(data: string | ArrayBuffer): Promise<void> {
+  private receive(data: string | ArrayBuffer): void {
     if (typeof data !== "string") {
-      this.listener({ type: "belief", frame: await decodeBeliefFrame(data) });
+      this.listener({ type: "belief", frame: decodeBeliefFrame(data) });
       return;
     }
     const message = JSON.parse(data) as LiveMessage;
