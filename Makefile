@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench long fuzz load codegen compare-direction-finders setup setup-dev build browser unit system clean help
+.PHONY: run test check bench long fuzz load page-load codegen compare-direction-finders setup setup-dev build browser unit system clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
@@ -67,6 +67,12 @@ fuzz: setup-dev build ## 100,000 odd requests and messages against a running ser
 
 load: setup-dev build ## a hundred viewers, five of them stalled: latency and memory over ten minutes
 	$(BIN)/python -m tests.benchmarks.live_load fanout
+
+page-load: setup-dev build browser ## the page: belief on screen, frames at 20 Hz, memory in replay, bytes a minute; an hour and a half
+	$(BIN)/python -m tests.benchmarks.page_belief --bearings 20
+	$(BIN)/python -m tests.benchmarks.page_frames --minutes 10
+	$(BIN)/python -m tests.benchmarks.page_bytes --minutes 5
+	$(BIN)/python -m tests.benchmarks.page_replay --minutes 60
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json

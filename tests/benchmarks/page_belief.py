@@ -1,0 +1,141 @@
+"""From a bearing to its belief on the screen, stage by stage: one JSON object on standard output.
+
+    python -m tests.benchmarks.page_belief --bearings 12 --speedup 3
+
+A mission is flown and its page watched. Times in ms of the wall: `server` from the arrival of the bearing's event in
+the browser to that of the belief's event, `frame` from there to the belief's own arrival, `page` from there until the
+map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is their sum. `work_ms`
+is what the server's parts need of one thread when nothing else runs in it: comparable between machines under load.
+Without a graphics card the processor draws: `drawn` is then an upper bound.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from backend.api.suggestion import suggested_mission
+from backend.events import BearingMeasured
+from backend.mission.localization import localization
+from backend.spec import Place
+from backend.wire.belief_frame import encode_belief
+from tests.benchmarks.watched_page import share, spread, watched_page
+from tests.browser.conftest import serving
+from tests.browser.screen import Screen
+
+WATCH = """
+window.stages = [];
+let open = null;
+const Plain = window.WebSocket;
+window.WebSocket = class extends Plain {
+  constructor(...all) {
+    super(...all);
+    this.addEventListener('message', ({data}) => {
+      const at = performance.now();
+      if (typeof data !== 'string') { if (open && open.updated) open.arrived = at; return; }
+      if (data.includes('"kind":"bearing_measured"')) open = {bearing: at};
+      if (open && data.includes('"kind":"belief_updated"')) open.updated = at;
+    });
+  }
+};
+let last;
+Object.defineProperty(window, 'crossfixBeliefPainted', {
+  get: () => last,
+  set: (painted) => {
+    last = painted;
+    if (open && open.arrived && painted.givenMs >= open.arrived) {
+      stages.push({...open, given: painted.givenMs, drawn: painted.atMs});
+      open = null;
+    }
+  },
+});
+"""
+
+STAGES = (
+    ("server", "bearing", "updated"),
+    ("frame", "updated", "arrived"),
+    ("page", "arrived", "given"),
+    ("drawn", "given", "drawn"),
+    ("whole", "bearing", "drawn"),
+)
+
+
+def of_one_thread(work: Callable[[], Any], times: int = 9) -> float:
+    taken = []
+    for _ in range(times):
+        began = time.thread_time()
+        work()
+        taken.append(1e3 * (time.thread_time() - began))
+    return share(taken, 0.5) or 0.0
+
+
+def own_work() -> dict[str, dict[str, float | None]]:
+    """Thread milliseconds of the server's parts after one to six bearings of a typical search."""
+    home = Place(lat=50.73, lon=7.1)
+    task = localization(suggested_mission(home), home, 60.0)
+    noise = np.random.default_rng(1)
+    measured: list[BearingMeasured] = []
+    found: dict[str, list[float]] = {"update": [], "encode": [], "encode_lite": []}
+    for number, (x, y) in enumerate(((0, 0), (100, 50), (-60, 120), (90, 150), (0, 100), (60, 190)), start=1):
+        bearing = (90 - math.degrees(math.atan2(150.0 - y, 40.0 - x)) + noise.normal(0, 5)) % 360
+        measured.append(
+            BearingMeasured(
+                bearing_id=f"b{number}",
+                sweep_id=f"s{number}",
+                place_number=number,
+                place=task.place(x, y),
+                altitude_amsl_m=100.0,
+                bearing_deg=bearing,
+                sigma_deg=5.0,
+                quality=0.9,
+                peaks=[],
+                snr_db=20.0,
+                drift_m=0.0,
+                binned_db=[-60.0] * 180,
+                fitted_db=[-60.0] * 180,
+            )
+        )
+        _, belief = task.belief_fact(measured)
+        corners = task.corners_lon_lat(belief)
+        found["update"].append(of_one_thread(lambda: task.belief_fact(measured)))
+        for name, lite in (("encode", False), ("encode_lite", True)):
+            work = lambda lite=lite: encode_belief("m", 1, belief.density, corners, lite=lite)  # noqa: B023, E731
+            found[name].append(of_one_thread(work))
+    return {name: {"median": share(values, 0.5), "worst": share(values, 1.0)} for name, values in found.items()}
+
+
+def fly(bearings: int, speedup: float) -> list[dict[str, float]]:
+    with tempfile.TemporaryDirectory() as folder, serving(Path(folder), speedup) as server, watched_page(WATCH) as page:
+        page.goto(server.url)
+        screen = Screen(page, server.url)
+        screen.fly(server.draft(expected_rmse_m=0.1, maximum_bearings=200))
+        screen.map_ready()
+        until = time.monotonic() + 60 + 90 * bearings
+        while len(screen.evaluate("stages")) < bearings and time.monotonic() < until:
+            page.wait_for_timeout(1000)
+        stages = screen.evaluate("stages")
+        screen.part("abort").click()
+        page.wait_for_timeout(1000)
+    return stages
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--bearings", type=int, default=12)
+    parser.add_argument("--speedup", type=float, default=3.0)
+    arguments = parser.parse_args()
+    seen = fly(arguments.bearings, arguments.speedup)
+    stages = {name: spread([one[end] - one[begin] for one in seen]) for name, begin, end in STAGES}
+    print(json.dumps({"stages_ms": stages, "work_ms": own_work()}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""Bytes a minute that a viewer is sent, normal and lite beside each other on one flight: one JSON object.
+
+    python -m tests.benchmarks.page_bytes --minutes 3 --speedup 1
+
+By kind of message, kilobytes (1000 bytes) of the websocket's content a minute of the wall. Both viewers must have got
+the same events.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+from uuid import uuid4
+
+import httpx
+import websockets
+
+from tests.browser.conftest import serving
+from tests.browser.served import Server
+
+
+def start(server: Server) -> str:
+    mission_id, base = server.draft(expected_rmse_m=0.1, maximum_bearings=200), server.url.rstrip("/")
+    while not httpx.post(f"{base}/api/missions/{mission_id}/preflight", timeout=30).json()["passed"]:
+        time.sleep(0.5)
+    command(server, mission_id, "start")
+    return mission_id
+
+
+def command(server: Server, mission_id: str, kind: str) -> None:
+    body = {"command_id": str(uuid4()), "command": {"kind": kind}}
+    httpx.post(f"{server.url.rstrip('/')}/api/missions/{mission_id}/commands", json=body, timeout=30).raise_for_status()
+
+
+async def watch(server: Server, mission_id: str, lite: bool, seconds: float) -> tuple[Counter[str], list[int]]:
+    """Bytes by kind, and the numbers of the events."""
+    counted: Counter[str] = Counter()
+    events: list[int] = []
+    address = server.url.replace("http", "ws").rstrip("/") + f"/api/live?mission={mission_id}&lite={int(lite)}"
+    async with websockets.connect(address, max_size=None, compression=None) as socket:
+        try:
+            async with asyncio.timeout(seconds):
+                async for content in socket:
+                    if isinstance(content, bytes):
+                        counted["belief"] += len(content)
+                        continue
+                    message = json.loads(content)
+                    kind = message["type"]
+                    if kind == "event":
+                        events.append(message["recorded"]["seq"])
+                        kind = f"event {message['recorded']['event']['kind']}"
+                    counted[kind] += len(content.encode())
+        except TimeoutError:
+            pass
+    return counted, events
+
+
+async def both(server: Server, mission_id: str, seconds: float) -> dict[str, object]:
+    (normal, events), (lite, thin) = await asyncio.gather(
+        watch(server, mission_id, False, seconds), watch(server, mission_id, True, seconds)
+    )
+    shared = min(len(events), len(thin))
+    assert events[:shared] == thin[:shared] == list(range(1, shared + 1)), "a viewer missed an event"
+
+    def told(counted: Counter[str]) -> dict[str, float]:
+        a_minute = {kind: round(60 * n / seconds / 1000, 1) for kind, n in counted.most_common()}
+        return {"all": round(sum(a_minute.values()), 1), **a_minute}
+
+    return {"kilobytes_a_minute": {"normal": told(normal), "lite": told(lite)}, "events": [len(events), len(thin)]}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--minutes", type=float, default=3.0)
+    parser.add_argument("--speedup", type=float, default=1.0)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, serving(Path(folder), arguments.speedup) as server:
+        mission_id = start(server)
+        print(json.dumps(asyncio.run(both(server, mission_id, 60 * arguments.minutes))))
+        command(server, mission_id, "abort")
+
+
+if __name__ == "__main__":
+    main()
