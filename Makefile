@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench long fuzz load page-load codegen compare-direction-finders setup setup-dev build browser unit system clean help
+.PHONY: run test check bench long fuzz load page-load codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
@@ -42,7 +42,8 @@ frontend/dist/.built: frontend/node_modules/.installed $(PAGE_SOURCES)
 browser: ## Debian's Chromium, when there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
-test: check unit system ## everything CI runs
+test: check unit ## everything CI runs
+	$(MAKE) -j2 -Otarget system stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, page unit tests
 	$(BIN)/ruff check .
@@ -56,8 +57,11 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 unit: setup-dev ## tests without a vehicle or a browser
 	$(BIN)/pytest -n 2 -m "not system and not browser and not long"
 
-system: setup-dev build browser ## whole missions over real sockets, and the page in Chromium
-	$(BIN)/pytest -m "system or browser"
+system: setup-dev build ## whole missions over real sockets
+	$(BIN)/pytest -m "system and not browser" --durations 8
+
+stories: setup-dev build browser ## what a user does on the page, in Chromium; a process of its own: it keeps an event loop
+	$(BIN)/pytest -m browser --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables computed anew: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
