@@ -12,13 +12,18 @@ from backend.cli.edge import parse_place, print_json, remark, stop
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, PatternError, load_pattern
-from hardware.direction_finding.recordings import RecordedSweep, read_recording
+from hardware.direction_finding.recordings import RecordedSweep
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import BearingReading
+from hardware.sdr.pulses import PulseSetting
+from hardware.sdr.rotation import IqReading, read_sweeps
+from hardware.sdr.spectrum import SpectrumError
 
 
 def sweep(
-    file: Annotated[Path, typer.Argument(help="UAV-RT rotation file, or CSV with columns heading_deg, power_db.")],
+    file: Annotated[
+        Path, typer.Argument(help="UAV-RT rotation file, CSV with columns heading_deg, power_db, or SigMF.")
+    ],
     pattern: Annotated[
         Path | None,
         typer.Option(
@@ -34,6 +39,20 @@ def sweep(
     ] = None,
     tag: Annotated[str | None, typer.Option(help="Use this tag's pulses. Default: the tag heard most.")] = None,
     at: Annotated[str | None, typer.Option(help="LAT,LON of the sweep when the file does not tell.")] = None,
+    headings: Annotated[
+        Path | None,
+        typer.Option(
+            help="For SigMF: CSV of time, heading_deg[, lat, lon] of the nose. Times: seconds since the recording "
+            "began, UTC epoch seconds or ISO 8601. Default: antenna:azimuth_angle of the recording's annotations."
+        ),
+    ] = None,
+    frequency_hz: Annotated[
+        float | None, typer.Option(min=1.0, help="For SigMF: the emitter's frequency. Default: the strongest signal's.")
+    ] = None,
+    pulse_width_s: Annotated[float | None, typer.Option(help="For SigMF of a pulsed tag: length of a pulse.")] = None,
+    pulse_period_s: Annotated[
+        float | None, typer.Option(help="For SigMF of a pulsed tag: from pulse to pulse.")
+    ] = None,
     minimum_quality: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Sweeps less similar to the antenna pattern are rejected.")
     ] = MINIMUM_QUALITY,
@@ -43,13 +62,15 @@ def sweep(
 ) -> None:
     """Turn recorded sweeps (power against heading) into bearings in degrees clockwise from true north.
 
-    Example: crossfix sweep rotation.csv --pattern my_yagi.json --json
+    Example: crossfix sweep rotation.csv --pattern my_yagi.json --json. IQ: crossfix sweep turn.sigmf-meta --headings
+    nose.csv --json
     """
     try:
         antenna = load_pattern(pattern or SMALL_YAGI)
-        recording = read_recording(file, tag)
+        iq = IqReading(headings, frequency_hz, _pulses(pulse_width_s, pulse_period_s))
+        recording = read_sweeps(file, tag, iq)
         place = parse_place(at) if at is not None else None
-    except (RecordingError, PatternError, ValueError) as error:
+    except (RecordingError, PatternError, SpectrumError, ValueError) as error:
         stop(error)
     for line in recording.remarks:
         remark(line)
@@ -65,8 +86,19 @@ def sweep(
             typer.echo(_sentence(answer))
 
 
+def _pulses(width_s: float | None, period_s: float | None) -> PulseSetting | None:
+    """Raises ValueError when only one is given, SpectrumError when they cannot be."""
+    if width_s is None and period_s is None:
+        return None
+    if width_s is None or period_s is None:
+        raise ValueError("a pulsed tag needs both --pulse-width-s and --pulse-period-s")
+    return PulseSetting(width_s, period_s)
+
+
 def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset: float | None) -> AntennaPattern:
     """The pattern with the offset that holds for this sweep: the user's, else the file's, else the pattern's."""
+    if recorded.of_antenna:
+        return dataclasses.replace(antenna, offset_to_nose_deg=offset or 0.0)
     stated = offset if offset is not None else (recorded.antenna_offset_deg or None)
     return antenna if stated is None else dataclasses.replace(antenna, offset_to_nose_deg=stated)
 

@@ -20,11 +20,13 @@ _UNKNOWN_PLACE = GeoPoint(0.0, 0.0)
 @dataclass(frozen=True, slots=True)
 class RecordedSweep:
     """A sweep from a file. antenna_offset_deg: as the file states it (None: it does not). place_known: whether the
-    file told where it was taken (else `sweep.position` means nothing)."""
+    file told where it was taken (else `sweep.position` means nothing). of_antenna: `sweep.heading_deg` is the direction
+    of the antenna's front already, not the nose's."""
 
     sweep: Sweep
     antenna_offset_deg: float | None
     place_known: bool
+    of_antenna: bool = False
 
 
 @dataclass(frozen=True, slots=True)

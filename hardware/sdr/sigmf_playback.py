@@ -1,18 +1,15 @@
-"""SigMF recordings as an IQ source, and writing them."""
+"""SigMF recordings as an IQ source."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator
-from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
-import sigmf
-from numpy.typing import NDArray
-
+from hardware.direction_finding.table_file import RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.ports import Clock, ReceiverError
+from hardware.sdr.sigmf_file import load_sigmf
 
 
 class SigmfSource:
@@ -25,25 +22,12 @@ class SigmfSource:
         self._block_s = block_s
         self._closed = False
         try:
-            recording = sigmf.fromfile(str(self._path))
-            if not isinstance(recording, sigmf.SigMFFile):
-                raise ReceiverError(f"{self._path}: is a collection of recordings; give one recording")
-            samples = recording.read_samples()
-        except (OSError, ValueError, KeyError, sigmf.error.SigMFError) as error:
-            raise ReceiverError(f"{self._path}: is no readable SigMF recording ({error})") from error
-        rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
-        captures = recording.get_captures()
-        centre = captures[0].get(sigmf.FREQUENCY_KEY) if captures else None
-        if not rate or not rate > 0:
-            raise ReceiverError(f"{self._path}: the recording states no sample rate; add {sigmf.SAMPLE_RATE_KEY}")
-        if centre is None:
-            raise ReceiverError(f"{self._path}: the recording states no centre frequency; add {sigmf.FREQUENCY_KEY}")
-        if not np.iscomplexobj(samples):
-            raise ReceiverError(f"{self._path}: holds real samples; a bearing needs complex IQ")
-        self._samples: NDArray[np.complex64] = np.asarray(samples, dtype=np.complex64).ravel()
-        self._rate, self._centre = float(rate), float(centre)
-        stamp = captures[0].get(sigmf.DATETIME_KEY)
-        self._start_s = 0.0 if stamp is None else datetime.fromisoformat(stamp).timestamp()
+            recording = load_sigmf(path)
+        except RecordingError as error:
+            raise ReceiverError(str(error)) from error
+        self._samples = recording.samples
+        self._rate, self._centre = recording.sample_rate_hz, recording.centre_hz
+        self._start_s = recording.start_s
 
     @property
     def sample_rate_hz(self) -> float:
@@ -85,25 +69,3 @@ class SigmfSource:
 
     async def close(self) -> None:
         self._closed = True
-
-
-def write_sigmf(
-    path: Path | str, samples: NDArray[np.complex64], sample_rate_hz: float, centre_hz: float, start_s: float
-) -> Path:
-    """Write `path` (.sigmf-meta and .sigmf-data beside it); returns the meta file's path."""
-    base = Path(path).with_suffix("")
-    data = base.with_suffix(".sigmf-data")
-    samples.astype(np.complex64).tofile(data)
-    meta = sigmf.SigMFFile(
-        data_file=str(data),
-        global_info={
-            sigmf.DATATYPE_KEY: "cf32_le",
-            sigmf.SAMPLE_RATE_KEY: sample_rate_hz,
-            sigmf.DESCRIPTION_KEY: "IQ recorded by crossfix",
-        },
-    )
-    stamp = datetime.fromtimestamp(start_s, UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
-    meta.add_capture(0, metadata={sigmf.FREQUENCY_KEY: centre_hz, sigmf.DATETIME_KEY: stamp})
-    target = base.with_suffix(".sigmf-meta")
-    meta.tofile(str(target))
-    return target

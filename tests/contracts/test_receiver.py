@@ -18,7 +18,8 @@ from hardware.ports import Receiver, ReceiverError
 from hardware.readings import GeoPoint, PowerSample, Sweep, Telemetry
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.recorded import RecordedReceiver
-from hardware.sdr.sigmf_playback import SigmfSource, write_sigmf
+from hardware.sdr.sigmf_file import write_sigmf
+from hardware.sdr.sigmf_playback import SigmfSource
 from hardware.sim.iq import SimulatedIq
 from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World

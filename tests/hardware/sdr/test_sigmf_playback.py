@@ -14,7 +14,8 @@ from hardware.direction_finding.sweep import assemble_sweep
 from hardware.ports import ReceiverError
 from hardware.readings import GeoPoint, HeadingSample
 from hardware.sdr.receiver import IqReceiver
-from hardware.sdr.sigmf_playback import SigmfSource, write_sigmf
+from hardware.sdr.sigmf_file import write_sigmf
+from hardware.sdr.sigmf_playback import SigmfSource
 
 RATE_HZ = 24_000.0
 CENTRE_HZ = 868_300_000.0

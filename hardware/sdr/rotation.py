@@ -1,0 +1,174 @@
+"""Recorded sweeps of every kind; IQ of a turn is made into power here, its headings come from rotation_headings.py."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from hardware.direction_finding.recordings import RecordedSweep, Recording, read_recording
+from hardware.direction_finding.sweep import SweepError, assemble_sweep
+from hardware.direction_finding.table_file import RecordingError
+from hardware.iq import IqBlock, clipped_at_full_scale
+from hardware.readings import GeoPoint, PowerSample
+from hardware.sdr.pulses import PulseMeter, PulseSetting
+from hardware.sdr.rotation_headings import annotated_headings, apart, headings_from
+from hardware.sdr.sigmf_file import SigmfRecording, is_sigmf, load_sigmf
+from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting, averaged_spectrum
+
+BLOCK_S = 0.5
+SLOWEST_HZ = 1000.0
+HEARD_DB = 6.0
+"""A carrier that never stands this far above the noise was not received."""
+FOUND_DB = 10.0
+SPECTRUM_SIZE = 4096
+DC_BINS = 8
+"""Cheap receivers have a spike at the centre of the band, this many bins wide to either side."""
+UNKNOWN_PLACE = GeoPoint(0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class IqReading:
+    """How to read IQ. headings: a table (time, heading of the nose) instead of what the recording carries.
+
+    frequency_hz None: the strongest signal's. pulses: of a pulsed tag; None: a carrier.
+    """
+
+    headings: Path | None = None
+    frequency_hz: float | None = None
+    pulses: PulseSetting | None = None
+
+
+def read_sweeps(path: Path | str, tag: str | None = None, iq: IqReading | None = None) -> Recording:
+    """Any recorded sweep: SigMF of a rotation, UAV-RT rotation file or plain CSV. Raises RecordingError."""
+    if is_sigmf(path):
+        return read_rotation(path, tag, iq)
+    if iq is not None and iq.headings is not None:
+        raise RecordingError(
+            f"{path}: a headings file goes with a SigMF recording only; this file has its own headings"
+        )
+    return read_recording(path, tag)
+
+
+def read_rotation(path: Path | str, tag: str | None = None, iq: IqReading | None = None) -> Recording:
+    """One sweep from a SigMF recording of a turn. Raises RecordingError; every doubt is a remark."""
+    iq = iq or IqReading()
+    recorded = load_sigmf(path)
+    _refuse_unusable_samples(recorded)
+    remarks: list[str] = []
+    frequency_hz = iq.frequency_hz
+    if frequency_hz is None:
+        frequency_hz = _strongest_hz(recorded)
+        remarks.append(
+            f"{path}: no frequency was given; the strongest signal, at {frequency_hz / 1e6:.4f} MHz, is used"
+        )
+    of_antenna = iq.headings is None
+    headings = annotated_headings(recorded) if iq.headings is None else headings_from(iq.headings, recorded, remarks)
+    heard = _heard(recorded, frequency_hz, iq.pulses)
+    place = recorded.place
+    stands = [h.position for h in headings if h.position is not None]
+    try:
+        sweep = assemble_sweep(
+            heard,
+            headings,
+            frequency_hz=frequency_hz,
+            altitude_amsl_m=0.0,
+            position=place if place is not None or stands else UNKNOWN_PLACE,
+            tag=tag,
+        )
+    except SweepError as error:
+        raise RecordingError(f"{path}: {apart(recorded, headings) or error}") from error
+    unheard = len(heard) - sweep.power_db.size
+    if unheard > 0.02 * len(heard):
+        remarks.append(f"{path}: {unheard} of {len(heard)} readings have no heading of their time; they are left out")
+    known = place is not None or bool(stands)
+    return Recording((RecordedSweep(sweep, None, known, of_antenna),), tuple(remarks))
+
+
+def _refuse_unusable_samples(recorded: SigmfRecording) -> None:
+    if recorded.sample_rate_hz < SLOWEST_HZ:
+        raise RecordingError(
+            f"{recorded.path}: a sample rate of {recorded.sample_rate_hz:g} Hz is too low for a bearing "
+            f"(at least {SLOWEST_HZ:.0f} Hz); is core:sample_rate right?"
+        )
+    bad = ~np.isfinite(recorded.samples)
+    if bad.any():
+        first_s = int(np.argmax(bad)) / recorded.sample_rate_hz
+        raise RecordingError(
+            f"{recorded.path}: {int(bad.sum())} samples are no numbers, the first after {first_s:.2f} s; "
+            "cut them out, or check the data type (core:datatype)"
+        )
+    if not recorded.samples.any():
+        raise RecordingError(f"{recorded.path}: is silent: every sample is zero; was the receiver running?")
+
+
+def _strongest_hz(recorded: SigmfRecording) -> float:
+    """The strongest line of the mean spectrum, the receiver's spike at the centre only when there is nothing else."""
+    size = min(SPECTRUM_SIZE, 2 ** int(math.log2(max(recorded.samples.size, 2))))
+    window = np.hanning(size + 1)[:-1]
+    spectrum = averaged_spectrum(recorded.samples, window)
+    bins_hz = np.fft.fftfreq(size, 1.0 / recorded.sample_rate_hz)
+    noise = float(np.median(spectrum))
+    width_hz = recorded.sample_rate_hz / size
+    centre = np.abs(bins_hz) <= DC_BINS * width_hz
+    for eligible in (~centre, centre):
+        peak = int(np.argmax(np.where(eligible, spectrum, -1.0)))
+        if spectrum[peak] > 10.0 ** (FOUND_DB / 10.0) * noise:
+            return recorded.centre_hz + float(bins_hz[peak])
+    raise RecordingError(
+        f"{recorded.path}: is silent: nothing stands {FOUND_DB:.0f} dB above the noise; "
+        "if the emitter is weaker than that, give its frequency"
+    )
+
+
+def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
+    meter = _meter(recorded, frequency_hz, pulses)
+    heard = [sample for block in _blocks(recorded) for sample in meter.feed(block)]
+    if pulses is not None:
+        if not heard:
+            raise RecordingError(
+                f"{recorded.path}: no pulse was heard at {frequency_hz / 1e6:.4f} MHz; "
+                "check the frequency and the tag's pulse width and period"
+            )
+        return heard
+    above = [s.power_db - s.noise_floor_db for s in heard if s.noise_floor_db is not None]
+    if not above:
+        raise RecordingError(f"{recorded.path}: is too short for one reading; is the sample rate right?")
+    if max(above) < HEARD_DB:
+        raise RecordingError(
+            f"{recorded.path}: is silent at {frequency_hz / 1e6:.4f} MHz: the strongest reading stands "
+            f"{max(above):.1f} dB above the noise; check the frequency"
+        )
+    return heard
+
+
+def _meter(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> ToneMeter | PulseMeter:
+    """Searches the emitter as far to either side as the band allows."""
+    rate, centre = recorded.sample_rate_hz, recorded.centre_hz
+    room_hz = rate / 2.0 - abs(frequency_hz - centre)
+    try:
+        if pulses is not None:
+            reach = min(pulses.search_hz, max(room_hz, 0.0))
+            return PulseMeter(frequency_hz, centre, rate, setting=replace(pulses, search_hz=reach))
+        plain = ToneSetting()
+        width_hz = min(plain.bandwidth_hz, rate / 20.0)
+        reach = min(plain.search_hz, max(room_hz - width_hz, 0.0))
+        return ToneMeter(frequency_hz, centre, rate, setting=replace(plain, bandwidth_hz=width_hz, search_hz=reach))
+    except SpectrumError as error:
+        raise RecordingError(f"{recorded.path}: {error} (core:sample_rate, core:frequency)") from error
+
+
+def _blocks(recorded: SigmfRecording) -> Iterator[IqBlock]:
+    """Capture by capture at its own time; that time went by between two of them is told as loss."""
+    rate = recorded.sample_rate_hz
+    size = max(int(BLOCK_S * rate), 1)
+    firsts = [segment.first for segment in recorded.segments]
+    for begin, end in zip(firsts, [*firsts[1:], recorded.samples.size], strict=True):
+        gap_s = recorded.time_of(begin) - (recorded.time_of(begin - 1) + 1.0 / rate) if begin > 0 else 0.0
+        lost = 1 if abs(gap_s) > 1.0 / rate else 0
+        for first in range(begin, end, size):
+            part = recorded.samples[first : min(first + size, end)]
+            yield IqBlock(recorded.time_of(first), part, clipped_at_full_scale(part), lost if first == begin else 0)

@@ -1,0 +1,226 @@
+"""SigMF recordings as files: IQ with its rate, frequency, times, and the antenna's direction where it is annotated."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import sigmf
+from numpy.typing import NDArray
+
+from hardware.direction_finding.table_file import RecordingError
+from hardware.readings import GeoPoint
+
+META, DATA, ARCHIVE = ".sigmf-meta", ".sigmf-data", ".sigmf"
+AZIMUTH_KEY = "antenna:azimuth_angle"
+"""Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A capture: samples from `first` on. at_s: UTC epoch seconds of its first sample, None when not stated."""
+
+    first: int
+    at_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Azimuth:
+    """The antenna's front points to `azimuth_deg` (true) during `count` samples from `first` on."""
+
+    first: int
+    count: int
+    azimuth_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class SigmfRecording:
+    """samples: (n,) complex64, 1.0 = full scale. segments: at least one, the first from sample 0 on, ascending."""
+
+    path: Path
+    samples: NDArray[np.complex64]
+    sample_rate_hz: float
+    centre_hz: float
+    segments: tuple[Segment, ...]
+    azimuths: tuple[Azimuth, ...]
+    place: GeoPoint | None
+
+    @property
+    def start_s(self) -> float:
+        """UTC epoch seconds of the first sample; 0 when the recording does not state it."""
+        return self.segments[0].at_s or 0.0
+
+    @property
+    def duration_s(self) -> float:
+        return self.samples.size / self.sample_rate_hz
+
+    def time_of(self, sample: int) -> float:
+        """UTC epoch seconds of a sample: its capture's time, or counted on from the last capture that states one."""
+        known = [s for s in self.segments if s.first <= sample and s.at_s is not None]
+        first, at_s = (known[-1].first, known[-1].at_s or 0.0) if known else (0, self.start_s)
+        return at_s + (sample - first) / self.sample_rate_hz
+
+
+def is_sigmf(path: Path | str) -> bool:
+    """Whether the name is that of a SigMF file (meta, data or archive)."""
+    return Path(path).suffix.lower() in (META, DATA, ARCHIVE)
+
+
+def load_sigmf(path: Path | str) -> SigmfRecording:
+    """One recording: its meta file, its data file beside it, or an archive. Raises RecordingError."""
+    path = Path(path)
+    recording = _opened(path)
+    captures: Sequence[dict[str, Any]] = recording.get_captures()
+    rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
+    if rate is None:
+        raise RecordingError(f"{path}: the recording states no sample rate; add {sigmf.SAMPLE_RATE_KEY}")
+    if not isinstance(rate, int | float) or not (math.isfinite(rate) and rate > 0):
+        raise RecordingError(f"{path}: the sample rate is {rate!r}; {sigmf.SAMPLE_RATE_KEY} must be greater than zero")
+    tuned = {capture[sigmf.FREQUENCY_KEY] for capture in captures if sigmf.FREQUENCY_KEY in capture}
+    if not tuned:
+        raise RecordingError(f"{path}: the recording states no centre frequency; add {sigmf.FREQUENCY_KEY}")
+    if len(tuned) > 1:
+        raise RecordingError(f"{path}: the receiver was retuned during the recording; cut it into one a frequency")
+    centre = tuned.pop()
+    if not isinstance(centre, int | float) or not math.isfinite(centre):
+        raise RecordingError(f"{path}: the centre frequency is {centre!r}, not a number of hertz")
+    try:
+        samples = recording.read_samples()
+    except (OSError, ValueError, KeyError, TypeError, sigmf.error.SigMFError) as error:
+        raise RecordingError(f"{path}: its samples cannot be read ({error})") from error
+    if not np.iscomplexobj(samples):
+        raise RecordingError(f"{path}: holds real samples; a bearing needs complex IQ")
+    if samples.size == 0:
+        raise RecordingError(f"{path}: holds no sample; is the {DATA} file complete?")
+    return SigmfRecording(
+        path,
+        np.asarray(samples, dtype=np.complex64).ravel(),
+        float(rate),
+        float(centre),
+        tuple(Segment(int(c.get(sigmf.SAMPLE_START_KEY, 0)), _time(path, c)) for c in captures),
+        _azimuths(path, recording, int(samples.size)),
+        _place(path, recording, captures),
+    )
+
+
+def _opened(path: Path) -> sigmf.SigMFFile:
+    if path.suffix.lower() in (META, DATA):
+        meta, data = path.with_suffix(META), path.with_suffix(DATA)
+        if not meta.is_file():
+            raise RecordingError(f"{path}: {meta.name} is missing; it tells rate, frequency and sample format")
+        _refuse_dataset_elsewhere(meta)
+        if not data.is_file():
+            raise RecordingError(f"{path}: {data.name} is missing; it holds the samples")
+    elif not path.is_file():
+        raise RecordingError(f"{path}: cannot be read (no such file); check the path")
+    try:
+        recording = sigmf.fromfile(str(path))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, sigmf.error.SigMFError) as error:
+        raise RecordingError(f"{path}: is no readable SigMF recording ({error})") from error
+    if not isinstance(recording, sigmf.SigMFFile):
+        raise RecordingError(f"{path}: is a collection of recordings; give one recording")
+    return recording
+
+
+def _refuse_dataset_elsewhere(meta: Path) -> None:
+    """A foreign meta file must not make us read another file than its own data."""
+    try:
+        dataset = json.loads(meta.read_bytes())["global"].get(sigmf.DATASET_KEY)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise RecordingError(f"{meta}: is no readable SigMF recording ({error})") from error
+    if dataset is not None:
+        raise RecordingError(
+            f"{meta}: names another data file ({sigmf.DATASET_KEY}); remove this and name the samples {meta.stem}{DATA}"
+        )
+
+
+def _time(path: Path, capture: dict[str, Any]) -> float | None:
+    stamp = capture.get(sigmf.DATETIME_KEY)
+    if stamp is None:
+        return None
+    try:
+        moment = datetime.fromisoformat(stamp)
+    except (TypeError, ValueError):
+        raise RecordingError(f'{path}: {sigmf.DATETIME_KEY} is "{stamp}"; write it as 2026-05-01T10:00:00Z') from None
+    return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
+
+
+def _azimuths(path: Path, recording: sigmf.SigMFFile, size: int) -> tuple[Azimuth, ...]:
+    """Of annotations, else of captures (each holds until the next), in time order."""
+    found = [
+        Azimuth(int(a[sigmf.SAMPLE_START_KEY]), int(a.get(sigmf.SAMPLE_COUNT_KEY) or 0), _degrees(path, a[AZIMUTH_KEY]))
+        for a in recording.get_annotations()
+        if AZIMUTH_KEY in a
+    ]
+    if not found:
+        captures = recording.get_captures()
+        ends = [int(c.get(sigmf.SAMPLE_START_KEY, 0)) for c in captures[1:]] + [size]
+        for capture, end in zip(captures, ends, strict=True):
+            if AZIMUTH_KEY in capture:
+                first = int(capture.get(sigmf.SAMPLE_START_KEY, 0))
+                found.append(Azimuth(first, end - first, _degrees(path, capture[AZIMUTH_KEY])))
+    return tuple(sorted(found, key=lambda a: a.first))
+
+
+def _degrees(path: Path, value: object) -> float:
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise RecordingError(f"{path}: {AZIMUTH_KEY} is {value!r}, not a number of degrees")
+    return float(value) % 360.0
+
+
+def _place(path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, Any]]) -> GeoPoint | None:
+    """core:geolocation of a capture or of the whole, a GeoJSON point."""
+    stated = [c[sigmf.GEOLOCATION_KEY] for c in captures if sigmf.GEOLOCATION_KEY in c]
+    stated = stated or [g for g in (recording.get_global_field(sigmf.GEOLOCATION_KEY),) if g is not None]
+    if not stated:
+        return None
+    try:
+        lon, lat = (float(value) for value in stated[0]["coordinates"][:2])
+    except (TypeError, ValueError, KeyError):
+        raise RecordingError(f"{path}: {sigmf.GEOLOCATION_KEY} is no GeoJSON point") from None
+    if not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
+        raise RecordingError(f"{path}: {lat:g}, {lon:g} is no place on earth ({sigmf.GEOLOCATION_KEY})")
+    return GeoPoint(lat, lon)
+
+
+def write_sigmf(
+    path: Path | str,
+    samples: NDArray[np.complex64],
+    sample_rate_hz: float,
+    centre_hz: float,
+    start_s: float,
+    azimuths: Sequence[Azimuth] = (),
+    place: GeoPoint | None = None,
+    antenna: str = "unknown",
+) -> Path:
+    """Write `path` (.sigmf-meta and .sigmf-data beside it); returns the meta file's path.
+
+    start_s: UTC epoch seconds. azimuths: where the antenna's front pointed; antenna: its name.
+    """
+    base = Path(path).with_suffix("")
+    data = base.with_suffix(DATA)
+    samples.astype(np.complex64).tofile(data)
+    about: dict[str, Any] = {
+        sigmf.DATATYPE_KEY: "cf32_le",
+        sigmf.SAMPLE_RATE_KEY: sample_rate_hz,
+        sigmf.DESCRIPTION_KEY: "IQ recorded by crossfix",
+    }
+    if place is not None:
+        about[sigmf.GEOLOCATION_KEY] = {"type": "Point", "coordinates": [place.lon_deg, place.lat_deg]}
+    if azimuths:
+        about[sigmf.EXTENSIONS_KEY] = [{"name": "antenna", "version": "1.0.0", "optional": True}]
+        about["antenna:model"] = antenna
+    meta = sigmf.SigMFFile(data_file=str(data), global_info=about)
+    stamp = datetime.fromtimestamp(start_s, UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+    meta.add_capture(0, metadata={sigmf.FREQUENCY_KEY: centre_hz, sigmf.DATETIME_KEY: stamp})
+    for azimuth in azimuths:
+        meta.add_annotation(azimuth.first, azimuth.count, metadata={AZIMUTH_KEY: azimuth.azimuth_deg})
+    target = base.with_suffix(META)
+    meta.tofile(str(target), overwrite=True)
+    return target
