@@ -1,5 +1,5 @@
 import { settings } from "../app/settings";
-import { t } from "../i18n";
+import { t, told } from "../i18n";
 import { ProblemText } from "../panels/ProblemNote";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration } from "../units/quantities";
@@ -53,7 +53,7 @@ export function PreviewCard() {
           )}
           {found.times_s.length > 1 && <Histogram times={found.times_s} />}
           <p class="muted">
-            {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: found.reason })}
+            {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: told(found.reason) })}
           </p>
         </>
       )}

@@ -6,7 +6,7 @@ import { highlighted } from "../app/highlight";
 import { settings } from "../app/settings";
 import { belief, cursor, live, mission, nowMs, path, source, vehicle } from "../app/store";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
-import { t, type MessageKey } from "../i18n";
+import { t, told, type MessageKey } from "../i18n";
 import { OLD_AFTER_S } from "../state/age";
 import { boundsOf, lonLat } from "../state/geometry";
 import { inFlight } from "../state/mission";
@@ -215,7 +215,7 @@ function Readout() {
       {expected?.allowed && expected.expected_time_s !== null && (
         <strong data-testid="hover-time">{t("map.hover", { time: formatDuration(expected.expected_time_s) })}</strong>
       )}
-      {expected && !expected.allowed && <span>{t("map.hoverNo", { reason: expected.reason })}</span>}
+      {expected && !expected.allowed && <span>{t("map.hoverNo", { reason: told(expected.reason) })}</span>}
       {basemap.value === null && gridStepM.value !== null && (
         <span class="muted">{t("map.grid", { length: formatLength(gridStepM.value, units) })}</span>
       )}

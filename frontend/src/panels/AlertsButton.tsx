@@ -4,7 +4,7 @@ import { overlay, toggle } from "../app/overlay";
 import { change, settings } from "../app/settings";
 import { live, mission, shownTimeMs } from "../app/store";
 import { send } from "../commands/send";
-import { t, type MessageKey } from "../i18n";
+import { t, told, type MessageKey } from "../i18n";
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
 import type { Alert } from "../state/mission";
 import { formatAge } from "../units/quantities";
@@ -20,8 +20,8 @@ function AlertRow({ alert }: { alert: Alert }) {
     <li class={`alert-row ${isOpen(alert) ? alert.level : "past"}`} data-testid="alert-row" data-level={alert.level}>
       <div>
         <strong>{t(`alerts.${alert.level}` satisfies MessageKey)}</strong> <span class="muted">{formatAge(age)}</span>
-        <div>{alert.text}</div>
-        {alert.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: alert.remedy })}</div>}
+        <div>{told(alert.text)}</div>
+        {alert.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: told(alert.remedy) })}</div>}
         {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: alert.acknowledgedBy })}</div>}
         {alert.cleared && <div class="muted">{t("alerts.cleared")}</div>}
       </div>
@@ -90,8 +90,8 @@ export function AlertBanner() {
   return (
     <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner">
       <span>
-        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {first.text}{" "}
-        {first.remedy && t("problem.remedy", { remedy: first.remedy })}
+        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {told(first.text)}{" "}
+        {first.remedy && t("problem.remedy", { remedy: told(first.remedy) })}
       </span>
       {id && (
         <button onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>

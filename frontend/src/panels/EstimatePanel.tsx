@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { copyText } from "../app/clipboard";
 import { change, settings } from "../app/settings";
 import { live, mission, reviewTimeMs, shownTimeMs } from "../app/store";
-import { t, type MessageKey } from "../i18n";
+import { t, told, toldReason, type MessageKey } from "../i18n";
 import { remainingTime } from "../state/timeLeft";
 import { formatPlace, type CoordinateFormat } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
@@ -132,13 +132,13 @@ export function EstimatePanel() {
       {fact && !localized && fact.not_yet.length > 0 && (
         <ul class="reasons" data-testid="not-yet">
           {fact.not_yet.map((reason) => (
-            <li key={reason}>{reason.replace(/^not yet: /, "")}</li>
+            <li key={reason}>{toldReason(reason)}</li>
           ))}
         </ul>
       )}
       {ended && (
         <p class="outcome" data-testid="outcome" data-outcome={ended.fact.outcome}>
-          {t(`outcome.${ended.fact.outcome}` satisfies MessageKey)}: {ended.fact.reason}
+          {t(`outcome.${ended.fact.outcome}` satisfies MessageKey)}: {told(ended.fact.reason)}
         </p>
       )}
     </section>

@@ -3,7 +3,7 @@ import { settings } from "../app/settings";
 import { cursor, live, mission, vehicle } from "../app/store";
 import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { locale, t } from "../i18n";
+import { locale, t, told } from "../i18n";
 import { cancelProposal, confirmProposal, propose, proposal, type Proposal } from "../commands/proposal";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
@@ -110,7 +110,7 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
       )}
       {result && !result.allowed && (
         <p class="refused" role="alert">
-          {t("proposal.notAllowed", { reason: result.reason })}
+          {t("proposal.notAllowed", { reason: told(result.reason) })}
         </p>
       )}
       {result?.expected_time_s != null && (
@@ -201,7 +201,7 @@ export function PlanPanel() {
       {fact && (
         <>
           <p class="why" data-testid="why">
-            <strong>{t("plan.why")}</strong> {fact.reason}{" "}
+            <strong>{t("plan.why")}</strong> {told(fact.reason)}{" "}
             <span class="muted">
               {fact.source === "planner"
                 ? t("plan.effort", {

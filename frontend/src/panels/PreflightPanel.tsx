@@ -5,7 +5,7 @@ import { source } from "../app/store";
 import { mission } from "../app/store";
 import { asProblem, report, send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { t } from "../i18n";
+import { t, told, toldName } from "../i18n";
 import { ProblemNote } from "./ProblemNote";
 
 const checking = signal(false);
@@ -55,8 +55,8 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
                     {check.ok ? "✓" : check.blocking ? "✕" : "!"}
                   </span>
                   <span>
-                    <strong>{check.name}</strong> {check.detail}
-                    {!check.ok && check.remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: check.remedy })}</em>}
+                    <strong>{toldName(check.name)}</strong> {told(check.detail)}
+                    {!check.ok && check.remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: told(check.remedy) })}</em>}
                   </span>
                 </li>
               );

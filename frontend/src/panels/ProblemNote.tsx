@@ -1,18 +1,18 @@
 // The server's no, in its words: what is wrong, what to do.
-import { t } from "../i18n";
+import { t, told } from "../i18n";
 import { problems, report, type Desk } from "../commands/send";
 import type { Problem } from "../wire";
 
 export function ProblemText({ problem }: { problem: Problem }) {
   return (
     <>
-      <strong>{problem.title}.</strong> {problem.detail}
+      <strong>{problem.title}.</strong> {told(problem.detail)}
       {problem.errors.map((e) => (
         <div class="problem-field" key={e.field}>
           {e.field}: {e.message}
         </div>
       ))}
-      {problem.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: problem.remedy })}</div>}
+      {problem.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: told(problem.remedy) })}</div>}
       {problem.incident && <div class="muted">{t("problem.incident", { id: problem.incident })}</div>}
     </>
   );

@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import { settings } from "../app/settings";
 import { cursor, live, mission } from "../app/store";
 import { send } from "../commands/send";
-import { t } from "../i18n";
+import { t, told } from "../i18n";
 import type { MissionState } from "../state/mission";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, SweepProgress, SweepRejected } from "../wire";
@@ -59,7 +59,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <strong>{t("sweep.place", { number: fact.place_number })}</strong>
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
-        <div class="refused">{t("sweep.rejected", { reason: fact.reason })}</div>
+        <div class="refused">{t("sweep.rejected", { reason: told(fact.reason) })}</div>
       </div>
     );
   }

@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { settings } from "../app/settings";
 import { cursor, live } from "../app/store";
-import { t } from "../i18n";
+import { t, told } from "../i18n";
 import { isOpen } from "../state/alerts";
 import type { AlertLevel } from "../wire";
 
@@ -55,7 +55,7 @@ export function watchAlerts(): void {
     if (cursor.peek() !== null) return;
     for (const alert of fresh) {
       if (settings.peek().tones) beep(alert.level);
-      if (settings.peek().speech) say(`${t(`alerts.${alert.level}`)}. ${alert.text}`);
+      if (settings.peek().speech) say(`${t(`alerts.${alert.level}`)}. ${told(alert.text)}`);
     }
   });
 }

@@ -12,8 +12,6 @@ const [WIDTH, HEIGHT] = [313, 120];
 const SIGMA = 7;
 const SPEED = 14;
 const TICK_MS = 50;
-/** `?fixture=endless`: never localized, for measurements of the page. */
-const ENDLESS = new URLSearchParams(location.search).get("fixture") === "endless";
 const TURN_DEG_S = 90;
 
 /** Mulberry32: the same example each time. */
@@ -65,6 +63,8 @@ export class FixtureSource implements Source {
   private samples: [number, number][] = [];
   private battery = 96;
   private automatic = true;
+  /** `?fixture=endless`: never localized, for measurements of the page. */
+  private endless = false;
   private readonly points: Track["points"] = [];
 
   constructor(readonly missionId: string | null) {
@@ -77,6 +77,8 @@ export class FixtureSource implements Source {
 
   start(listener: (message: SourceMessage) => void): void {
     this.listener = listener;
+    const wanted = new URLSearchParams(location.search).get("fixture");
+    this.endless = wanted === "endless";
     listener({ type: "link", state: "open", attempt: 0 });
     listener({ type: "hello", server_version: "example", mission_id: this.missionId, last_seq: 0, time_factor: 1 });
     if (this.missionId) {
@@ -85,7 +87,7 @@ export class FixtureSource implements Source {
       const noFly = [corner(120, 125), corner(170, 125), corner(170, 165), corner(120, 165), corner(120, 125)];
       this.emit({ kind: "mission_drafted", spec: { ...spec, flight: { ...spec.flight, no_fly: [{ type: "Polygon", coordinates: [noFly] }] } } });
       this.remember();
-      if (new URLSearchParams(location.search).get("fixture") !== "draft") void this.preflight().then(() => this.fly());
+      if (wanted !== "draft") void this.preflight().then(() => this.fly());
     }
     this.timer = setInterval(() => this.step(), TICK_MS);
   }
@@ -184,11 +186,11 @@ export class FixtureSource implements Source {
     }); // prettier-ignore
     this.belief_.update(this.at, bearing, SIGMA);
     const estimate = this.belief_.estimate();
-    const localized = !ENDLESS && this.place >= 3 && estimate.expected_rmse_m < 14;
+    const localized = !this.endless && this.place >= 3 && estimate.expected_rmse_m < 14;
     const notYet = localized ? [] : this.place === 1 ? ["both bearings must come from two places: so far one"] : [`expected error ${estimate.expected_rmse_m.toFixed(1)} m, the goal is 10 m`];
     this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, digest: "" });
     this.remember();
-    if (localized || (!ENDLESS && this.place >= 6)) {
+    if (localized || (!this.endless && this.place >= 6)) {
       this.goal = this.home;
       this.become("returning", "localized");
       this.emit({ kind: "mission_ended", outcome: localized ? "localized" : "not_localized", reason: "three bearings agree", mission_time_s: this.tick * (TICK_MS / 1000) });

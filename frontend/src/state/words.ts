@@ -1,5 +1,5 @@
 // The state of the mission and its events as sentences.
-import { t, type MessageKey } from "../i18n";
+import { t, told, toldName, toldReason, type MessageKey } from "../i18n";
 import { formatBearing, formatClock, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { MissionEvent, Phase, Recorded } from "../wire";
 import type { MissionState } from "./mission";
@@ -9,7 +9,7 @@ export const phaseName = (phase: Phase): string => t(`phase.${phase}` satisfies 
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionState, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.bearings.length + 1;
-  const reason = mission.phaseReason || phaseName(mission.phase);
+  const reason = mission.phaseReason ? told(mission.phaseReason) : phaseName(mission.phase);
   switch (mission.phase) {
     case "flying":
       return etaS === null
@@ -22,7 +22,7 @@ export function stateWords(mission: MissionState, etaS: number | null): string {
         ? t("state.measuringAgain", { number, attempt: mission.attempt })
         : t("state.measuring", { number });
     case "done":
-      return t("state.done", { reason: mission.ended?.fact.reason ?? reason });
+      return t("state.done", { reason: mission.ended ? told(mission.ended.fact.reason) : reason });
     case "draft":
     case "ready":
     case "taking_off":
@@ -110,21 +110,21 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         : t("event.preflight_failed", {
             names: event.checks
               .filter((c) => !c.ok && c.blocking)
-              .map((c) => c.name)
+              .map((c) => toldName(c.name))
               .join(", "),
           });
     case "mission_started":
-      return t("event.mission_started", { by: event.by });
+      return t("event.mission_started", { by: told(event.by) });
     case "phase_changed":
       return event.reason
-        ? t("event.phase_changed", { phase: phaseName(event.after), reason: event.reason })
+        ? t("event.phase_changed", { phase: phaseName(event.after), reason: told(event.reason) })
         : t("event.phase_changed.plain", { phase: phaseName(event.after) });
     case "took_off":
       return t("event.took_off", { height: formatLength(event.altitude_relative_m, units) });
     case "plan_chosen":
-      return t("event.plan_chosen", { number: event.place_number, reason: event.reason });
+      return t("event.plan_chosen", { number: event.place_number, reason: told(event.reason) });
     case "plan_vetoed":
-      return t("event.plan_vetoed", { by: event.by });
+      return t("event.plan_vetoed", { by: told(event.by) });
     case "flight_started":
       return t("event.flight_started", { number: event.place_number });
     case "place_reached":
@@ -134,7 +134,7 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         ? t("event.sweep_again", { number: event.place_number, attempt: event.attempt })
         : t("event.sweep_started", { number: event.place_number });
     case "sweep_rejected":
-      return t("event.sweep_rejected", { quality: formatNumber(event.quality, 2), reason: event.reason });
+      return t("event.sweep_rejected", { quality: formatNumber(event.quality, 2), reason: told(event.reason) });
     case "bearing_measured":
       return t("event.bearing_measured", {
         bearing: formatBearing(event.bearing_deg),
@@ -143,54 +143,54 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         quality: formatNumber(event.quality, 2),
       });
     case "bearing_excluded":
-      return t("event.bearing_excluded", { by: event.by, reason: event.reason });
+      return t("event.bearing_excluded", { by: told(event.by), reason: told(event.reason) });
     case "belief_updated":
       if (!event.consistent || !event.estimate) return t("event.belief_inconsistent");
       return event.localized
         ? t("event.belief_localized", { rmse: formatLength(event.estimate.expected_rmse_m, units) })
         : t("event.belief_updated", {
             rmse: formatLength(event.estimate.expected_rmse_m, units),
-            reason: event.not_yet.join("; "),
+            reason: event.not_yet.map(toldReason).join("; "),
           });
     case "hold_ordered":
-      return t("event.hold_ordered", { by: event.by, reason: event.reason });
+      return t("event.hold_ordered", { by: told(event.by), reason: told(event.reason) });
     case "resume_ordered":
-      return t("event.resume_ordered", { by: event.by });
+      return t("event.resume_ordered", { by: told(event.by) });
     case "return_ordered":
-      return t("event.return_ordered", { by: event.by, reason: event.reason });
+      return t("event.return_ordered", { by: told(event.by), reason: told(event.reason) });
     case "abort_ordered":
-      return t("event.abort_ordered", { by: event.by, reason: event.reason });
+      return t("event.abort_ordered", { by: told(event.by), reason: told(event.reason) });
     case "automatic_changed":
-      return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: event.by });
+      return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: told(event.by) });
     case "control_taken":
       return t("event.control_taken", { mode: event.mode });
     case "control_released":
-      return t("event.control_released", { by: event.by });
+      return t("event.control_released", { by: told(event.by) });
     case "command_accepted":
-      return t("event.command_accepted", { command: event.command, by: event.by });
+      return t("event.command_accepted", { command: event.command, by: told(event.by) });
     case "command_refused":
-      return t("event.command_refused", { command: event.command, reason: event.reason });
+      return t("event.command_refused", { command: event.command, reason: told(event.reason) });
     case "safety_vetoed":
-      return t("event.safety_vetoed", { detail: event.detail });
+      return t("event.safety_vetoed", { detail: told(event.detail) });
     case "link_lost":
-      return t("event.link_lost", { link: t(`link.${event.link}` satisfies MessageKey), detail: event.detail });
+      return t("event.link_lost", { link: t(`link.${event.link}` satisfies MessageKey), detail: told(event.detail) });
     case "link_restored":
       return t("event.link_restored", {
         link: t(`link.${event.link}` satisfies MessageKey),
         time: formatDuration(event.outage_s),
       });
     case "alert_raised":
-      return t("event.alert_raised", { level: t(`alerts.${event.level}` satisfies MessageKey), text: event.text });
+      return t("event.alert_raised", { level: t(`alerts.${event.level}` satisfies MessageKey), text: told(event.text) });
     case "alert_acknowledged":
-      return t("event.alert_acknowledged", { by: event.by });
+      return t("event.alert_acknowledged", { by: told(event.by) });
     case "alert_cleared":
       return t("event.alert_cleared");
     case "server_restarted":
-      return t("event.server_restarted", { detail: event.detail });
+      return t("event.server_restarted", { detail: told(event.detail) });
     case "mission_ended":
       return t("event.mission_ended", {
         outcome: t(`outcome.${event.outcome}` satisfies MessageKey),
-        reason: event.reason,
+        reason: told(event.reason),
       });
   }
 }

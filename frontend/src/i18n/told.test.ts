@@ -1,0 +1,42 @@
+import { afterEach, expect, it } from "vitest";
+import table from "./told.json";
+import { sentencesOf, tellIn, told, toldName, toldReason, translated } from "./told";
+
+afterEach(() => tellIn(null));
+
+it("says in English what the server said, names with a capital", () => {
+  expect(told("the vehicle has no position")).toBe("the vehicle has no position");
+  expect(toldName("antenna pattern")).toBe("Antenna pattern");
+  expect(toldName("Failsafe NAV_DLL_ACT")).toBe("Failsafe NAV_DLL_ACT");
+  expect(toldName("safety: no_fly")).toBe("Safety: no fly");
+  expect(toldName("GPS")).toBe("GPS");
+  expect(toldReason("not yet: no bearing taken")).toBe("no bearing taken");
+});
+
+it("puts the values of a sentence into its translation, sentences within sentences too", () => {
+  tellIn(table);
+  expect(toldReason("not yet: expected error 31 m, wanted below 10 m")).toBe("erwarteter Fehler 31 m, gewünscht unter 10 m");
+  expect(told("not yet: both bearings from one side, crossing at 12 deg, 20 deg are needed")).toBe(
+    "noch nicht: beide Peilungen von einer Seite, Schnittwinkel 12°, 20° sind nötig",
+  );
+  expect(told("no usable bearing here: quality 0.41 is below 0.70")).toBe("hier keine brauchbare Peilung: Güte 0,41 liegt unter 0,70");
+  expect(told("receiver: silent for 6 s")).toBe("Empfänger: seit 6 s stumm");
+  expect(told("not localized after 20 places (not yet: no bearing taken; not yet: 2 of 5 bearings contradict the estimate, another look is needed)")).toBe(
+    "nicht gefunden nach 20 Orten (noch nicht: keine Peilung genommen; noch nicht: 2 von 5 Peilungen widersprechen der Schätzung, es braucht noch einen Blick)",
+  );
+  expect(toldName("safety: no_fly")).toBe("Sicherheit: Flugverbot");
+});
+
+it("shows a sentence that it does not know as it came", () => {
+  tellIn(table);
+  expect(told("the moon is in the way")).toBe("the moon is in the way");
+});
+
+it("takes every sentence for itself and not for a vaguer one", () => {
+  const known = sentencesOf(table);
+  for (const [english, german] of Object.entries(table)) {
+    const filled = english.replaceAll("{}", "7");
+    const wanted = german.replace(/\{\d\}/g, "7");
+    expect(translated(filled, known), english).toBe(wanted);
+  }
+});

@@ -1,0 +1,49 @@
+// What the server says in words (reasons, checks, alerts), in the page's language. Its English sentences are the codes:
+// told.json has one for each, with {} where the server puts a value; a sentence that is not there is shown as it came.
+import { signal } from "@preact/signals";
+
+type Sentence = { pattern: RegExp; german: string; literal: number };
+
+const sentences = signal<readonly Sentence[] | null>(null);
+
+const escaped = (text: string) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+
+export function sentencesOf(table: Record<string, string>): Sentence[] {
+  return Object.entries(table)
+    .map(([english, german]) => {
+      const parts = english.split("{}");
+      return { pattern: new RegExp(`^${parts.map(escaped).join("(.+?)")}$`, "s"), german, literal: parts.join("").length };
+    })
+    .toSorted((a, b) => b.literal - a.literal);
+}
+
+/** Called by the language table: null for English. */
+export function tellIn(table: Record<string, string> | null): void {
+  sentences.value = table === null ? null : sentencesOf(table);
+}
+
+/** "...reason (not yet: this; not yet: that)", as the end of a mission is told. */
+const WITH_REASONS = /^(.+?) \((not yet: .+)\)$/s;
+
+export function translated(text: string, known: readonly Sentence[]): string {
+  const more = WITH_REASONS.exec(text);
+  if (more) return `${translated(more[1]!, known)} (${more[2]!.split("; ").map((part) => translated(part, known)).join("; ")})`;
+  for (const { pattern, german } of known) {
+    const found = pattern.exec(text);
+    if (found) return german.replace(/\{(\d)\}/g, (_, place: string) => value(found[Number(place)]!, known));
+  }
+  return text;
+}
+
+const value = (text: string, known: readonly Sentence[]): string =>
+  /^-?\d+\.\d+$/.test(text) ? text.replace(".", ",") : translated(text, known);
+
+const capital = (text: string) => (/^[a-z]+([ :]|$)/.test(text) ? text[0]!.toUpperCase() + text.slice(1) : text);
+
+export const told = (text: string): string => (sentences.value === null ? text : translated(text, sentences.value));
+
+/** The name of a check or a rule, as a heading. */
+export const toldName = (text: string): string => capital(told(text).replace(/(?<=[a-z])_(?=[a-z])/g, " "));
+
+/** A reason why not yet, without the words that stand above all of them. */
+export const toldReason = (text: string): string => told(text).replace(/^(not yet|noch nicht): /, "");
