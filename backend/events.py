@@ -6,10 +6,11 @@ degrees clockwise from true north. Rejected wishes are facts too (`CommandRefuse
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from backend.spec import Area, MissionSpec, Model, Place
 
@@ -31,23 +32,37 @@ Phase = Literal[
 ]
 
 
-class Peak(Model):
+class Fact(Model):
+    """A number that is not finite cannot be stored: it is refused where the fact is made."""
+
+    model_config = ConfigDict(allow_inf_nan=False)
+
+
+def _known(value: object) -> object:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+Known = Annotated[float | None, BeforeValidator(_known)]
+"""A number that may be unknown: NaN and infinity are None."""
+
+
+class Peak(Fact):
     bearing_deg: float
     weight: float
 
 
-class CandidateFact(Model):
+class CandidateFact(Fact):
     """One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none."""
 
     lat: float
     lon: float
     value_s: float
-    std_error_s: float | None
+    std_error_s: Known
     rollouts: int
     dropped_in_round: int | None
 
 
-class CheckFact(Model):
+class CheckFact(Fact):
     name: str
     ok: bool
     detail: str
@@ -55,7 +70,7 @@ class CheckFact(Model):
     blocking: bool
 
 
-class EstimateFact(Model):
+class EstimateFact(Fact):
     """Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180)."""
 
     lat: float
@@ -68,23 +83,23 @@ class EstimateFact(Model):
     major_axis_deg: float
 
 
-class MissionDrafted(Model):
+class MissionDrafted(Fact):
     kind: Literal["mission_drafted"] = "mission_drafted"
     spec: MissionSpec
 
 
-class MissionEdited(Model):
+class MissionEdited(Fact):
     kind: Literal["mission_edited"] = "mission_edited"
     spec: MissionSpec
 
 
-class PreflightChecked(Model):
+class PreflightChecked(Fact):
     kind: Literal["preflight_checked"] = "preflight_checked"
     passed: bool
     checks: list[CheckFact]
 
 
-class MissionStarted(Model):
+class MissionStarted(Fact):
     """The vehicle's home at the start is the origin of the mission's local frame."""
 
     kind: Literal["mission_started"] = "mission_started"
@@ -94,20 +109,20 @@ class MissionStarted(Model):
     software: str
 
 
-class PhaseChanged(Model):
+class PhaseChanged(Fact):
     kind: Literal["phase_changed"] = "phase_changed"
     before: Phase
     after: Phase
     reason: str
 
 
-class TookOff(Model):
+class TookOff(Fact):
     kind: Literal["took_off"] = "took_off"
     place: Place
     altitude_relative_m: float
 
 
-class PlanChosen(Model):
+class PlanChosen(Fact):
     """The next measurement place. `place_number` counts places from 1. `expected_time_s`: mean time until localized
     by way of this place; `time_90_s`: not exceeded in 90 % of the rollouts (None when not sampled)."""
 
@@ -116,15 +131,15 @@ class PlanChosen(Model):
     place: Place
     source: Literal["planner", "operator"]
     reason: str
-    expected_time_s: float | None
-    time_90_s: float | None
+    expected_time_s: Known
+    time_90_s: Known
     candidates: list[CandidateFact]
     rollouts: int
     plan_ms: float
     by: str | None = None
 
 
-class PlanVetoed(Model):
+class PlanVetoed(Fact):
     """The operator refused the proposed place; the planner chooses again without it."""
 
     kind: Literal["plan_vetoed"] = "plan_vetoed"
@@ -132,14 +147,14 @@ class PlanVetoed(Model):
     by: str
 
 
-class FlightStarted(Model):
+class FlightStarted(Fact):
     kind: Literal["flight_started"] = "flight_started"
     place_number: int
     place: Place
     altitude_amsl_m: float
 
 
-class PlaceReached(Model):
+class PlaceReached(Fact):
     kind: Literal["place_reached"] = "place_reached"
     place_number: int
     place: Place
@@ -147,13 +162,13 @@ class PlaceReached(Model):
     flight_time_s: float
 
 
-class SweepStarted(Model):
+class SweepStarted(Fact):
     kind: Literal["sweep_started"] = "sweep_started"
     place_number: int
     attempt: int
 
 
-class SweepRejected(Model):
+class SweepRejected(Fact):
     kind: Literal["sweep_rejected"] = "sweep_rejected"
     sweep_id: str
     place_number: int
@@ -161,11 +176,11 @@ class SweepRejected(Model):
     quality: float
     reason: str
     place: Place
-    binned_db: list[float | None]
-    fitted_db: list[float | None]
+    binned_db: list[Known]
+    fitted_db: list[Known]
 
 
-class BearingMeasured(Model):
+class BearingMeasured(Fact):
     """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard."""
 
     kind: Literal["bearing_measured"] = "bearing_measured"
@@ -178,20 +193,20 @@ class BearingMeasured(Model):
     sigma_deg: float
     quality: float
     peaks: list[Peak]
-    snr_db: float | None
+    snr_db: Known
     drift_m: float
-    binned_db: list[float | None]
-    fitted_db: list[float | None]
+    binned_db: list[Known]
+    fitted_db: list[Known]
 
 
-class BearingExcluded(Model):
+class BearingExcluded(Fact):
     kind: Literal["bearing_excluded"] = "bearing_excluded"
     bearing_id: str
     by: str
     reason: str
 
 
-class BeliefUpdated(Model):
+class BeliefUpdated(Fact):
     """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate)."""
 
@@ -204,30 +219,30 @@ class BeliefUpdated(Model):
     digest: str
 
 
-class HoldOrdered(Model):
+class HoldOrdered(Fact):
     kind: Literal["hold_ordered"] = "hold_ordered"
     by: str
     reason: str
 
 
-class ResumeOrdered(Model):
+class ResumeOrdered(Fact):
     kind: Literal["resume_ordered"] = "resume_ordered"
     by: str
 
 
-class ReturnOrdered(Model):
+class ReturnOrdered(Fact):
     kind: Literal["return_ordered"] = "return_ordered"
     by: str
     reason: str
 
 
-class AbortOrdered(Model):
+class AbortOrdered(Fact):
     kind: Literal["abort_ordered"] = "abort_ordered"
     by: str
     reason: str
 
 
-class AutomaticChanged(Model):
+class AutomaticChanged(Fact):
     """ "Accept the next location automatically" was armed or disarmed."""
 
     kind: Literal["automatic_changed"] = "automatic_changed"
@@ -235,18 +250,18 @@ class AutomaticChanged(Model):
     by: str
 
 
-class ControlTaken(Model):
+class ControlTaken(Fact):
     kind: Literal["control_taken"] = "control_taken"
     mode: str
     detail: str
 
 
-class ControlReleased(Model):
+class ControlReleased(Fact):
     kind: Literal["control_released"] = "control_released"
     by: str
 
 
-class CommandAccepted(Model):
+class CommandAccepted(Fact):
     """What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again."""
 
     kind: Literal["command_accepted"] = "command_accepted"
@@ -255,7 +270,7 @@ class CommandAccepted(Model):
     by: str
 
 
-class CommandRefused(Model):
+class CommandRefused(Fact):
     kind: Literal["command_refused"] = "command_refused"
     command_id: str
     command: str
@@ -264,26 +279,26 @@ class CommandRefused(Model):
     remedy: str = ""
 
 
-class SafetyVetoed(Model):
+class SafetyVetoed(Fact):
     kind: Literal["safety_vetoed"] = "safety_vetoed"
     rule: str
     detail: str
     remedy: str
 
 
-class LinkLost(Model):
+class LinkLost(Fact):
     kind: Literal["link_lost"] = "link_lost"
     link: Literal["vehicle", "receiver", "console", "payload"]
     detail: str
 
 
-class LinkRestored(Model):
+class LinkRestored(Fact):
     kind: Literal["link_restored"] = "link_restored"
     link: Literal["vehicle", "receiver", "console", "payload"]
     outage_s: float
 
 
-class AlertRaised(Model):
+class AlertRaised(Fact):
     kind: Literal["alert_raised"] = "alert_raised"
     alert_id: str
     level: Literal["warning", "caution", "advisory"]
@@ -291,23 +306,23 @@ class AlertRaised(Model):
     remedy: str
 
 
-class AlertAcknowledged(Model):
+class AlertAcknowledged(Fact):
     kind: Literal["alert_acknowledged"] = "alert_acknowledged"
     alert_id: str
     by: str
 
 
-class AlertCleared(Model):
+class AlertCleared(Fact):
     kind: Literal["alert_cleared"] = "alert_cleared"
     alert_id: str
 
 
-class ServerRestarted(Model):
+class ServerRestarted(Fact):
     kind: Literal["server_restarted"] = "server_restarted"
     detail: str
 
 
-class MissionEnded(Model):
+class MissionEnded(Fact):
     kind: Literal["mission_ended"] = "mission_ended"
     outcome: Literal["localized", "not_localized", "aborted", "failed"]
     reason: str

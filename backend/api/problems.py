@@ -12,6 +12,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
+from backend.mission.ports import FactRefused
 from backend.store.reading import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem
 from planner.types import PlannerError
@@ -100,6 +101,10 @@ async def on_mission_conflict(_: Request, error: Exception) -> JSONResponse:
     return respond(conflict(_sentence(str(error)), _sentence(error.remedy)).problem)
 
 
+async def on_fact_refused(_: Request, error: Exception) -> JSONResponse:
+    return respond(conflict(_sentence(str(error)), "Load the mission again, then repeat it.").problem)
+
+
 async def on_planner_error(_: Request, error: Exception) -> JSONResponse:
     """The specification is well-formed, but there is nothing to plan in it."""
     return respond(invalid(_sentence(str(error)), "Change the area, the fence or the planner's settings.").problem)
@@ -144,6 +149,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(MissionInputError, on_mission_input)
     app.add_exception_handler(MissionNotFound, on_mission_not_found)
     app.add_exception_handler(MissionConflict, on_mission_conflict)
+    app.add_exception_handler(FactRefused, on_fact_refused)
     app.add_exception_handler(PlannerError, on_planner_error)
     app.add_exception_handler(JournalUnavailable, on_journal_unavailable)
     app.add_exception_handler(Exception, on_fault)

@@ -158,6 +158,13 @@ class TimerExpired:
 
 
 @dataclass(frozen=True, slots=True)
+class NotStored:
+    """Something of this mission can never be stored; it was kept aside."""
+
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
 class Restarted:
     """The server came back. `pilot`: the vehicle is in a mode that a pilot chose. `going_home`: in the autopilot's own
     return or landing, which its failsafe began while nobody commanded it; it is not interrupted."""
@@ -187,5 +194,6 @@ Input = (
     | HomeReached
     | Landed
     | TimerExpired
+    | NotStored
     | Restarted
 )

@@ -46,6 +46,7 @@ from backend.mission.inputs import (
     LinkDown,
     LinkUp,
     NothingToPlan,
+    NotStored,
     PilotTookOver,
     Planned,
     PreflightDone,
@@ -108,6 +109,10 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
             _vehicle(step, given)
         case TimerExpired():
             _timer(step, given)
+        case NotStored(detail=detail):
+            if state.phase not in GROUND:
+                text = f"not everything of this mission can be stored: {detail}"
+                alert(step, "storage", "warning", text, "it is kept beside the journal's spool; the flight goes on")
         case Restarted():
             _restarted(step, given)
         case _:

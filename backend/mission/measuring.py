@@ -15,7 +15,7 @@ from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
 from backend.spec import MissionSpec, Place
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
-from hardware.ports import ReceiverError
+from hardware.ports import ReceiverError, VehicleError
 from hardware.readings import BearingReading, Sweep
 
 log = logging.getLogger("crossfix.mission")
@@ -54,7 +54,7 @@ async def measure(
         raise ReceiverError("the receiver delivered nothing during the turn; check that it is running and tuned")
     sweep_id = str(uuid4())
     telemetry = equipment.vehicle.telemetry()
-    altitude_amsl_m = telemetry.altitude_amsl_m or math.nan
+    altitude_amsl_m = math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m
     try:
         sweep = assemble_sweep(
             samples,
@@ -65,8 +65,9 @@ async def measure(
             tag=mission.emitter.label,
         )
     except SweepError as error:
-        at = telemetry.position
-        place = Place(lat=at.lat_deg, lon=at.lon_deg) if at is not None else Place(lat=0.0, lon=0.0)
+        if telemetry.position is None:
+            raise VehicleError("the vehicle lost its position during the turn; wait for a GPS fix") from error
+        place = Place(lat=telemetry.position.lat_deg, lon=telemetry.position.lon_deg)
         nothing: list[float | None] = [None] * BINS
         fact = _rejected(sweep_id, place_number, attempt, place, 0.0, str(error), nothing, nothing)
         return Measured(sweep_id, None, fact)
@@ -80,6 +81,18 @@ def _fact(
     place = Place(lat=sweep.position.lat_deg, lon=sweep.position.lon_deg)
     binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
     wanted = mission.sensor.minimum_quality
+    needed = {
+        "bearing": reading.bearing_deg,
+        "sigma": reading.sigma_deg,
+        "quality": reading.quality,
+        "altitude": sweep.altitude_amsl_m,
+        "drift": sweep.drift_m,
+    }
+    unknown = [name for name, value in needed.items() if not math.isfinite(value)]
+    if unknown:
+        reason = f"the {' and the '.join(unknown)} of this sweep cannot be told"
+        quality = reading.quality if math.isfinite(reading.quality) else 0.0
+        return _rejected(sweep_id, place_number, attempt, place, quality, reason, binned, fitted)
     if not reading.accepted or reading.quality < wanted:
         reason = reading.reason or f"quality {reading.quality:.2f} is below {wanted:.2f}"
         return _rejected(sweep_id, place_number, attempt, place, reading.quality, reason, binned, fitted)

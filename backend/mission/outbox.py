@@ -10,7 +10,7 @@ import logging
 from collections.abc import Awaitable, Callable, Sequence
 
 from backend.events import Event
-from backend.mission.ports import Journal, Publisher
+from backend.mission.ports import FactRefused, Journal, JournalUnavailable, Publisher
 
 log = logging.getLogger("crossfix.mission")
 
@@ -20,27 +20,57 @@ Work = Callable[[], Awaitable[None]]
 
 
 class Outbox:
-    """Writes that failed are tried again until they succeed; what comes after waits behind them."""
+    """A write that failed is tried again until it succeeds, and what comes after waits behind it. What the journal
+    refuses for good is kept aside, told once to `on_refused`, and holds up nothing."""
 
-    def __init__(self, mission_id: str, journal: Journal, publisher: Publisher, last_seq: int) -> None:
+    def __init__(
+        self,
+        mission_id: str,
+        journal: Journal,
+        publisher: Publisher,
+        last_seq: int,
+        on_refused: Callable[[str], object] | None = None,
+    ) -> None:
         self._mission_id = mission_id
         self._journal = journal
         self._publisher = publisher
+        self._on_refused = on_refused
         self._waiting: asyncio.Queue[Work] = asyncio.Queue()
         self._writer: asyncio.Task[None] | None = None
         self.last_seq = last_seq
         self.failing = False
+        self.refused = 0
 
     def record(self, events: Sequence[Event]) -> None:
-        """Append together, then show."""
+        """Append together, then show. When the journal refuses them together, each by itself."""
 
         async def append() -> None:
-            recorded = await self._journal.append(self._mission_id, events)
-            self.last_seq = recorded[-1].seq
-            self._publisher.events(recorded)
+            try:
+                await self._append(events)
+            except FactRefused:
+                for event in events:
+                    await self._append_or_keep_aside(event)
 
         if events:
             self.after(append)
+
+    async def _append(self, events: Sequence[Event]) -> None:
+        recorded = await self._journal.append(self._mission_id, events)
+        self.last_seq = recorded[-1].seq
+        self._publisher.events(recorded)
+
+    async def _append_or_keep_aside(self, event: Event) -> None:
+        try:
+            await self._append([event])
+        except FactRefused as error:
+            await self._journal.keep_aside(self._mission_id, [event], str(error))
+            self._refuse(f"{event.kind}: {error}")
+
+    def _refuse(self, detail: str) -> None:
+        log.error("mission %s: %s", self._mission_id, detail)
+        self.refused += 1
+        if self.refused == 1 and self._on_refused is not None:
+            self._on_refused(detail)
 
     def after(self, work: Work) -> None:
         """Do this once everything before is durable."""
@@ -67,10 +97,14 @@ class Outbox:
                 try:
                     await work()
                     break
-                except Exception:
+                except (JournalUnavailable, OSError) as error:
                     if not self.failing:
-                        log.exception("mission %s: a fact could not be written, trying again", self._mission_id)
+                        log.error("mission %s: a fact could not be written, trying again: %s", self._mission_id, error)
                     self.failing = True
                     await asyncio.sleep(RETRY_S)
+                except Exception as error:
+                    log.exception("mission %s: it cannot be written", self._mission_id)
+                    self._refuse(str(error))
+                    break
             self.failing = False
             self._waiting.task_done()

@@ -25,16 +25,30 @@ class TrackPoint:
     mode: str | None
 
 
+class JournalUnavailable(RuntimeError):
+    """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
+
+
+class FactRefused(ValueError):
+    """The journal will never take this: the fact makes no sense, or another writer has used its place."""
+
+
 class Journal(Protocol):
     """Append-only facts. `append` returns only when they are durable; nothing is published before that."""
 
-    async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]: ...
+    async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        """All or none. Raises JournalUnavailable (try again), FactRefused (never)."""
+        ...
+
+    async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
+        """For a person to look at: facts that were refused. They are counted and block nothing."""
+        ...
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]: ...
 
-    async def save_sweep(
-        self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep
-    ) -> None: ...
+    async def save_sweep(self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep) -> None:
+        """Raises JournalUnavailable, FactRefused (then it was kept aside)."""
+        ...
 
     async def save_track(self, mission_id: str, points: Sequence[TrackPoint]) -> None: ...
 

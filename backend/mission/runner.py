@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Literal, assert_never
 
 from backend.commands import Command, Override, Resume
@@ -30,6 +30,7 @@ from planner.types import PlannerError
 log = logging.getLogger("crossfix.mission")
 
 TRACK_SAVED_S = 2.5
+KEEP_ON_S = 1.0
 DOWN_AFTER_ABORT_S = 1.0
 
 Slot = Literal["command", "thinking", "belief"]
@@ -49,7 +50,13 @@ class Runner:
         self.listening = Listening(
             equipment.receiver, equipment.clock, mission.emitter.frequency_hz, mission.timers.receiver_silent_s
         )
-        self.outbox = Outbox(mission_id, equipment.journal, equipment.publisher, last_seq)
+        self.outbox = Outbox(
+            mission_id,
+            equipment.journal,
+            equipment.publisher,
+            last_seq,
+            lambda detail: self.give(inputs.NotStored(detail)),
+        )
         self.watch = Watch(equipment, task.limits, self.listening, lambda: self._state, self.give)
         self.steps = Steps(equipment, task, mission_id, self.listening, self.watch.situation, self._keep_sweep)
         self._slots: dict[Slot, asyncio.Task[None]] = {}
@@ -64,9 +71,9 @@ class Runner:
     def begin(self) -> None:
         """Start watching."""
         self._background = [
-            asyncio.create_task(self.watch.run()),
-            asyncio.create_task(self._changes()),
-            asyncio.create_task(self._save_track()),
+            asyncio.create_task(self._keep_on("watching the vehicle", self.watch.run)),
+            asyncio.create_task(self._keep_on("listening to the vehicle", self._changes)),
+            asyncio.create_task(self._keep_on("keeping the track", self._save_track)),
         ]
 
     async def close(self) -> None:
@@ -182,7 +189,13 @@ class Runner:
             result = self._failure(name, f"the step {name!r} failed inside Crossfix", "resume, or order the return")
         if result is not None and self._slots.get(slot) is task:
             del self._slots[slot]
-            self.give(result)
+            try:
+                self.give(result)
+            except Exception:
+                log.exception("mission %s: the result of the step %s could not be taken", self.mission_id, name)
+                self.give(
+                    self._failure(name, f"the step {name!r} failed inside Crossfix", "resume, or order the return")
+                )
 
     def _failure(self, name: inputs.StepName, detail: str, remedy: str) -> inputs.WorkFailed:
         return inputs.WorkFailed(name, detail, remedy, self._equipment.vehicle.telemetry().in_air)
@@ -201,6 +214,17 @@ class Runner:
         self.give(inputs.TimerExpired(name))
 
     # What goes on beside the steps
+
+    async def _keep_on(self, what: str, work: Callable[[], Coroutine[None, None, None]]) -> None:
+        """In flight these must not end: a fault of ours holds the mission, and they begin anew."""
+        while True:
+            try:
+                await work()
+                return
+            except Exception:
+                log.exception("mission %s: %s failed", self.mission_id, what)
+                self.give(self._failure("hold", f"{what} failed inside Crossfix", "resume, or order the return"))
+                await asyncio.sleep(KEEP_ON_S)
 
     async def _changes(self) -> None:
         async for line in self._equipment.vehicle.changes():

@@ -32,7 +32,9 @@ from backend.mission.effects import (
 from backend.mission.safety import Veto
 from backend.mission.state import MissionState, evolve
 
-Topic = Literal["vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety", "ground"]
+Topic = Literal[
+    "vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety", "ground", "storage"
+]
 
 
 @dataclass(slots=True)

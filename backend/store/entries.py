@@ -19,7 +19,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from backend.events import Event, Recorded
-from backend.mission.ports import TrackPoint
+from backend.mission.ports import FactRefused, TrackPoint
 from backend.store.digest import EPOCH, MissionDigest, fold, to_us
 from backend.store.tables import events, missions, sweeps, track
 from hardware.readings import GeoPoint, Sweep
@@ -27,7 +27,7 @@ from hardware.readings import GeoPoint, Sweep
 EVENT: TypeAdapter[Event] = TypeAdapter(Event)
 
 
-class JournalConflict(RuntimeError):
+class JournalConflict(FactRefused):
     """Another writer has used this mission's sequence numbers for other facts."""
 
 

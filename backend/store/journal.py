@@ -22,7 +22,7 @@ from sqlalchemy import exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, Recorded
-from backend.mission.ports import TrackPoint
+from backend.mission.ports import FactRefused, JournalUnavailable, TrackPoint
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
     Entry,
@@ -35,7 +35,7 @@ from backend.store.entries import (
     to_record,
     to_row,
 )
-from backend.store.reading import JournalUnavailable, StoredFacts, why
+from backend.store.reading import StoredFacts, why
 from backend.store.spool import Spool, SpoolFull
 from hardware.readings import Sweep
 
@@ -46,6 +46,7 @@ T = TypeVar("T")
 RETRY_FIRST_S, RETRY_LAST_S = 0.25, 5.0
 PROBE_S = 1.0
 DRAIN_BATCH = 64
+START_PATIENCE_S = 20.0
 
 REFUSED = (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingError)
 """The database answered, and will never take this entry."""
@@ -109,9 +110,8 @@ class SqlJournal:
     async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
         """Durable when it returns, and done whole even when the caller is cancelled meanwhile.
 
-        What is returned is what will be read back: NaN in a field that may be empty is None. Raises ValueError for NaN
-        elsewhere, JournalUnavailable when neither database nor spool takes it, JournalConflict when another process
-        writes to the same mission.
+        What is returned is what will be read back. Raises JournalUnavailable when neither database nor spool takes it,
+        FactRefused for what makes no sense, JournalConflict when another process writes to the same mission.
         """
         return await self._whole(self._append(mission_id, events))
 
@@ -128,11 +128,17 @@ class SqlJournal:
         async with self._lock:
             known = await self._known(mission_id)
             at_utc = datetime.fromtimestamp(self._now(), UTC)
-            first = len(known.recorded) + 1
-            rows = tuple(to_row(seq, at_utc, event) for seq, event in enumerate(events, start=first))
-            recorded = [to_record(mission_id, row) for row in rows]
-            after = fold(known.digest, recorded)
-            await self._store(EventsEntry(mission_id, rows))
+            entry = _entry(mission_id, len(known.recorded) + 1, at_utc, events)
+            try:
+                recorded = [to_record(mission_id, row) for row in entry.rows]
+                after = fold(known.digest, recorded)
+            except ValueError as error:
+                raise FactRefused(f"this cannot be stored: {' '.join(str(error).split())}") from error
+            try:
+                await self._store(entry)
+            except JournalConflict:
+                self._written.pop(mission_id, None)  # the next append reads what the other one wrote
+                raise
             known.recorded.extend(recorded)
             known.digest = after
             self._written[mission_id] = known
@@ -148,12 +154,36 @@ class SqlJournal:
 
     async def _save(self, entry: Entry) -> None:
         async with self._lock:
-            await self._store(entry)
+            try:
+                await self._store(entry)
+            except FactRefused as error:
+                await self._set_aside(entry, str(error))
+                raise
+
+    async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
+        """For a person to look at, in a file beside the spool; counted in the report."""
+        at_utc = datetime.fromtimestamp(self._now(), UTC)
+        await self._whole(self._set_aside(_entry(mission_id, 0, at_utc, events), why))
+
+    async def _set_aside(self, entry: Entry, why: str) -> None:
+        self._refused += 1
+        log.error("kept aside, it cannot be stored: %s", why)
+        try:
+            await asyncio.to_thread(self._spool.keep_aside, entry.encode())
+        except OSError as error:
+            log.error("it could not be kept aside either (%s): %s", error.strerror, entry.encode().decode())
 
     async def _known(self, mission_id: str) -> Written:
-        """The mission so far: the next sequence number is one more than there are events."""
+        """The mission so far, what still waits in the spool included."""
         if mission_id not in self._written:
             recorded = await self._stored.read(mission_id)
+            waiting = [
+                row
+                for entry in self._pending
+                if isinstance(entry, EventsEntry) and entry.mission_id == mission_id
+                for row in entry.rows
+            ]
+            recorded += [to_record(mission_id, row) for row in waiting if row.seq > len(recorded)]
             return Written(recorded, fold(None, recorded) if recorded else None)
         return self._written[mission_id]
 
@@ -164,6 +194,10 @@ class SqlJournal:
                 await self._write([entry])
             except DatabaseAway as error:
                 self._lost(error)
+            except JournalConflict:
+                raise
+            except REFUSED as error:
+                raise FactRefused(f"the database refuses it: {why(error)}") from error
             else:
                 return
         try:
@@ -194,6 +228,27 @@ class SqlJournal:
             log.error("database away: %s; events are spooled", error)
         self._fault = str(error)
         self._wake.set()
+
+    async def start_up(self) -> None:
+        """What an earlier server left in the spool is stored, or known until the database takes it.
+
+        A database that is busy at this moment is waited for. Raises JournalUnavailable when it does not even read.
+        """
+        patient_until = time.monotonic() + START_PATIENCE_S
+        while True:
+            try:
+                await self.drain()
+                return
+            except DatabaseAway as error:
+                self._lost(error)
+            try:
+                for entry in self._pending:
+                    if isinstance(entry, EventsEntry):
+                        self._written[entry.mission_id] = await self._known(entry.mission_id)
+                return
+            except JournalUnavailable:
+                if time.monotonic() > patient_until:
+                    raise
 
     async def run(self) -> None:
         """Watch the database, and drain the spool when it is back. Runs until cancelled."""
@@ -253,9 +308,7 @@ class SqlJournal:
         try:
             await self._write([entry])
         except REFUSED as error:
-            log.error("the database refuses a spooled entry, it is kept aside: %s", error)
-            await asyncio.to_thread(self._spool.keep_aside, entry.encode())
-            self._refused += 1
+            await self._set_aside(entry, f"the database refuses a spooled entry: {error}")
 
     def _forget_ended(self) -> None:
         """Memory holds missions in flight only; an ended one is read from the database again."""
@@ -309,10 +362,17 @@ class SqlJournal:
 
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, oldest start first."""
-        return await self._stored.unfinished()
+        known = {digest.mission_id: digest for digest in await self._stored.unfinished()}
+        known |= {mission_id: written.digest for mission_id, written in self._written.items() if written.digest}
+        begun = [d for d in known.values() if d.started_at_us is not None and d.ended_at_us is None]
+        return [d.mission_id for d in sorted(begun, key=lambda d: (d.started_at_us, d.mission_id))]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         return await self._stored.sweep(mission_id, sweep_id)
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
         return await self._stored.track(mission_id)
+
+
+def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:
+    return EventsEntry(mission_id, tuple(to_row(seq, at_utc, event) for seq, event in enumerate(events, start=first)))

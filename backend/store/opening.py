@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+import fcntl
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
 
+from sqlalchemy import make_url
 from sqlalchemy.exc import DBAPIError
 
 from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
-from backend.store.spool import Spool
+from backend.store.spool import Spool, SpoolTaken
+
+REMEDY = "Check CROSSFIX_DATABASE_URL and that the disk can be written."
 
 
 class DatabaseUnusable(RuntimeError):
@@ -22,14 +27,46 @@ class DatabaseUnusable(RuntimeError):
 async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncIterator[SqlJournal]:
     """`now`: UTC epoch seconds of the mission's clock, stamped on every event. Raises DatabaseUnusable."""
     url = settings.async_database_url
+    with _claimed(url):
+        async with _opened(settings, url, now) as journal:
+            yield journal
+
+
+@contextmanager
+def _claimed(url: str) -> Iterator[None]:
+    """One server an SQLite file: two would fly and record the same mission. (A stale lock in PostgreSQL could keep a
+    server out that restarts in flight; there the journal finds a second writer by its sequence numbers.)"""
+    database = make_url(url).database
+    if make_url(url).get_backend_name() != "sqlite" or not database or database == ":memory:":
+        yield
+        return
+    path = Path(f"{database}.server")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        lock = path.open("w")
+    except OSError as error:
+        raise DatabaseUnusable(f"The database {database} cannot be used: {error}. {REMEDY}") from error
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise DatabaseUnusable(
+                f"Another server uses the database {database}. Stop it, or start this one with another --data-dir."
+            ) from None
+        yield
+
+
+@asynccontextmanager
+async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> AsyncIterator[SqlJournal]:
     shown = url.split("@")[-1] if "@" in url else url
     try:
         await migrate(url)
         spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes)
+    except SpoolTaken as error:
+        raise DatabaseUnusable(f"{error}. Stop it, or start this one with another --data-dir.") from error
     except (DBAPIError, OSError, ValueError) as error:
         cause = error.orig if isinstance(error, DBAPIError) and error.orig else error
-        remedy = "Check CROSSFIX_DATABASE_URL and that the disk can be written."
-        raise DatabaseUnusable(f"The database {shown} cannot be used: {cause}. {remedy}") from error
+        raise DatabaseUnusable(f"The database {shown} cannot be used: {cause}. {REMEDY}") from error
     journal = SqlJournal(
         make_engine(url, settings.database_timeout_s),
         spool,
@@ -40,7 +77,7 @@ async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncIte
     )
     watch: asyncio.Task[None] | None = None
     try:
-        await journal.drain()
+        await journal.start_up()
         watch = asyncio.create_task(journal.run())
         yield journal
     finally:

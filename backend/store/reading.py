@@ -10,14 +10,10 @@ from sqlalchemy import Executable, exc, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Recorded
-from backend.mission.ports import TrackPoint
+from backend.mission.ports import JournalUnavailable, TrackPoint
 from backend.store.digest import MissionDigest
 from backend.store.entries import EventRow, SweepEntry, sweep_columns, to_record
 from backend.store.tables import events, missions, sweeps, track
-
-
-class JournalUnavailable(RuntimeError):
-    """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
 
 
 class StoredFacts:
@@ -45,10 +41,9 @@ class StoredFacts:
         rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
         return [MissionDigest(**row._mapping) for row in rows]
 
-    async def unfinished(self) -> list[str]:
+    async def unfinished(self) -> list[MissionDigest]:
         started = missions.c.started_at_us.is_not(None) & missions.c.ended_at_us.is_(None)
-        query = select(missions.c.mission_id).where(started).order_by(missions.c.started_at_us, missions.c.mission_id)
-        return [row[0] for row in await self._fetch(query)]
+        return [MissionDigest(**row._mapping) for row in await self._fetch(select(missions).where(started))]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         columns = [sweeps.c[name] for name in sweep_columns()]

@@ -8,6 +8,7 @@ Synchronous; call it off the event loop.
 
 from __future__ import annotations
 
+import fcntl
 import os
 import struct
 import zlib
@@ -22,18 +23,26 @@ class SpoolFull(RuntimeError):
     """Neither the reserve nor the disk has room for another entry."""
 
 
+class SpoolTaken(RuntimeError):
+    """Another process owns the file."""
+
+
 class Spool:
-    """One process owns the file."""
+    """One process owns the file, for as long as it lives. Raises SpoolTaken."""
 
     def __init__(self, path: Path, reserve_bytes: int) -> None:
         self.path = path
         path.parent.mkdir(parents=True, exist_ok=True)
         self._fd = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
         try:
+            fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
             self._reserve(reserve_bytes)
             magic, self._generation = HEADER.unpack(os.pread(self._fd, HEADER.size, 0))
             if magic != MAGIC:
                 raise ValueError(f"{path} is not a journal spool: move it away and start again")
+        except BlockingIOError:
+            os.close(self._fd)
+            raise SpoolTaken(f"{path} belongs to another server that is running") from None
         except BaseException:
             os.close(self._fd)
             raise

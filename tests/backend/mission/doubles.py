@@ -12,7 +12,7 @@ import numpy as np
 
 from backend.events import Event, MissionEnded, MissionStarted, Recorded
 from backend.mission.equipment import Equipment
-from backend.mission.ports import Status, TrackPoint
+from backend.mission.ports import FactRefused, Status, TrackPoint
 from backend.mission.service import MissionService
 from backend.spec import FlightSpec, MissionSpec, PlannerSpec, Polygon
 from hardware.clock import ScaledClock
@@ -204,7 +204,7 @@ class PointingFinder:
 
 
 class MemoryJournal:
-    """`away`: the database answers nothing until it is False again."""
+    """`away`: the database answers nothing until it is False again. `refuses`: kinds of facts it will never take."""
 
     def __init__(self, now: ScaledClock) -> None:
         self._clock = now
@@ -212,11 +212,15 @@ class MemoryJournal:
         self.sweeps: list[tuple[str, str]] = []
         self.track: list[TrackPoint] = []
         self.away = False
+        self.refuses: set[str] = set()
+        self.aside: list[Event] = []
 
     async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
         await asyncio.sleep(0)
         if self.away:
             raise ConnectionError("the database is away")
+        if any(event.kind in self.refuses for event in events):
+            raise FactRefused("a number is missing")
         stored = self.stored.setdefault(mission_id, [])
         at = datetime.fromtimestamp(self._clock.now(), UTC)
         new = [
@@ -225,6 +229,9 @@ class MemoryJournal:
         ]
         stored += new
         return new
+
+    async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
+        self.aside += events
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
         return self.stored.get(mission_id, [])[after:]

@@ -51,6 +51,38 @@ async def test_a_journal_that_fails_is_asked_again_and_the_order_is_kept() -> No
     await outbox.close()
 
 
+async def test_a_fact_that_is_refused_for_good_is_kept_aside_told_once_and_holds_nothing_up() -> None:
+    told: list[str] = []
+    journal = MemoryJournal(ScaledClock())
+    publisher = MemoryPublisher(journal)
+    outbox = Outbox("m", journal, publisher, 0, told.append)
+    journal.refuses = {"hold_ordered"}
+    outbox.record([ResumeOrdered(by="a"), HoldOrdered(by="a", reason="one"), ResumeOrdered(by="b")])
+    outbox.record([HoldOrdered(by="a", reason="two")])
+    outbox.record([ResumeOrdered(by="c")])
+    await outbox.flushed()
+    assert journal.kinds("m") == ["resume_ordered"] * 3
+    assert publisher.shown == journal.stored["m"]
+    assert [event.reason for event in journal.aside] == ["one", "two"]  # type: ignore[union-attr]
+    assert outbox.refused == 2
+    assert told == ["hold_ordered: a number is missing"]
+    await outbox.close()
+
+
+async def test_work_that_fails_for_a_reason_of_its_own_holds_nothing_up() -> None:
+    outbox, journal, _ = made()
+
+    async def broken() -> None:
+        raise KeyError("a defect")
+
+    outbox.after(broken)
+    outbox.record([ResumeOrdered(by="a")])
+    await outbox.flushed()
+    assert journal.kinds("m") == ["resume_ordered"]
+    assert outbox.refused == 1
+    await outbox.close()
+
+
 async def test_closing_waits_for_what_was_handed_in() -> None:
     outbox, journal, _ = made()
     outbox.record([ResumeOrdered(by="a")])

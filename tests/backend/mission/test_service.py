@@ -293,6 +293,34 @@ async def test_a_vehicle_that_reports_no_battery_is_not_started_unless_the_missi
     assert (await order(stage, knowing, commands.Start())).accepted
 
 
+async def test_a_fact_that_cannot_be_stored_is_an_alert_and_the_flight_goes_on(stage: Stage) -> None:
+    stage.journal.refuses = {"place_reached"}
+    mission_id = await flying(stage)
+    await stage.until(mission_id, "bearing_measured", 2)
+    alerts = [e for e in stage.journal.events(mission_id) if e.kind == "alert_raised"]
+    assert ["place_reached: a number is missing" in e.text for e in alerts] == [True]  # type: ignore[union-attr]
+    assert [e.kind for e in stage.journal.aside][:2] == ["place_reached", "place_reached"]
+
+
+async def test_a_fault_of_our_own_in_watching_holds_and_watching_goes_on(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission_id = await stuck(stage)
+    runner = stage.service._runner
+    assert runner is not None
+    tick, broken = type(runner.watch).tick, iter([True])
+
+    def once(watch: object) -> None:
+        if next(broken, False):
+            raise ZeroDivisionError
+        tick(watch)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(type(runner.watch), "tick", once)
+    await stage.until_phase(mission_id, "hold")
+    stage.vehicle.take_control()
+    await stage.until_phase(mission_id, "manual")
+
+
 async def test_without_a_vehicle_the_start_is_refused_with_a_remedy() -> None:
     stage = Stage()
     stage.vehicle.heard = False

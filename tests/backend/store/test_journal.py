@@ -16,7 +16,7 @@ from backend.events import (
     MissionStarted,
     PhaseChanged,
 )
-from backend.mission.ports import TrackPoint
+from backend.mission.ports import FactRefused, TrackPoint
 from backend.spec import MissionSpec, Place, Polygon
 from backend.store.entries import JournalConflict
 from hardware.readings import GeoPoint, Sweep
@@ -60,14 +60,27 @@ async def test_another_process_reads_back_the_same_facts(bench):
     assert await again.append("m", [hold("later")]) == await again.read("m", after=4)
 
 
-async def test_numbers_that_are_not_finite_are_unknown_or_refused(journal):
+async def test_a_fact_that_makes_no_sense_is_refused_can_be_kept_aside_and_blocks_nothing(journal, tmp_path):
     await journal.append("m", [DRAFT])
-    (record,) = await journal.append("m", [bearing(snr_db=math.nan)])
-    assert record.event.snr_db is None
-    with pytest.raises(ValueError, match="bearing_deg"):
-        await journal.append("m", [bearing(bearing_deg=math.nan)])
+    broken = bearing().model_copy(update={"bearing_deg": math.nan})
+    with pytest.raises(FactRefused, match="bearing_deg"):
+        await journal.append("m", [hold(), broken])
+    await journal.keep_aside("m", [broken], "no bearing")
     (after,) = await journal.append("m", [hold()])
-    assert after.seq == 3
+    assert after.seq == 2
+    assert journal.report().refused == 1
+    assert b"bearing_measured" in (tmp_path / "journal.refused").read_bytes()
+
+
+async def test_after_a_conflict_the_next_fact_follows_what_the_other_wrote(bench):
+    one, other = await bench.open(), await bench.open("other.spool")
+    await one.append("m", [DRAFT])
+    await other.append("m", [hold("theirs")])
+    with pytest.raises(JournalConflict):
+        await one.append("m", [hold("ours")])
+    (again,) = await one.append("m", [hold("ours")])
+    assert again.seq == 3
+    assert [record.event.reason for record in (await one.read("m"))[1:]] == ["theirs", "ours"]
 
 
 async def test_a_second_writer_is_found_out(bench):

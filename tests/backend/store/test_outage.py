@@ -175,6 +175,33 @@ async def test_a_server_killed_in_the_outage_drains_the_spool_at_its_next_start(
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_a_start_beside_a_busy_database_goes_on_with_the_spool(bench, tmp_path):
+    """Another program holds the file for writing while the server starts: what was spooled is known all the same."""
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    outage = Locked(bench, None)
+    outage.begin()
+    await flight.go_on(2)
+    await bench.close()
+    outage.end()
+    writer = sqlite3.connect(outage.path, isolation_level=None, check_same_thread=False)
+    writer.execute("BEGIN IMMEDIATE")
+    again = await bench.open()
+    await again.start_up()
+    assert again.report().state == "lost"
+    assert again.report().spooled == 6
+    assert await again.unfinished() == ["m"]
+    assert [record.seq for record in await again.read("m")] == [1, 2, 3, 4]
+    assert (await again.append("m", [hold(2)]))[0].seq == 5
+    writer.execute("ROLLBACK")
+    writer.close()
+    async with watched(again):
+        await until(again, "ok")
+    assert [record.seq for record in await (await bench.open("other.spool")).read("m")] == [1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 async def test_an_entry_the_database_refuses_is_kept_aside_and_blocks_nothing(bench, tmp_path):
     journal = await bench.open()
     flight = Flight(journal)
@@ -278,6 +305,19 @@ async def test_migrating_again_changes_nothing(bench):
     await migrate(bench.url)
     await migrate(bench.url)
     assert await (await bench.open("other.spool")).read("m") == written
+
+
+async def test_a_second_server_on_the_same_database_or_data_is_refused(tmp_path):
+    settings = Settings(data_dir=tmp_path / "one")
+    beside = Settings(data_dir=tmp_path / "two", database_url=f"sqlite:///{tmp_path / 'one' / 'crossfix.sqlite'}")
+    same_data = Settings(data_dir=tmp_path / "one", database_url=f"sqlite:///{tmp_path / 'other.sqlite'}")
+    async with open_journal(settings, lambda: 0.0):
+        for second in (settings, beside, same_data):
+            with pytest.raises(DatabaseUnusable, match="--data-dir"):
+                async with open_journal(second, lambda: 0.0):
+                    pass
+    async with open_journal(beside, lambda: 0.0):
+        pass
 
 
 @pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "sqlite:////proc/none/x.sqlite"])

@@ -1,0 +1,51 @@
+"""A fact holds no number that cannot be stored: it is refused where it is made, or unknown where that is allowed."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from backend.events import BearingMeasured, MissionEnded, Recorded
+from backend.spec import Place
+
+BEARING: dict[str, Any] = {
+    "bearing_id": "b",
+    "sweep_id": "s",
+    "place_number": 1,
+    "place": Place(lat=50.0, lon=7.0),
+    "altitude_amsl_m": 140.0,
+    "bearing_deg": 10.0,
+    "sigma_deg": 7.0,
+    "quality": 0.9,
+    "peaks": [],
+    "snr_db": 20.0,
+    "drift_m": 0.1,
+    "binned_db": [],
+    "fitted_db": [],
+}
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("name", ["altitude_amsl_m", "bearing_deg", "sigma_deg", "quality", "drift_m"])
+def test_a_number_that_must_be_known_is_refused_when_it_is_not_finite(name: str, number: float) -> None:
+    with pytest.raises(ValidationError, match=name):
+        BearingMeasured(**{**BEARING, name: number})
+
+
+def test_a_number_that_may_be_unknown_is_none_when_it_is_not_finite() -> None:
+    made = BearingMeasured(**{**BEARING, "snr_db": math.nan, "binned_db": [math.inf, 1.0, None]})
+    assert made.snr_db is None
+    assert made.binned_db == [None, 1.0, None]
+
+
+def test_what_is_made_can_be_written_and_read_back() -> None:
+    record = Recorded(
+        seq=1,
+        mission_id="m",
+        at_utc="2026-01-01T00:00:00Z",  # type: ignore[arg-type]
+        event=MissionEnded(outcome="failed", reason="interrupted", mission_time_s=0.0),
+    )
+    assert Recorded.model_validate_json(record.model_dump_json()) == record
