@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -59,6 +60,14 @@ class Settings(BaseSettings):
         if url is None or url.startswith(("sqlite:", "postgresql:", "postgres:", "sqlite+", "postgresql+")):
             return url
         raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
+
+    @property
+    def reachable_from_outside(self) -> bool:
+        """Does the server listen on more than this machine's loopback?"""
+        try:
+            return not ip_address(self.host).is_loopback
+        except ValueError:
+            return self.host != "localhost"
 
     @property
     def simulated(self) -> bool:

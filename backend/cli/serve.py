@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from backend.cli.edge import print_json, stop
+from backend.cli.edge import print_json, remark, stop
 from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
 from backend.settings import Settings
 from backend.store.journal import DatabaseAway, JournalUnavailable
@@ -63,6 +63,8 @@ def serve(
         )
     except ValueError as error:
         stop(error)
+    if settings.reachable_from_outside:
+        remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:
         asyncio.run(_serve(settings, json_))
     except (CannotServe, DatabaseUnusable, HardwareError, ValueError) as error:
