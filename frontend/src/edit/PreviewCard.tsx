@@ -1,8 +1,11 @@
 import { settings } from "../app/settings";
+import { live, vehicle } from "../app/store";
 import { t, told } from "../i18n";
 import { ProblemText } from "../panels/ProblemNote";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration } from "../units/quantities";
+import { coveredShare, plannedBudget } from "../state/budget";
+import type { MissionSpec } from "../wire";
 import { draft } from "./draft";
 import { askPreview, histogram, preview } from "./preview";
 
@@ -22,6 +25,22 @@ function Histogram({ times }: { times: readonly number[] }) {
         <span>{formatDuration(toS)}</span>
       </figcaption>
     </figure>
+  );
+}
+
+/** How many of the simulated searches the charge covers, the way home from the farthest corner and the reserve kept. */
+function BatteryCover({ times, spec }: { times: readonly number[]; spec: MissionSpec }) {
+  const at = vehicle.value.at;
+  const reported = live.value.telemetry?.value.battery_percent ?? null;
+  if (!at || times.length < 2) return null;
+  const budget = plannedBudget(reported ?? 100, at, spec);
+  const share = coveredShare(budget, times);
+  const key = reported === null ? "preview.batteryFull" : "preview.battery";
+  return (
+    <p data-testid="preview-battery" data-share={share} class={share < 0.9 ? "battery-short" : ""}>
+      <strong>{t(key, { charge: Math.round(budget.chargePercent), share: Math.floor(100 * share) })}</strong>{" "}
+      <span class="muted">{t("preview.batteryKept", { kept: Math.round(budget.keptPercent) })}</span>
+    </p>
   );
 }
 
@@ -52,6 +71,7 @@ export function PreviewCard() {
             </p>
           )}
           {found.times_s.length > 1 && <Histogram times={found.times_s} />}
+          <BatteryCover times={found.times_s} spec={draft.value!.spec} />
           <p class="muted">
             {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: told(found.reason) })}
           </p>

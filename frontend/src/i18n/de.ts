@@ -105,7 +105,12 @@ export const de: Record<MessageKey, string> = {
   "estimate.about": "etwa {time}",
   "estimate.in90": "90 %: {time}",
   "estimate.overdue": "länger als erwartet",
-  "estimate.budget": "Akku übrig {percent} %",
+  "estimate.batteryThen": "Akku dann",
+  "estimate.batteryMean": "etwa {percent} %",
+  "estimate.battery90": "90 %: {percent} %;",
+  "estimate.battery.enough": "Heimweg und Reserve brauchen {kept} %",
+  "estimate.battery.tight": "könnte nicht reichen: Heimweg und Reserve brauchen {kept} %",
+  "estimate.battery.short": "reicht nicht: Heimweg und Reserve brauchen {kept} %",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Peilung",
@@ -219,6 +224,9 @@ export const de: Record<MessageKey, string> = {
   "preview.running": "Fliegt sie in der Simulation …",
   "preview.expected": "Gefunden in etwa {time}",
   "preview.in90": "90 % binnen {time}",
+  "preview.battery": "Der Akku ({charge} %) reicht für {share} % der simulierten Suchen.",
+  "preview.batteryFull": "Ein voller Akku ({charge} %; keiner ist gemeldet) reicht für {share} % der simulierten Suchen.",
+  "preview.batteryKept": "{kept} % bleiben für den Heimweg von der fernsten Ecke und die Reserve.",
   "preview.histogram": "Zeit bis zum Fund in {count} simulierten Missionen",
   "preview.first": "Erste Peilung bei {place}: {reason}",
 

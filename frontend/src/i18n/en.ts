@@ -104,7 +104,12 @@ export const en = {
   "estimate.about": "about {time}",
   "estimate.in90": "90 %: {time}",
   "estimate.overdue": "longer than expected",
-  "estimate.budget": "battery to spare {percent} %",
+  "estimate.batteryThen": "battery then",
+  "estimate.batteryMean": "about {percent} %",
+  "estimate.battery90": "90 %: {percent} %;",
+  "estimate.battery.enough": "way home and reserve take {kept} %",
+  "estimate.battery.tight": "may not last: way home and reserve take {kept} %",
+  "estimate.battery.short": "will not last: way home and reserve take {kept} %",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Bearing",
@@ -218,6 +223,9 @@ export const en = {
   "preview.running": "Flying it in simulation …",
   "preview.expected": "Localized in about {time}",
   "preview.in90": "90 % within {time}",
+  "preview.battery": "The battery ({charge} %) covers {share} % of the simulated searches.",
+  "preview.batteryFull": "A full battery ({charge} %; none is reported) covers {share} % of the simulated searches.",
+  "preview.batteryKept": "{kept} % are kept for the way home from the farthest corner and the reserve.",
   "preview.histogram": "Time until localized over {count} simulated missions",
   "preview.first": "First bearing at {place}: {reason}",
 

@@ -12,7 +12,7 @@ import { preview } from "../edit/preview";
 import { t } from "../i18n";
 import { boundsOf, lonLat } from "../state/geometry";
 import { emptyMission } from "../state/mission";
-import type { Rings } from "../state/areas";
+import { ringsApart, ringsTogether, type Rings } from "../state/areas";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { createMap, fit } from "./createMap";
@@ -41,15 +41,37 @@ function makeDraw(map: GlMap, colours: Palette): TerraDraw {
 const ringsOf = (feature: GeoJSONStoreFeatures): Rings =>
   feature.geometry.type === "Polygon" ? (feature.geometry.coordinates as Rings) : [];
 
+/** Terra Draw knows no holes: every ring is a polygon of its own while its corners are moved. */
+function addRings(draw: TerraDraw, polygons: readonly Rings[]): void {
+  const rings = ringsApart(polygons);
+  const added = draw.addFeatures(
+    rings.map(({ polygon, ring, corners }) => ({
+      type: "Feature",
+      properties: { mode: "polygon", polygon, ring },
+      geometry: { type: "Polygon", coordinates: [corners] },
+    })),
+  );
+  const first = added[0]?.id;
+  if (first !== undefined) draw.selectFeature(first);
+}
+
+const ringsBack = (draw: TerraDraw): Rings[] =>
+  ringsTogether(
+    draw
+      .getSnapshot()
+      .filter((f) => f.properties["mode"] === "polygon" && typeof f.properties["ring"] === "number")
+      .map((f) => ({ polygon: f.properties["polygon"] as number, ring: f.properties["ring"] as number, corners: ringsOf(f)[0] ?? [] })),
+  );
+
 /** Carries the chosen tool into Terra Draw, and what was drawn back into the draft. */
 function bindTools(draw: TerraDraw): () => void {
   let moving = false;
   const takeMoved = () => {
     if (!moving) return;
     moving = false;
-    const rings = draw.getSnapshot().filter((f) => f.properties["mode"] === "polygon").map(ringsOf);
+    const polygons = ringsBack(draw);
     draw.clear();
-    replace(what.peek(), rings);
+    replace(what.peek(), polygons);
   };
   draw.on("finish", (id, context) => {
     if (context.action !== "draw") return;
@@ -66,13 +88,8 @@ function bindTools(draw: TerraDraw): () => void {
     const chosen = tool.value;
     takeMoved();
     if (chosen === "corners") {
-      const simple = polygonsOfKind(what.value).filter((rings) => rings.length === 1);
       draw.setMode("select");
-      const added = draw.addFeatures(
-        simple.map((coordinates) => ({ type: "Feature", properties: { mode: "polygon" }, geometry: { type: "Polygon", coordinates } })),
-      );
-      const first = added[0]?.id;
-      if (first !== undefined) draw.selectFeature(first);
+      addRings(draw, polygonsOfKind(what.value));
       moving = true;
     } else draw.setMode(chosen === "none" ? "static" : chosen);
   });

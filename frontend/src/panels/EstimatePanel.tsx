@@ -2,8 +2,10 @@
 import { useState } from "preact/hooks";
 import { copyText } from "../app/clipboard";
 import { change, settings } from "../app/settings";
-import { live, mission, reviewTimeMs, shownTimeMs } from "../app/store";
+import { live, mission, reviewTimeMs, shownTimeMs, vehicle } from "../app/store";
 import { t, told, toldReason, type MessageKey } from "../i18n";
+import { chargeAfter, flightBudget, lasts } from "../state/budget";
+import { distanceM, lonLat } from "../state/geometry";
 import { remainingTime } from "../state/timeLeft";
 import { formatPlace, type CoordinateFormat } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
@@ -63,13 +65,31 @@ function TimeLeft() {
   );
 }
 
-function Budget() {
+/** The charge when it will be localized, against the way home and the reserve. Only of now: a review has no battery. */
+function BatteryThen() {
   const { telemetry, status } = live.value;
+  const { plan, ended, belief, spec, home } = mission.value;
   const battery = telemetry?.value.battery_percent ?? null;
-  const home = status?.value.battery_to_return_percent ?? null;
-  const reserve = mission.value.spec?.flight.reserve_battery_percent ?? null;
-  if (battery === null || home === null || reserve === null || reviewTimeMs.value !== null) return null;
-  return <span class="muted">{t("estimate.budget", { percent: Math.round(battery - home - reserve) })}</span>;
+  const toReturn = status?.value.battery_to_return_percent ?? null;
+  const at = vehicle.value.at;
+  const left = plan && !ended && !belief?.fact.localized ? remainingTime(plan, shownTimeMs.value) : null;
+  if (battery === null || toReturn === null || !spec || !home || !at || !left || reviewTimeMs.value !== null) return null;
+  const budget = flightBudget(battery, toReturn, distanceM(at, lonLat(home)), spec);
+  const worstS = left.worstS ?? left.meanS;
+  const verdict = lasts(budget, worstS) ? "enough" : lasts(budget, left.meanS) ? "tight" : "short";
+  const percent = (seconds: number) => Math.max(0, Math.round(chargeAfter(budget, seconds)));
+  return (
+    <div data-testid="battery-then" data-verdict={verdict}>
+      <dt>{t("estimate.batteryThen")}</dt>
+      <dd class={`battery-${verdict}`}>
+        {t("estimate.batteryMean", { percent: percent(left.meanS) })}{" "}
+        <small>
+          {left.worstS !== null && t("estimate.battery90", { percent: percent(left.worstS) })}{" "}
+          {t(`estimate.battery.${verdict}` satisfies MessageKey, { kept: Math.round(budget.keptPercent) })}
+        </small>
+      </dd>
+    </div>
+  );
 }
 
 export function EstimatePanel() {
@@ -82,9 +102,6 @@ export function EstimatePanel() {
     <section class="panel estimate" data-testid="estimate" data-tour="3" aria-label={t("estimate.title")}>
       <h2>
         {t("estimate.title")}
-        {fact && (
-          <Budget />
-        )}
         {fact && (
           <span class={`verdict ${localized ? "verdict-yes" : ""}`} data-testid="verdict" data-localized={localized}>
             {t(localized ? "estimate.localized" : "estimate.notYet")}
@@ -121,12 +138,14 @@ export function EstimatePanel() {
               </dd>
             </div>
             <TimeLeft />
+            <BatteryThen />
           </dl>
         </>
       )}
       {!estimate && (
         <dl class="figures">
           <TimeLeft />
+          <BatteryThen />
         </dl>
       )}
       {fact && !localized && fact.not_yet.length > 0 && (

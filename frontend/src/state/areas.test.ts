@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { areaM2, areaOf, closeRing, cornerCount, cornersFromText, marginOutline, polygonsOf, type Rings } from "./areas";
+import { areaM2, areaOf, closeRing, cornerCount, cornersFromText, marginOutline, polygonsOf, ringsApart, ringsTogether, type Rings } from "./areas";
 import { circle, destination, distanceM } from "./geometry";
 import type { LonLat } from "../wire/beliefFrame";
 
@@ -62,4 +62,14 @@ describe("corners that were typed", () => {
 it("a closed ring stays as it is", () => {
   const ring = circle([7, 50], 10, 12);
   expect(closeRing(ring)).toEqual(ring);
+});
+
+it("polygons come apart into rings and together again, holes with their outline", () => {
+  const meadow: Rings = [square([7, 50], 100), square([7.0002, 50.0002], 10), square([7.0006, 50.0006], 10)];
+  const wood: Rings = [square([7.1, 50], 100)];
+  const apart = ringsApart([meadow, wood]);
+  expect(apart).toHaveLength(4);
+  expect(ringsTogether(apart.toReversed())).toEqual([meadow, wood]);
+  expect(ringsTogether(apart.filter((r) => r.polygon !== 0 || r.ring !== 1))).toEqual([[meadow[0], meadow[2]], wood]);
+  expect(ringsTogether(apart.filter((r) => r.polygon !== 0 || r.ring !== 0))).toEqual([wood]);
 });

@@ -16,6 +16,27 @@ export function areaOf(polygons: readonly Rings[]): Area | null {
   return polygons.length === 1 ? { type: "Polygon", coordinates: first } : { type: "MultiPolygon", coordinates: [...polygons] };
 }
 
+/** One ring of one of several polygons; ring 0 is the outline. */
+export interface Ring {
+  polygon: number;
+  ring: number;
+  corners: LonLat[];
+}
+
+export const ringsApart = (polygons: readonly Rings[]): Ring[] =>
+  polygons.flatMap((rings, polygon) => rings.map((corners, ring) => ({ polygon, ring, corners })));
+
+/** The polygons again; without its outline a polygon is gone, its holes too. */
+export function ringsTogether(rings: readonly Ring[]): Rings[] {
+  const polygons = new Map<number, Ring[]>();
+  for (const one of rings) polygons.set(one.polygon, [...(polygons.get(one.polygon) ?? []), one]);
+  return [...polygons.entries()]
+    .toSorted(([a], [b]) => a - b)
+    .map(([, own]) => own.toSorted((a, b) => a.ring - b.ring))
+    .filter((own) => own[0]!.ring === 0)
+    .map((own) => own.map((one) => one.corners));
+}
+
 export function areaM2(area: Area): number {
   return polygonsOf(area).reduce(
     (sum, [outline, ...holes]) => sum + ringAreaM2(outline ?? []) - holes.reduce((hole, ring) => hole + ringAreaM2(ring), 0),
