@@ -165,6 +165,13 @@ class NotStored:
 
 
 @dataclass(frozen=True, slots=True)
+class Interrupted:
+    """The server came back and cannot take this mission up again."""
+
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
 class Restarted:
     """The server came back. `pilot`: the vehicle is in a mode that a pilot chose. `going_home`: in the autopilot's own
     return or landing, which its failsafe began while nobody commanded it; it is not interrupted."""
@@ -195,5 +202,6 @@ Input = (
     | Landed
     | TimerExpired
     | NotStored
+    | Interrupted
     | Restarted
 )

@@ -41,6 +41,7 @@ from backend.mission.inputs import (
     Edited,
     HomeReached,
     Input,
+    Interrupted,
     InTheAir,
     Landed,
     LinkDown,
@@ -113,6 +114,10 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
             if state.phase not in GROUND:
                 text = f"not everything of this mission can be stored: {detail}"
                 alert(step, "storage", "warning", text, "it is kept beside the journal's spool; the flight goes on")
+        case Interrupted(detail=detail):
+            if state.phase not in GROUND and state.phase not in TERMINAL:
+                clear_alerts(step, *(alert_id.rsplit("-", 1)[0] for alert_id in state.open_alerts))
+                end(step, "failed", "failed", f"interrupted: {detail}{why_not_yet(state)}")
         case Restarted():
             _restarted(step, given)
         case _:

@@ -17,7 +17,7 @@ from backend.mission.area import centre_of, target_area
 from backend.mission.checklist import checklist, home_of
 from backend.mission.describe import doing, waits_for
 from backend.mission.equipment import Equipment
-from backend.mission.errors import MissionConflict, MissionNotFound
+from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.forecast import Forecast, Preview, forecast, preview
 from backend.mission.localization import Localization, localization
 from backend.mission.machine import transition
@@ -31,6 +31,7 @@ from backend.spec import MissionSpec, Place
 from hardware.frame import LocalFrame
 from hardware.ports import VehicleUnreachable
 from hardware.readings import Telemetry
+from planner.types import PlannerError
 
 log = logging.getLogger("crossfix.mission")
 
@@ -59,7 +60,7 @@ class MissionService:
             log.warning("%s", error)
         unfinished = await self._equipment.journal.unfinished()
         for mission_id in unfinished[:-1]:
-            log.error("mission %s is unfinished beside a newer one; it stays as it is", mission_id)
+            await self._close_interrupted(mission_id, "a mission started later is the one in the air")
         if unfinished:
             await self._recover(unfinished[-1])
         self._tasks = [asyncio.create_task(self._show())]
@@ -68,7 +69,11 @@ class MissionService:
         state, last_seq = await self._load(mission_id)
         if state.home is None or state.phase in TERMINAL:
             return
-        task = localization(state.mission, state.home, state.home_amsl_m)
+        try:
+            task = localization(state.mission, state.home, state.home_amsl_m)
+        except (MissionInputError, PlannerError) as error:
+            await self._close_interrupted(mission_id, f"it can no longer be read: {error}")
+            return
         runner = self._runner = Runner(mission_id, state, last_seq, task, self._equipment)
         telemetry = self._equipment.vehicle.telemetry()
         uncommanded = telemetry.controller == "pilot"
@@ -81,6 +86,12 @@ class MissionService:
         runner.begin()
         self._tasks.append(asyncio.create_task(self._let_go(runner)))
         log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
+
+    async def _close_interrupted(self, mission_id: str, why: str) -> None:
+        """There is one vehicle: what it does not fly any more is over, and says so in the list of missions."""
+        state, _ = await self._load(mission_id)
+        await self._record(mission_id, state, inputs.Interrupted(why))
+        log.error("mission %s is closed as interrupted: %s", mission_id, why)
 
     async def shut_down(self) -> None:
         """Stops watching; the vehicle goes on with what it was told and its own failsafe acts."""

@@ -142,7 +142,7 @@ def alert(step: Step, topic: Topic, level: Literal["warning", "caution", "adviso
     step.record(AlertRaised(alert_id=f"{topic}-{step.state.alerts_raised + 1}", level=level, text=text, remedy=remedy))
 
 
-def clear_alerts(step: Step, *topics: Topic) -> None:
+def clear_alerts(step: Step, *topics: Topic | str) -> None:
     for alert_id in step.state.open_alerts:
         if alert_id.rsplit("-", 1)[0] in topics:
             step.record(AlertCleared(alert_id=alert_id))

@@ -237,6 +237,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
         inputs.HomeReached(),
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in timers),
+        inputs.Interrupted("another one flies"),
         inputs.NotStored("bearing_measured: a number is missing"),
         inputs.Restarted(pilot=False, going_home=False, detail="back"),
         inputs.Restarted(pilot=False, going_home=True, detail="back"),

@@ -12,7 +12,7 @@ from doubles import FRAME, HOME, Stage, spec
 
 from backend import commands
 from backend.commands import Command, CommandReply, CommandRequest
-from backend.events import BeliefUpdated, LinkLost, MissionEnded, PhaseChanged, PlanChosen, SafetyVetoed
+from backend.events import BeliefUpdated, LinkLost, MissionDrafted, MissionEnded, PhaseChanged, PlanChosen, SafetyVetoed
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.state import fold
 from backend.spec import Place, TimerSpec
@@ -146,6 +146,41 @@ async def test_a_restart_in_flight_is_hold_with_the_identical_belief_until_resum
     stage.vehicle.touch_down()
     ended = await stage.until(mission_id, "mission_ended")
     assert ended.outcome == "localized"  # type: ignore[union-attr]
+
+
+async def test_of_several_unfinished_missions_the_last_comes_back_and_the_others_are_closed_as_interrupted(
+    stage: Stage,
+) -> None:
+    older = [await stage.service.create(spec(), "anna") for _ in range(2)]
+    newest = await flying(stage)
+    await stage.service.shut_down()
+    started = next(e for e in stage.journal.events(newest) if e.kind == "mission_started")
+    for mission_id in older:
+        await stage.journal.append(mission_id, [started, PhaseChanged(before="draft", after="flying", reason="")])
+    stage.journal.stored = {mission_id: stage.journal.stored[mission_id] for mission_id in (*older, newest)}
+    stage.service = stage.new_service()
+    await stage.service.start_up()
+    await stage.until_phase(newest, "hold")
+    for mission_id in older:
+        ended = stage.journal.events(mission_id)[-2]
+        assert isinstance(ended, MissionEnded)
+        assert (ended.outcome, ended.reason.split(":")[0]) == ("failed", "interrupted")
+        assert "started later" in ended.reason
+        assert not (await order(stage, mission_id, commands.Resume())).accepted
+    assert await stage.journal.unfinished() == [newest]
+    assert stage.service.active_mission_id == newest
+
+
+async def test_a_mission_that_can_no_longer_be_read_is_closed_and_the_server_starts(stage: Stage) -> None:
+    mission_id = await flying(stage)
+    await stage.service.shut_down()
+    nowhere = spec().model_copy(update={"area": spec().area.model_copy(update={"coordinates": []})})
+    await stage.journal.append(mission_id, [MissionDrafted(spec=nowhere)])
+    stage.service = stage.new_service()
+    await stage.service.start_up()
+    ended = await stage.until(mission_id, "mission_ended")
+    assert "can no longer be read" in ended.reason  # type: ignore[union-attr]
+    assert stage.service.active_mission_id is None
 
 
 async def test_a_command_id_is_answered_once_even_across_a_restart(stage: Stage) -> None:
