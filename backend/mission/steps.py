@@ -26,7 +26,8 @@ from planner.belief.grid import GridBelief
 from planner.types import PlannerError
 
 FRESH_S = 1.0
-PATIENCE_WALL_S = 1.0
+PATIENCE_WALL_S = 3.0
+"""As long as the link may be silent before it counts as lost."""
 
 
 @dataclass(slots=True)

@@ -104,8 +104,10 @@ class Watch:
             self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}"))
 
     def _links(self, telemetry: Telemetry, now: float) -> None:
-        heard_s = now - telemetry.at_s
-        self._link("vehicle", telemetry.connected, f"nothing heard for {max(heard_s, 0.0):.0f} s", now)
+        times = (telemetry.position_at_s, telemetry.heading_at_s, telemetry.mode_at_s, telemetry.battery_at_s)
+        heard_at_s = max((at for at in times if at is not None), default=None)
+        silence = "nothing was ever heard" if heard_at_s is None else f"nothing heard for {now - heard_at_s:.0f} s"
+        self._link("vehicle", telemetry.connected, silence, now)
         trouble = self.listening.trouble
         self._link("receiver", not trouble, trouble, now)
         if self.equipment.watch_consoles:

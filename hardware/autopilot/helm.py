@@ -13,8 +13,8 @@ from hardware.autopilot.patience import Deadline
 from hardware.ports import VehicleError, VehicleUnreachable
 from hardware.readings import GeoPoint
 
-GIVE_UP_LINK_S, GIVE_UP_LINK_WALL_S = 15.0, 5.0
-"""A manoeuvre whose vehicle is silent for so long ends with VehicleUnreachable (the vehicle flies on by itself)."""
+GIVE_UP_LINK_WALL_S = 15.0
+"""A manoeuvre whose vehicle is silent for so many seconds of the wall ends with VehicleUnreachable (it flies on)."""
 
 
 class Helm:
@@ -44,9 +44,9 @@ class Helm:
     def go_on(self, manoeuvre: Manoeuvre) -> None:
         """Raises when the manoeuvre may not go on, or its vehicle has been silent for too long."""
         self.monitor.commander.check(manoeuvre)
-        silent, silent_wall = self.monitor.silent_s
-        if not self.monitor.connected and silent > GIVE_UP_LINK_S and silent_wall > GIVE_UP_LINK_WALL_S:
-            raise VehicleUnreachable(f"{manoeuvre.name}: nothing heard from the vehicle for {silent:.0f} s.")
+        silent_s = self.monitor.silence.seconds
+        if not self.monitor.connected and silent_s > GIVE_UP_LINK_WALL_S:
+            raise VehicleUnreachable(f"{manoeuvre.name}: nothing heard from the vehicle for {silent_s:.0f} s.")
 
     async def until(self, manoeuvre: Manoeuvre, deadline: Deadline, happened: Callable[[], bool]) -> bool:
         """True once it happened, False when the deadline passed."""

@@ -14,7 +14,7 @@ from hardware.autopilot.control import ControlLatch
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, request_message
-from hardware.autopilot.patience import Announcer, Deadline, News
+from hardware.autopilot.patience import Announcer, Deadline, News, Silence
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.snapshot import NAMES, Snapshot
 from hardware.ports import Clock, VehicleUnreachable
@@ -34,7 +34,8 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (147, 1.0),  # BATTERY_STATUS
     (HOME_POSITION_ID, 0.5),
 )
-LINK_LOST_S, LINK_LOST_WALL_S = 3.0, 1.5
+LINK_LOST_WALL_S = 3.0
+STREAMS_CEASED_S = 3.0
 GIVEN_BACK_S = 1.5
 """A mode counts as the pilot's answer only when it was heard so much later than he took over: PX4 says that the sticks
 took over before it says the mode."""
@@ -53,7 +54,7 @@ class Monitor:
         self._autopilot_number: int | None = None
         self._announcer = Announcer()
         self._listen(frozenset())
-        self._heard_wall = -math.inf
+        self.silence = Silence()
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
         self._taken_at_s = -math.inf
@@ -119,7 +120,7 @@ class Monitor:
         while True:
             await asyncio.sleep(1.0)
             attitude = self.snapshot.attitude_heard_at_s
-            ceased = attitude is None or self.clock.now() - attitude > LINK_LOST_S
+            ceased = attitude is None or self.clock.now() - attitude > STREAMS_CEASED_S
             if self.snapshot.reboots != reboots:
                 reboots = self.snapshot.reboots
                 self.announce("the autopilot has started anew")
@@ -128,10 +129,12 @@ class Monitor:
             await self._request_streams()
 
     async def _watch_link(self) -> None:
+        looked = time.monotonic()
         while True:
             await asyncio.sleep(0.1)
-            silent, silent_wall = self.silent_s
-            lost = silent > LINK_LOST_S and silent_wall > LINK_LOST_WALL_S
+            before, looked = looked, time.monotonic()
+            self.silence.look(looked - before)
+            lost = self.silence.seconds > LINK_LOST_WALL_S
             if lost and self.connected:
                 self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
                 self.announce("vehicle link lost")
@@ -149,7 +152,7 @@ class Monitor:
 
     def _on_message(self, name: str, fields: Fields) -> None:
         now = self.clock.now()
-        self._heard_wall = time.monotonic()
+        self.silence.heard()
         if name == "COMMAND_ACK":
             self.commander.acknowledged(fields)
         elif name == "STATUSTEXT":
@@ -205,13 +208,6 @@ class Monitor:
         """Raises VehicleUnreachable before an autopilot was heard (a link that was lost since is no matter)."""
         if self._dialect is None:
             raise VehicleUnreachable(f"No vehicle is connected on {self.link.url}.")
-
-    @property
-    def silent_s(self) -> tuple[float, float]:
-        """How long nothing has been heard: (seconds of the clock, seconds of the wall)."""
-        heard_at = self.snapshot.heard_at_s
-        clock_s = math.inf if heard_at is None else self.clock.now() - heard_at
-        return clock_s, time.monotonic() - self._heard_wall
 
     @property
     def held_by_pilot(self) -> bool:

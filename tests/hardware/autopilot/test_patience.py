@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import asyncio
 
-from hardware.autopilot.patience import Announcer, Deadline, News
+import pytest
+
+from hardware.autopilot.patience import Announcer, Deadline, News, Silence
 from hardware.clock import ScaledClock
 
 
@@ -16,6 +18,19 @@ async def test_a_deadline_waits_for_the_slower_of_clock_and_wall() -> None:
     assert clock_only.passed
     assert not floored.passed
     assert not slow.passed
+
+
+def test_silence_is_what_was_looked_for_in_vain_and_a_program_that_stood_still_heard_nothing_wrong() -> None:
+    silence = Silence()
+    for _ in range(20):
+        silence.look(0.1)
+    assert silence.seconds == pytest.approx(2.0)
+    silence.look(60.0)
+    assert silence.seconds == pytest.approx(2.5)
+    silence.heard()
+    assert silence.seconds == 0.0
+    silence.look(-1.0)
+    assert silence.seconds == 0.0
 
 
 async def test_news_wakes_everybody_who_waits_and_only_then() -> None:
