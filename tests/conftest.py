@@ -42,6 +42,11 @@ class PostgresCluster:
         as_user = {"user": self.user, "group": pwd.getpwnam(self.user).pw_gid, "extra_groups": []} if self.user else {}
         return subprocess.Popen(command, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **as_user)
 
+    def give_folder(self) -> None:
+        """To the user that PostgreSQL runs as."""
+        if self.user is not None:
+            shutil.chown(self.folder, self.user)
+
     def create(self) -> None:
         options = ["--auth=trust", "--no-sync", "--encoding=UTF8", "--locale=C"]
         if self._run("initdb", "-U", "crossfix", *options).wait(timeout=120):
@@ -99,7 +104,7 @@ class PostgresCluster:
         return self.url(name)
 
 
-def _programs() -> Path | None:
+def postgres_programs() -> Path | None:
     found = shutil.which("initdb")
     if found and shutil.which("postgres"):
         return Path(found).resolve().parent
@@ -107,7 +112,7 @@ def _programs() -> Path | None:
     return Path(folders[-1]) if folders else None
 
 
-def _user() -> str | None:
+def postgres_user() -> str | None:
     """PostgreSQL refuses to run as root."""
     if os.geteuid() != 0:
         return None
@@ -117,14 +122,13 @@ def _user() -> str | None:
 
 @pytest.fixture(scope="session")
 def postgres_cluster() -> Iterator[PostgresCluster]:
-    programs = _programs()
+    programs = postgres_programs()
     if programs is None:
         pytest.skip("no PostgreSQL programs (initdb, postgres) on this machine")
-    user = _user()
+    user = postgres_user()
     with tempfile.TemporaryDirectory(prefix="crossfix-postgresql-", ignore_cleanup_errors=True) as folder:
-        if user is not None:
-            shutil.chown(folder, user)
         cluster = PostgresCluster(programs, Path(folder), user)
+        cluster.give_folder()
         cluster.create()
         cluster.start()
         try:

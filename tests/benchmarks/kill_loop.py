@@ -1,0 +1,293 @@
+"""Random kills -9 in flight (figure 8): is every acknowledged fact there, is the belief identical, how soon is HOLD?
+
+    python -m tests.benchmarks.kill_loop --kills 1000 --database sqlite
+    python -m tests.benchmarks.kill_loop --kills 1000 --database postgresql
+
+The real server over real sockets flies the simulated vehicle, which lives in a process of its own and flies on. A
+server is a fork of a process that has imported everything, so that a thousand restarts take two hours rather than
+five; every `--whole`-th is a whole `crossfix serve`. A fact counts as acknowledged once the websocket has shown it.
+Prints one JSON object; ends with status 1 when anything was lost, doubled, changed or late.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import os
+import random
+import signal
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from tests.conftest import PostgresCluster, postgres_programs, postgres_user
+from tests.system.console import Console, Event, console, simulated_vehicle
+
+HOLD_WITHIN_S = 5.0
+ENDED = ("done", "aborted", "failed")
+LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
+
+
+def arguments(folder: Path, database: str | None, speedup: float, seed: int) -> list[str]:
+    given = ["--port", "0", "--data-dir", str(folder), "--speedup", str(speedup), "--seed", str(seed), "--json"]
+    return given + (["--database", database] if database else [])
+
+
+def zygote() -> None:
+    """Reads one line a server: its arguments. Forks it, and says its process id on standard error."""
+    from backend.cli import serve as _serve  # noqa: F401 (what takes seconds to import)
+    from backend.cli.main import app
+
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    for line in sys.stdin:
+        pid = os.fork()
+        if pid == 0:
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+            os.close(0)
+            app(["serve", *json.loads(line)], prog_name="crossfix", standalone_mode=True)
+            os._exit(0)
+        print(pid, file=sys.stderr, flush=True)
+
+
+@dataclass
+class Server:
+    url: str
+    pid: int
+    began: float
+
+    def kill(self) -> None:
+        os.kill(self.pid, signal.SIGKILL)
+
+
+class Servers:
+    """Starts them one after the other, forked or whole."""
+
+    def __init__(self, given: list[str]) -> None:
+        self._given = given
+        self._zygote: asyncio.subprocess.Process | None = None
+
+    async def forked(self) -> Server:
+        if self._zygote is None:
+            self._zygote = await asyncio.create_subprocess_exec(
+                sys.executable, "-m", "tests.benchmarks.kill_loop", "zygote",
+                stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+            )  # fmt: skip
+        process = self._zygote
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        began = time.monotonic()
+        process.stdin.write(json.dumps(self._given).encode() + b"\n")
+        words = await process.stderr.readline()
+        while not words.strip().isdigit():
+            words = await process.stderr.readline()
+        url = json.loads(await asyncio.wait_for(process.stdout.readline(), 60))["url"]
+        return Server(url, int(words), began)
+
+    async def whole(self) -> Server:
+        began = time.monotonic()
+        process = await asyncio.create_subprocess_exec(
+            str(Path(sys.executable).with_name("crossfix")), "serve", *self._given,
+            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.DEVNULL,
+        )  # fmt: skip
+        assert process.stdout is not None
+        url = json.loads(await asyncio.wait_for(process.stdout.readline(), 60))["url"]
+        return Server(url, process.pid, began)
+
+    async def close(self) -> None:
+        if self._zygote is not None and self._zygote.stdin is not None:
+            self._zygote.stdin.close()
+            await self._zygote.wait()
+
+
+@dataclass
+class Findings:
+    kills: int = 0
+    phases: Counter[str] = field(default_factory=Counter)
+    acknowledged: int = 0
+    bearings: int = 0
+    missions: int = 0
+    lost: int = 0
+    beliefs_compared: int = 0
+    beliefs_changed: int = 0
+    hold_s: dict[str, list[float]] = field(default_factory=lambda: {"forked": [], "whole": []})
+
+    def summary(self) -> dict[str, Any]:
+        def spread(values: list[float]) -> dict[str, float] | None:
+            ordered = sorted(values)
+            if not ordered:
+                return None
+            median, worst = ordered[len(ordered) // 2], ordered[-1]
+            return {"starts": len(ordered), "median": round(median, 2), "most": round(worst, 2)}
+
+        return {
+            "kills": self.kills,
+            "killed_in": dict(self.phases.most_common()),
+            "missions": self.missions,
+            "acknowledged_facts": self.acknowledged,
+            "acknowledged_bearings": self.bearings,
+            "lost_or_changed_facts": self.lost,
+            "beliefs_compared": self.beliefs_compared,
+            "beliefs_changed": self.beliefs_changed,
+            "start_to_hold_s": {kind: spread(values) for kind, values in self.hold_s.items()},
+        }
+
+    @property
+    def good(self) -> bool:
+        late = [s for values in self.hold_s.values() for s in values if s > HOLD_WITHIN_S]
+        return not self.lost and not self.beliefs_changed and not late
+
+
+def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
+    """(ids of the bearings, digest) of the last belief, None when bearings came after it."""
+    bearings: list[str] = []
+    known = None
+    for recorded in events:
+        event = recorded["event"]
+        if event["kind"] == "bearing_measured":
+            bearings.append(event["bearing_id"])
+        elif event["kind"] == "belief_updated":
+            known = (tuple(bearings), event["digest"])
+    return known if known is not None and known[0] == tuple(bearings) else None
+
+
+async def phase_of(client: httpx.AsyncClient, mission_id: str) -> str:
+    return (await client.get(f"/api/missions/{mission_id}")).json()["phase"]
+
+
+async def new_mission(shown: Console) -> None:
+    await shown.draft(**LONG_SEARCH)
+    await shown.ready()
+    await shown.watch()
+    async with asyncio.timeout(60):
+        while not (await shown.order("start"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
+            await asyncio.sleep(0.5)
+
+
+async def fly_until_killed(server: Server, shown: Console, folder: Path, chance: random.Random) -> None:
+    """Resume, fly for a while, kill."""
+    vehicle = await simulated_vehicle(folder)
+    await vehicle.order("battery", percent=100)
+    if shown.phases[-1:] == ["hold"]:
+        await shown.order("resume")
+    await asyncio.sleep(chance.uniform(0.0, 3.0))
+    server.kill()
+
+
+async def compare(shown: Console, before: list[Event], found: Findings) -> None:
+    """What was shown before the kill is there unchanged, and the belief comes back the same."""
+    await shown.until(lambda: len(shown.events) >= len(before), 30)
+    found.lost += sum(one != two for one, two in zip(before, shown.events, strict=False))
+    found.lost += sum(r["seq"] != n for n, r in enumerate(shown.events, 1))
+    known = last_belief(before)
+    if known is None or shown.phases[-1:] != ["hold"]:
+        return
+    restarts = len(shown.of("server_restarted"))
+
+    def rebuilt() -> bool:
+        kinds = [r["event"]["kind"] for r in shown.events]
+        return restarts > 0 and "belief_updated" in kinds[len(kinds) - kinds[::-1].index("server_restarted") :]
+
+    await shown.until(rebuilt, 30)
+    again = last_belief(shown.events)
+    if again is not None and again[0] == known[0]:
+        found.beliefs_compared += 1
+        found.beliefs_changed += again[1] != known[1]
+
+
+async def loop(kills: int, folder: Path, database: str | None, speedup: float, seed: int, whole: int) -> Findings:
+    chance, found = random.Random(seed), Findings()
+    servers = Servers(arguments(folder, database, speedup, seed))
+    mission_id, before = "", list[Event]()
+    try:
+        while True:
+            kind = "whole" if whole and found.kills % whole == whole - 1 else "forked"
+            server = await (servers.whole() if kind == "whole" else servers.forked())
+            async with console(server.url) as shown:
+                if mission_id:
+                    shown.mission_id = mission_id
+                    phase = await phase_of(shown.client, mission_id)
+                    if phase == "hold":
+                        found.hold_s[kind].append(time.monotonic() - server.began)
+                    await shown.watch()
+                    await compare(shown, before, found)
+                if found.kills >= kills:
+                    if mission_id and shown.phases[-1] not in ENDED:
+                        await shown.order("abort")
+                    vehicle = await simulated_vehicle(folder)
+                    server.kill()
+                    await vehicle.stop()
+                    return found
+                if not mission_id or shown.phases[-1] in ENDED:
+                    await shown.close()
+                    shown.events.clear()
+                    await new_mission(shown)
+                    mission_id = shown.mission_id
+                    found.missions += 1
+                known = len(shown.events) if before else 0
+                await fly_until_killed(server, shown, folder, chance)
+                await asyncio.sleep(0.05)  # what was sent before the kill is read
+                before = list(shown.events)
+                found.kills += 1
+                found.phases[shown.phases[-1] if shown.phases else "draft"] += 1
+                new = before[known:]
+                found.acknowledged += len(new)
+                found.bearings += sum(r["event"]["kind"] == "bearing_measured" for r in new)
+            if sys.stderr.isatty() or found.kills % 20 == 0:
+                print(json.dumps(found.summary()), file=sys.stderr, flush=True)
+    finally:
+        await servers.close()
+
+
+@asynccontextmanager
+async def database_url(kind: str) -> AsyncIterator[str | None]:
+    """None: SQLite in the data directory. A PostgreSQL cluster of its own otherwise."""
+    if kind == "sqlite":
+        yield None
+        return
+    programs, user = postgres_programs(), postgres_user()
+    if programs is None:
+        raise SystemExit("no PostgreSQL programs (initdb, postgres) on this machine")
+    with tempfile.TemporaryDirectory(prefix="crossfix-postgresql-", ignore_cleanup_errors=True) as folder:
+        cluster = PostgresCluster(programs, Path(folder), user)
+        await asyncio.to_thread(cluster.give_folder)
+        await asyncio.to_thread(cluster.create)
+        await asyncio.to_thread(cluster.start)
+        try:
+            yield await asyncio.to_thread(cluster.new_database)
+        finally:
+            cluster.stop()
+
+
+async def run(kills: int, database: str, speedup: float, seed: int, whole: int) -> Findings:
+    with tempfile.TemporaryDirectory(prefix="crossfix-kills-") as folder:
+        async with database_url(database) as url:
+            return await loop(kills, Path(folder), url, speedup, seed, whole)
+
+
+def main() -> None:
+    if sys.argv[1:] == ["zygote"]:
+        zygote()
+        return
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--kills", type=int, default=int(os.environ.get("CROSSFIX_KILLS", "20")))
+    parser.add_argument("--database", choices=("sqlite", "postgresql"), default="sqlite")
+    parser.add_argument("--speedup", type=float, default=12.0)
+    parser.add_argument("--seed", type=int, default=3)
+    parser.add_argument("--whole", type=int, default=10, metavar="N", help="every N-th start is a whole one; 0: none")
+    found = asyncio.run(run(**vars(parser.parse_args())))
+    print(json.dumps(found.summary(), indent=2))
+    sys.exit(not found.good)
+
+
+if __name__ == "__main__":
+    main()
