@@ -1,5 +1,5 @@
 // The mission on the map: everything follows the page's signals; clicks and drags propose a place, never fly there.
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { Marker, type GeoJSONSource, type ImageSource, type Map as GlMap, type MapMouseEvent } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
 import { highlighted } from "../app/highlight";
@@ -75,6 +75,15 @@ function nextElement(): HTMLElement {
   return element;
 }
 
+/** Parts of the mission that keep their identity while another part changes: each is drawn again only when it changed. */
+const spec = computed(() => mission.value.spec);
+const bearings = computed(() => mission.value.bearings);
+const estimated = computed(() => mission.value.belief);
+const plan = computed(() => mission.value.plan);
+const ended = computed(() => mission.value.ended);
+const home = computed(() => mission.value.home);
+const phase = computed(() => mission.value.phase);
+
 const canPropose = () =>
   cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
 
@@ -89,26 +98,26 @@ function bind(map: GlMap): () => void {
   let vehicleShown = false;
   let nextShown = false;
   const stops = [
-    effect(() => put(map, "plan", planFeatures(mission.value.spec))),
+    effect(() => put(map, "plan", planFeatures(spec.value))),
     effect(() => {
-      const { lines, wedges, places } = bearingFeatures(mission.value);
+      const { lines, wedges, places } = bearingFeatures({ spec: spec.value, bearings: bearings.value });
       put(map, "bearings", lines);
       put(map, "wedges", wedges);
       put(map, "places", places);
-      put(map, "roses", roseFeatures(mission.value));
+      put(map, "roses", roseFeatures({ spec: spec.value, bearings: bearings.value }));
     }),
     effect(() => {
-      const { c95, circle, place } = estimateFeatures(mission.value);
+      const { c95, circle, place } = estimateFeatures({ belief: estimated.value });
       put(map, "c95", c95);
       put(map, "circle", circle);
       put(map, "estimate", place);
     }),
-    effect(() => put(map, "candidates", candidateFeatures(mission.value, highlighted.value))),
+    effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value, ended: ended.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => put(map, "overlays", shownOverlays.value)),
     effect(() => {
-      const home = mission.value.home;
-      put(map, "home", collection(home ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(home) } }] : []));
+      const at = home.value;
+      put(map, "home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(at) } }] : []));
     }),
     effect(() => paintBelief(map)),
     effect(() => {
@@ -137,8 +146,7 @@ function bind(map: GlMap): () => void {
     }),
     effect(() => {
       const proposed = proposal.value;
-      const plan = mission.value.plan?.fact;
-      const at = proposed?.place ?? (mission.value.ended ? undefined : plan?.place);
+      const at = proposed?.place ?? (ended.value ? undefined : plan.value?.fact.place);
       nextMarker.getElement().classList.toggle("proposed", proposed !== null);
       nextMarker.getElement().title = t("map.next");
       if (!at) {
@@ -146,7 +154,7 @@ function bind(map: GlMap): () => void {
         nextShown = false;
         return;
       }
-      nextMarker.setLngLat(lonLat(at)).setDraggable(cursor.value === null && inFlight(mission.value.phase));
+      nextMarker.setLngLat(lonLat(at)).setDraggable(cursor.value === null && inFlight(phase.value));
       if (!nextShown) nextMarker.addTo(map);
       nextShown = true;
     }),
@@ -163,12 +171,12 @@ let framing = true;
 
 function frameAll(map: GlMap, animate: boolean): void {
   framing = true;
-  const spec = mission.peek().spec;
+  const searched = spec.peek();
   const at = vehicle.peek().at;
-  const home = mission.peek().home;
+  const start = home.peek();
   const points: LonLat[] = [
-    ...(spec ? [...areaPoints(spec.area), ...flightPoints(spec)] : []),
-    ...(home ? [lonLat(home)] : []),
+    ...(searched ? [...areaPoints(searched.area), ...flightPoints(searched)] : []),
+    ...(start ? [lonLat(start)] : []),
     ...(at && inFlight(mission.peek().phase) ? [at] : []),
   ];
   const box = boundsOf(points);

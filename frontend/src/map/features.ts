@@ -9,6 +9,8 @@ import type { LonLat } from "../wire/beliefFrame";
 
 export type Features = GeoJSON.FeatureCollection;
 
+type Measured = Pick<MissionState, "spec" | "bearings">;
+
 export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
 
 const feature = (geometry: GeoJSON.Geometry, properties: Record<string, unknown> = {}): GeoJSON.Feature => ({
@@ -57,7 +59,7 @@ export function planFeatures(spec: MissionSpec | null): Features {
 /** Measurement places so near to each other that their numbers would cover one another. */
 const ONE_PLACE_M = 3;
 
-function placeFeatures(mission: MissionState): GeoJSON.Feature[] {
+function placeFeatures(mission: Measured): GeoJSON.Feature[] {
   const places: { at: LonLat; numbers: number[] }[] = [];
   for (const { fact } of mission.bearings) {
     const at = lonLat(fact.place);
@@ -69,7 +71,7 @@ function placeFeatures(mission: MissionState): GeoJSON.Feature[] {
 }
 
 /** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
-export function bearingFeatures(mission: MissionState): { lines: Features; wedges: Features; places: Features } {
+export function bearingFeatures(mission: Measured): { lines: Features; wedges: Features; places: Features } {
   const reach = reachM(mission.spec);
   const used = mission.bearings.filter((b) => !b.excluded);
   const lines: GeoJSON.Feature[] = [];
@@ -91,7 +93,7 @@ export function bearingFeatures(mission: MissionState): { lines: Features; wedge
 }
 
 /** Received power around each measurement place as a rose; the newest strong, older ones fainter. */
-export function roseFeatures(mission: MissionState): Features {
+export function roseFeatures(mission: Measured): Features {
   const size = reachM(mission.spec) / 9;
   const used = mission.bearings;
   return collection(
@@ -107,7 +109,7 @@ export function roseFeatures(mission: MissionState): Features {
   );
 }
 
-export function estimateFeatures(mission: MissionState): { c95: Features; circle: Features; place: Features } {
+export function estimateFeatures(mission: Pick<MissionState, "belief">): { c95: Features; circle: Features; place: Features } {
   const estimate = mission.belief?.fact.estimate;
   if (!estimate) return { c95: collection([]), circle: collection([]), place: collection([]) };
   const at = lonLat(estimate);
@@ -118,7 +120,7 @@ export function estimateFeatures(mission: MissionState): { c95: Features; circle
   };
 }
 
-export function candidateFeatures(mission: MissionState, lit: number | null): Features {
+export function candidateFeatures(mission: Pick<MissionState, "plan" | "ended">, lit: number | null): Features {
   const plan = mission.plan?.fact;
   if (!plan || mission.ended) return collection([]);
   return collection(
