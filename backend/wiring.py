@@ -234,7 +234,8 @@ async def open_simulation(
                 )
             )
             await missions.start_up()
-            await warming
+            if not unfinished:  # a mission in flight needs its page at once
+                await warming
             services = Services(missions, journal, hub, settings, clock.now, payload)
             yield services, receiver if isinstance(receiver, EmitterAroundHome) else None
         finally:

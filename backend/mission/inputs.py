@@ -121,6 +121,13 @@ class PilotTookOver:
 
 
 @dataclass(frozen=True, slots=True)
+class FailsafeActs:
+    """Right after it was heard again, the vehicle begins the autopilot's own return or landing."""
+
+    mode: str
+
+
+@dataclass(frozen=True, slots=True)
 class LinkDown:
     link: Link
     detail: str
@@ -195,6 +202,7 @@ Input = (
     | WorkFailed
     | WorkVetoed
     | PilotTookOver
+    | FailsafeActs
     | LinkDown
     | LinkUp
     | BatteryLow

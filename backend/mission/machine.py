@@ -39,6 +39,7 @@ from backend.mission.inputs import (
     BeliefReady,
     Commanded,
     Edited,
+    FailsafeActs,
     HomeReached,
     Input,
     Interrupted,
@@ -102,6 +103,10 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
                 refuse_flight(step, vetoes)
         case PilotTookOver():
             _pilot(step, given)
+        case FailsafeActs(mode=mode):
+            if state.phase == "hold" and not state.pilot_has_control:
+                step.do(CancelWork())
+                _failsafe_flies(step, f"it went into {mode} because it had not heard from here")
         case LinkDown():
             _link_down(step, given)
         case LinkUp():
@@ -271,7 +276,7 @@ def _vehicle(step: Step, given: BatteryLow | HomeReached | Landed) -> None:
         case Landed() if phase in HOMEWARD:
             finish(step, step.state.return_reason)
         case Landed() if phase == "manual":
-            finish(step, "the pilot landed the vehicle")
+            finish(step, "the vehicle landed while the pilot had control")
         case Landed() if phase == "hold" or (phase in AUTOMATIC and phase != "taking_off"):
             _on_the_ground(step)
         case _:

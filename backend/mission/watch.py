@@ -23,6 +23,8 @@ HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
 GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
 """Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
+HEARD_AGAIN_S = 15.0
+"""So long after it was heard again a vehicle may still be acting on the silence before: it hears us later."""
 
 MEASURED_DRAIN_AFTER_S = 60.0
 MEASURED_DRAIN_PERCENT = 2.0
@@ -65,6 +67,7 @@ class Watch:
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
     _console_seen: bool = False
     _battery_told: bool = False
+    _heard_again_at: float = -math.inf
     _battery_unheard_since: float | None = None
     _on_ground_since: float | None = None
     _tracked_at: float = -math.inf
@@ -82,6 +85,8 @@ class Watch:
         """One look at everything."""
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         self.listening.wait(min(max(now - self._ticked_at, 0.0), LONGEST_TICK_S))
+        if math.isinf(self._ticked_at):
+            self._heard_again_at = now
         self._ticked_at = now
         self.drain.update(telemetry, now)
         self.notice_pilot("")
@@ -95,8 +100,13 @@ class Watch:
         telemetry = self.equipment.vehicle.telemetry()
         mode = telemetry.mode or "unknown"
         unheard = "vehicle" in self._down_since or not telemetry.connected
-        if unheard and telemetry.controller == "pilot" and mode in GOING_HOME:
-            self.tolerated_mode = mode
+        if telemetry.controller == "pilot" and mode in GOING_HOME and mode != self.tolerated_mode:
+            just_heard = self.equipment.clock.now() - self._heard_again_at < HEARD_AGAIN_S
+            if unheard or self.tolerated_mode is not None:
+                self.tolerated_mode = mode
+            elif just_heard and self.state().phase == "hold":
+                self.tolerated_mode = mode
+                self.give(inputs.FailsafeActs(mode))
         if mode == self.tolerated_mode and self.state().phase == "hold":
             return
         self.tolerated_mode = None
@@ -121,6 +131,8 @@ class Watch:
             self._down_since[link] = now
             self.give(inputs.LinkDown(link, detail))
         elif up and link in self._down_since:
+            if link == "vehicle":
+                self._heard_again_at = now
             going_home = link == "vehicle" and self.tolerated_mode is not None
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 

@@ -288,6 +288,16 @@ def test_after_a_lost_link_the_failsafe_that_brings_the_vehicle_home_is_not_inte
     assert moves(walk.command(commands.Resume())) or walk.state.phase == "planning"
 
 
+def test_a_failsafe_that_acts_right_after_a_restart_leaves_the_mission_in_hold_and_may_be_resumed_from() -> None:
+    walk = Walk().to("flying")
+    walk.give(inputs.Restarted(pilot=False, going_home=False, detail="back"))
+    effects = walk.give(inputs.FailsafeActs("RETURN"))
+    assert not any(isinstance(e, VEHICLE) for e in effects)
+    assert walk.state.phase == "hold"
+    assert not walk.state.pilot_has_control
+    assert answer(walk.command(commands.Resume())).accepted
+
+
 def test_the_pilot_in_control_is_never_commanded_not_even_by_hold_return_or_abort() -> None:
     for command in (commands.Hold(), commands.Return(), commands.Abort(), commands.Override(place=HOME)):
         walk = Walk().to("manual")

@@ -139,12 +139,24 @@ def test_a_return_that_began_while_the_link_was_lost_is_the_failsafes_one_seen_t
     assert up.going_home
     assert scene.tick(3) == []
     scene.see(mode="LAND")
-    assert isinstance(scene.tick()[0], inputs.PilotTookOver)
+    assert scene.tick(3) == []
     scene.vehicle.heard = False
     scene.tick()
-    scene.see(controller="pilot", mode="POSCTL")
+    scene.see(mode="POSCTL")
     scene.vehicle.heard = True
     assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
+
+
+def test_a_return_right_after_the_vehicle_was_heard_again_is_the_failsafes_a_later_one_is_not(scene: Scene) -> None:
+    scene.state = Walk().to("hold").state
+    scene.tick(20)
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    assert scene.tick(3) == [inputs.FailsafeActs("RETURN")]
+    assert scene.watch.tolerated_mode == "RETURN"
+    scene.see(controller="crossfix", mode="HOLD", held_by_pilot=False)
+    assert scene.tick(80) == []
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    assert isinstance(scene.tick()[0], inputs.PilotTookOver)
 
 
 def test_home_and_ground_are_told_when_they_are_reached(scene: Scene) -> None:
