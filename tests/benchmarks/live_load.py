@@ -1,11 +1,12 @@
 """How the live channel and the abort hold up under viewers. Prints figures; run it by hand:
 
     python tests/benchmarks/live_load.py fanout --viewers 100 --stalled 5 --hertz 10 --seconds 60
-    python tests/benchmarks/live_load.py abort --viewers 50 --stalled 5 --times 100
+    python tests/benchmarks/live_load.py abort --viewers 50 --stalled 5 --times 200
 
 fanout: a server process publishes telemetry (and an event a second, a belief every five); this process reads with all
-viewers and measures from the publish to the read. abort: a whole server with a simulated vehicle is told HOLD again
-and again; measured from the request's arrival in the server to the command handed to the vehicle.
+viewers and measures from the publish to the read. abort: a whole server starts one mission after the other on a
+simulated vehicle and is told ABORT in take-off or soon after, while everybody watches; measured from the request's
+arrival in the server to the first command (hold) handed to the vehicle.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ import asyncio
 import base64
 import json
 import os
+import random
 import socket
 import statistics
 import sys
 import tempfile
 import time
 import urllib.request
+from collections import Counter
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, nullcontext
 from dataclasses import replace
@@ -43,6 +46,7 @@ from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
 from backend.store.opening import open_journal
 from hardware.readings import GeoPoint, Telemetry
+from hardware.sim.autopilot.launch import find_simulated
 from planner.belief.grid import GridBelief
 
 SPEC = MissionSpec(name="load", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
@@ -259,9 +263,10 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
         await hold(vehicle)
 
     PatientVehicle.hold = timed_hold
-    port = free_port()
+    port, chance = free_port(), random.Random(1)
+    delays_ms, answers_ms, phases = [], [], Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
-        settings = Settings(port=port, data_dir=Path(folder), time_factor=5.0, live_ping_timeout_s=60.0)
+        settings = Settings(port=port, data_dir=Path(folder), time_factor=16.0, live_ping_timeout_s=60.0)
         async with open_services(settings) as services:
             app = create_app(settings, lambda _: nullcontext(services))
             watch = Stopwatch(app)
@@ -270,40 +275,50 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
             server = uvicorn.Server(config)
             serving = asyncio.create_task(server.serve())
             await until_answers(port)
+            kept = json.loads((Path(folder) / "simulated_vehicle.json").read_text())
+            vehicle = await find_simulated(kept["connect_port"], kept["control_port"])
+            if vehicle is None:
+                raise SystemExit("the simulated vehicle does not answer")
+            await vehicle.order("set_param", name="RTL_RETURN_ALT", value=5)
             spec = json.load(
                 await asyncio.to_thread(urllib.request.urlopen, f"http://127.0.0.1:{port}/api/defaults", timeout=10)
             )["spec"]
-            mission = (await asyncio.to_thread(post, port, "/missions", spec))["mission_id"]
-            started = await order(port, mission, "start")
-            if not started["accepted"]:
-                raise SystemExit(f"the mission did not start: {started}")
-            viewer_process = await asyncio.create_subprocess_exec(
-                sys.executable, __file__, "viewers", str(port), mission, str(viewers), str(stalled)
-            )
-            while services.hub.viewers() < viewers + stalled:  # noqa: ASYNC110 (another process joins)
-                await asyncio.sleep(0.1)
-            delays_ms, answers_ms = [], []
-            for _ in range(times):
+            spec["flight"] |= {"altitude_relative_m": 6.0, "minimum_altitude_relative_m": 3.0}
+            watching = await asyncio.create_subprocess_exec(
+                sys.executable, __file__, "viewers", str(port), str(viewers), str(stalled),
+                stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
+            )  # fmt: skip
+            assert watching.stdin is not None
+            assert watching.stdout is not None
+            while len(delays_ms) < times:
+                await vehicle.order("battery", percent=100)
+                mission = (await asyncio.to_thread(post, port, "/missions", spec))["mission_id"]
+                watching.stdin.write(f"{mission}\n".encode())
+                await watching.stdout.readline()
+                async with asyncio.timeout(60):
+                    while not (await order(port, mission, "start"))["accepted"]:  # noqa: ASYNC110 (as a person would)
+                        await asyncio.sleep(0.2)
+                await asyncio.sleep(chance.uniform(0.1, 1.5))
                 held_at.clear()
+                phase = services.missions.status().phase or ""
                 asked = time.perf_counter()
-                reply = await order(port, mission, "hold")
+                reply = await order(port, mission, "abort")
                 answered = time.perf_counter()
-                if reply["accepted"] and held_at:
-                    delays_ms.append(1e3 * (held_at[0] - watch.arrived))
-                    answers_ms.append(1e3 * (answered - asked))
-                await asyncio.sleep(0.3)
-                await order(port, mission, "resume")
-                await asyncio.sleep(0.5)
-                if (await services.journal.mission(mission)).outcome is not None:
-                    break
-            viewer_process.terminate()
-            await viewer_process.wait()
+                if not reply["accepted"] or not held_at:
+                    raise SystemExit(f"abort in {phase} did not reach the vehicle: {reply}")
+                phases[phase] += 1
+                delays_ms.append(1e3 * (held_at[0] - watch.arrived))
+                answers_ms.append(1e3 * (answered - asked))
+            watching.stdin.close()
+            await watching.wait()
             server.should_exit = True
             await serving
+        await vehicle.stop()
     return {
         "viewers": viewers,
         "stalled": stalled,
-        "commands": len(delays_ms),
+        "aborts": len(delays_ms),
+        "in": dict(phases.most_common()),
         "receipt_to_vehicle_p50_ms": percentile(delays_ms, 0.5),
         "receipt_to_vehicle_p99_ms": percentile(delays_ms, 0.99),
         "receipt_to_vehicle_max_ms": max(delays_ms, default=float("nan")),
@@ -311,10 +326,25 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
     }
 
 
-async def viewers_only(port: int, mission_id: str, viewers: int, stalled: int) -> None:
-    sockets = [await asyncio.to_thread(stalled_viewer, port, mission_id) for _ in range(stalled)]
-    await asyncio.gather(*(view(port, mission_id, Tally()) for _ in range(viewers)))
-    del sockets
+async def viewers_only(port: int, viewers: int, stalled: int) -> None:
+    """Reads mission ids, one a line; all viewers go over to the new one, then a line says so."""
+    tasks: list[asyncio.Task[None]] = []
+    sockets: list[socket.socket] = []
+    while mission_id := (await asyncio.to_thread(sys.stdin.readline)).strip():
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        for client in sockets:
+            client.close()
+        sockets = [await asyncio.to_thread(stalled_viewer, port, mission_id) for _ in range(stalled)]
+        tallies = [Tally() for _ in range(viewers)]
+        tasks = [asyncio.create_task(view(port, mission_id, tally)) for tally in tallies]
+        while not all(tally.messages for tally in tallies):  # noqa: ASYNC110 (tasks of this process join)
+            await asyncio.sleep(0.02)
+        print("joined", flush=True)
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
 
 
 def main() -> None:
@@ -328,12 +358,12 @@ def main() -> None:
     two = commands.add_parser("abort")
     two.add_argument("--viewers", type=int, default=50)
     two.add_argument("--stalled", type=int, default=5)
-    two.add_argument("--times", type=int, default=100)
+    two.add_argument("--times", type=int, default=int(os.environ.get("CROSSFIX_ABORTS", "200")))
     server = commands.add_parser("serve-fanout")
     for name, kind in (("port", int), ("folder", str), ("hertz", float)):
         server.add_argument(name, type=kind)
     only = commands.add_parser("viewers")
-    for name, kind in (("port", int), ("mission_id", str), ("viewers", int), ("stalled", int)):
+    for name, kind in (("port", int), ("viewers", int), ("stalled", int)):
         only.add_argument(name, type=kind)
     given = vars(parser.parse_args())
     run = {"fanout": fanout, "abort": abort, "serve-fanout": serve_fanout, "viewers": viewers_only}
