@@ -1,7 +1,7 @@
 """The direction finder: sparse reconstruction finds the directions, a pattern fit between the columns sharpens them.
 
 Steps: bin (sweep.py) -> reject what no method can use -> sparse non-negative reconstruction on linear power (sparse.py)
--> components -> maximum-likelihood refinement in decibels (refine.py) -> sigma from curvature and residual -> quality.
+-> components -> posterior around the strongest, in decibels, echoes and look-down considered (refine.py) -> quality.
 
 Units of the sparse problem: linear power above the noise floor. Both the columns of A and m are scaled to unit norm
 over a full turn, so lambda = 0.3 has one meaning whatever the signal level, pattern or number of empty bins: a
@@ -16,18 +16,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.refine import (
-    Fit,
-    PatternCurve,
-    Spread,
-    estimate_spread,
-    fit_pattern,
-    profile_minimum,
-    smooth_minimum,
-)
+from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
-from hardware.direction_finding.sweep import BIN_DEG, BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
+from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
 
 PENALTY = 0.3
@@ -35,13 +28,10 @@ MINIMUM_QUALITY = 0.7
 MINIMUM_BINS = 8
 MAXIMUM_GAP_DEG = 100.0
 MAXIMUM_CLIPPED = 0.05
-MINIMUM_SNR_DB = 3.0
+HEARD_DB = 3.0
+"""Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
-SECOND_SOURCE_WEIGHT = 0.12
-SIGMA_FLOOR_DEG = 0.5
-SIGMA_CALIBRATION = 1.0
 MAXIMUM_SIGMA_DEG = 60.0
-CORRELATION_DEG = 40.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +48,7 @@ class SparseDirectionFinder:
 
     minimum_quality: float = MINIMUM_QUALITY
     penalty: float = PENALTY
-    _prepared: dict[bytes, tuple[PatternBank, PatternCurve]] = field(default_factory=dict, repr=False)
+    _prepared: dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]] = field(default_factory=dict, repr=False)
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
@@ -66,39 +56,39 @@ class SparseDirectionFinder:
         refusal = unusable(sweep, binned)
         if refusal:
             return refused(binned, refusal)
-        bank, curve = self._prepare(pattern)
+        bank, curve, alternatives = self._prepare(pattern)
         noise_db = sweep.noise_floor_db
         power = linear_power(binned, noise_db)
-        if noise_db is not None and np.nanmax(binned.power_db) < noise_db + MINIMUM_SNR_DB:
-            return refused(binned, f"nothing was heard: no direction is {MINIMUM_SNR_DB:.0f} dB above the noise floor")
+        silent = f"nothing was heard: no direction is {HEARD_DB:.0f} dB above the noise floor"
+        if noise_db is not None and np.nanmax(binned.power_db) < noise_db + HEARD_DB:
+            return refused(binned, silent)
         solution = solve_sparse(bank, power, self.penalty, binned.filled)
         parts = components(solution.r, curve.beam_deg / 4.0)
         if not parts:
             return refused(binned, "the sweep has no direction in it: the power looks the same all around")
-        fit = refine(curve, binned, parts, noise_db)
-        return self._reading(bank, curve, binned, parts, fit, noise_db)
+        refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
+        if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
+            return refused(binned, silent)
+        return self._reading(curve, binned, parts, refined, noise_db)
 
-    def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve]:
+    def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve, Alternatives]:
         key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes()
         if key not in self._prepared:
             if len(self._prepared) >= 16:
                 self._prepared.clear()
-            self._prepared[key] = (PatternBank.of(pattern), PatternCurve(pattern))
+            self._prepared[key] = (PatternBank.of(pattern), PatternCurve(pattern), Alternatives.of(pattern))
         return self._prepared[key]
 
     def _reading(
         self,
-        bank: PatternBank,
         curve: PatternCurve,
         binned: BinnedSweep,
         parts: list[Component],
-        fit: Fit,
+        refined: Refined,
         noise_db: float | None,
     ) -> BearingReading:
-        bearing = float(fit.bearing_deg[0]) % 360.0
+        bearing, sigma = refined.bearing_deg, refined.sigma_deg
         quality = cosine_quality(curve, binned, bearing, noise_db)
-        sigma = sigma_deg(fit, binned)
-        fitted = _fitted_db(curve, fit, noise_db)
         peaks = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
             for p in parts[1:]
@@ -117,7 +107,6 @@ class SparseDirectionFinder:
             )
         elif sigma > MAXIMUM_SIGMA_DEG:
             reason = "the bearing is too uncertain: the power hardly changes with the heading"
-        peak_db = float(fit.level_db[0]) + curve.peak_db
         return BearingReading(
             bearing_deg=bearing % 360.0,
             sigma_deg=min(sigma, 180.0),
@@ -126,8 +115,8 @@ class SparseDirectionFinder:
             reason=reason,
             peaks=peaks,
             binned_db=binned.power_db,
-            fitted_db=fitted,
-            snr_db=None if noise_db is None else peak_db - noise_db,
+            fitted_db=refined.fitted_db,
+            snr_db=None if noise_db is None else refined.peak_db - noise_db,
         )
 
 
@@ -186,85 +175,12 @@ def components(r: NDArray[np.float64], reach_deg: float) -> list[Component]:
     return sorted(found, key=lambda part: -part.weight)
 
 
-def refine(curve: PatternCurve, binned: BinnedSweep, parts: list[Component], noise_db: float | None) -> Fit:
-    """One source, or two when the second pays for its two parameters (Bayesian information criterion)."""
-    single = _fit_from(curve, binned, [parts[0].bearing_deg], [0.0], noise_db)
-    second = next((p for p in parts[1:] if p.weight >= SECOND_SOURCE_WEIGHT * parts[0].weight), None)
-    if second is None:
-        return single
-    ratio_db = 10.0 * math.log10(second.weight / parts[0].weight)
-    double = _fit_from(curve, binned, [parts[0].bearing_deg, second.bearing_deg], [0.0, ratio_db], noise_db)
-    n = single.residual_db.size
-    effective = n / _inflation(single, _kernel(binned))
-    gain = effective * math.log(max(single.cost, 1e-12) / max(double.cost, 1e-12)) - 2.0 * math.log(max(effective, 2.0))
-    apart = abs((double.bearing_deg[0] - double.bearing_deg[1] + 180.0) % 360.0 - 180.0)
-    return double if gain > 4.0 and apart > curve.beam_deg / 4.0 else single
-
-
-def _fit_from(
-    curve: PatternCurve, binned: BinnedSweep, bearing: list[float], level: list[float], noise_db: float | None
-) -> Fit:
-    """Fit with even scatter first, then with the scatter that its residuals show."""
-    if len(bearing) == 1:
-        bearing = [profile_minimum(curve, binned, bearing[0], noise_db)]
-    heading = binned.heading_deg[binned.filled]
-    predicted = np.zeros(heading.size)
-    for a, b in zip(bearing, level, strict=True):
-        predicted += 10.0 ** ((b + curve.gain_db(a - heading)) / 10.0)
-    shift = float(np.median(binned.power_db[binned.filled] - 10.0 * np.log10(predicted)))
-    first = fit_pattern(curve, binned, np.array(bearing), np.array(level) + shift, noise_db, Spread())
-    spread = estimate_spread(first.residual_db, first.predicted_db)
-    fit = fit_pattern(curve, binned, first.bearing_deg, first.level_db, noise_db, spread)
-    return smooth_minimum(curve, binned, fit, noise_db) if fit.bearing_deg.size == 1 else fit
-
-
-def _kernel(binned: BinnedSweep) -> NDArray[np.float64]:
-    """(n, n) triangular kernel of CORRELATION_DEG over the headings of the filled bins (Newey & West 1987)."""
-    heading = binned.heading_deg[binned.filled]
-    apart = np.abs((heading[:, None] - heading[None, :] + 180.0) % 360.0 - 180.0)
-    return np.maximum(1.0 - apart / CORRELATION_DEG, 0.0)
-
-
-def _inflation(fit: Fit, kernel: NDArray[np.float64]) -> float:
-    """By how much neighbouring residuals that err alike raise the variance (1: independent).
-
-    sum_ij K_ij z_i z_j / sum_i z_i^2: fading and a pattern that does not quite fit both show up here.
-    """
-    z = fit.residual_db * np.sqrt(fit.weight)
-    return max(float(z @ kernel @ z) / max(float(z @ z), 1e-12), 1.0)
-
-
-def sigma_deg(fit: Fit, binned: BinnedSweep) -> float:
-    """Standard deviation of the strongest source's bearing, from the fit's curvature C and the residuals.
-
-    The larger of two: C times the residual variance and its correlation; and the sandwich C (sum_ij K_ij s_i s_j) C of
-    the scores s, which sees residuals that are larger where the pattern is steep.
-    """
-    n, parameters = fit.scores.shape
-    freedom = max(n - parameters, 3)
-    kernel = _kernel(binned)
-    even = fit.cost / freedom * _inflation(fit, kernel) * float(fit.covariance[0, 0])
-    sandwich = fit.covariance @ (fit.scores.T @ kernel @ fit.scores) @ fit.covariance
-    uneven = float(sandwich[0, 0]) * n / freedom
-    # n - p residuals know their own variance only so well: variance of Student's t
-    certain = freedom / max(freedom - 2.0, 1.0)
-    return math.hypot(SIGMA_CALIBRATION * math.sqrt(max(even, uneven, 0.0) * certain), SIGMA_FLOOR_DEG)
-
-
 def cosine_quality(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
     """Cosine similarity of the sweep and the pattern shifted to the bearing, linear power, over the filled bins."""
     measured = linear_power(binned, noise_db)[binned.filled]
     shifted = 10.0 ** ((curve.gain_db(bearing_deg - binned.heading_deg[binned.filled]) - curve.peak_db) / 10.0)
     norm = float(np.linalg.norm(measured) * np.linalg.norm(shifted))
     return min(max(float(measured @ shifted) / norm, 0.0), 1.0) if norm > 0 else 0.0
-
-
-def _fitted_db(curve: PatternCurve, fit: Fit, noise_db: float | None) -> NDArray[np.float64]:
-    centre = (np.arange(BINS) + 0.5) * BIN_DEG
-    total = np.full(BINS, 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0))
-    for bearing, level in zip(fit.bearing_deg, fit.level_db, strict=True):
-        total += 10.0 ** ((level + curve.gain_db(bearing - centre)) / 10.0)
-    return 10.0 * np.log10(total)
 
 
 def refused(binned: BinnedSweep, reason: str) -> BearingReading:

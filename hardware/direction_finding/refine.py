@@ -1,48 +1,57 @@
-"""Refinement between the columns: maximum likelihood of bearing and level on the binned decibels.
+"""Refinement between the columns: the bearing's posterior, averaged over what the sweep may show (alternatives.py).
 
-Noise of received power is multiplicative (fading, gain jitter), so it is even in decibels and the likelihood is a least
-squares problem there:  m_i = 10 log10( sum_k a_k G(phi_k - h_i) + N ) + w_i,  w_i ~ N(0, s_i^2).
+Noise of received power is multiplicative (fading, gain jitter), so it is even in decibels; the receiver's noise N adds
+in power. For alternative k with template P_k, level L and bearing b the filled bins are
+
+    m_i = 10 log10(10^(L / 10) P_k(b - h_i) + N) + w_i,    var w_i = e^2 + (f s_i)^2
+
+with s_i the wave's share of the power, L profiled out, e (every reading) and f (fading, which acts on the wave only)
+the likeliest given the residuals; readings beyond three standard deviations are weighted down (Huber). With c_k(b) the
+weighted sum of squares and the scale of w unknown, the marginal likelihood is that of Student's t (Zellner 1971,
+chapter 3), tempered for residuals that err alike:
+
+    p_k(b) ~ prior_k  c_k*^-(n / (2 r))  (c_k(b) / c_k*)^-(n / (2 q)),    c_k* = min_b c_k(b)
+
+r: the residuals' correlation summed over neighbouring headings (Newey & West 1987); it weighs shape against shape. q:
+the same, but weighted by how much each bin turns the bearing, times how much larger the residuals are there (White
+1980); only correlation on the scale of the pattern's flanks makes a bearing uncertain.
+
+The bearing is the mean of p within the likeliest kind; sigma its spread about it over all kinds. So an echo that cannot
+be told from the direct wave, or a view from above, widens sigma by as much as the sweep leaves it possible.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
+from hardware.direction_finding.alternatives import KINDS, Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.sweep import BinnedSweep
+from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep
 
-LEAKAGES = (0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3)
-"""Stray power, of the strongest bin's, that no pattern explains; with it, decibels near a null say little."""
-LEAKAGE_EVIDENCE = 4.0
-"""Leakage is believed when it lowers -2 log likelihood by more than this."""
-SMOOTHING_DEG = 1.0
 HUBER = 3.0
 """Residuals beyond so many standard deviations count linearly, not quadratically."""
+CORRELATION_DEG = 40.0
+"""Residuals of headings further apart are independent."""
+SIGMA_FLOOR_DEG = 0.25
+"""Half a column."""
+NEGLIGIBLE = 9.0
+"""Alternatives so much (natural log) below the best are left out."""
+FEWEST_FREE = 3.0
+FIRST_CORRELATION = 4.0
+"""r assumed while the residuals are not known yet."""
+LARGEST_SHIFT_DB = 6.0
+_SD_GRID = np.array([0.2, 0.35, 0.5, 0.7, 1.0, 1.4])
+_FADING_GRID = np.array([0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
+_FADING_EVIDENCE = 2.0
+"""Fading is believed when it lowers -2 log likelihood by more than this."""
+_FINE_DEG = 0.25
 _DB = 10.0 / np.log(10.0)
 _STEP_DEG = 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class Fit:
-    """A pattern fit with one or two sources.
-
-    bearing_deg, level_db: (k,) sources, the strongest first. covariance: (2k, 2k) of (bearings in degrees, levels
-    in dB), for the assumed spread. residual_db, predicted_db: (n,) of the filled bins. weight: (n,) their inverse
-    variances. cost: weighted sum of squares, robust; about n when the assumed spread is right. scores: (n, 2k)
-    w_i r_i d(model_i) / d(parameters).
-    """
-
-    bearing_deg: NDArray[np.float64]
-    level_db: NDArray[np.float64]
-    covariance: NDArray[np.float64]
-    residual_db: NDArray[np.float64]
-    predicted_db: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    cost: float
-    scores: NDArray[np.float64]
 
 
 class PatternCurve:
@@ -70,102 +79,39 @@ class PatternCurve:
         return table[low] * (1.0 - part) + table[low + 1] * part
 
 
-def relative_weights(
-    binned: BinnedSweep, predicted_db: NDArray[np.float64], noise_db: float | None, spread: Spread
-) -> NDArray[np.float64]:
-    """(n,) 1 dB^2 / variance of the filled bins' dB means.
-
-    variance_i = sd^2 (1 + 1/count)/2 + (4.34 leakage P_max / P_i)^2 + (1.3 N / P_i)^2: samples in a bin share its
-    fading; stray power and noise weigh most where the antenna is weak.
-    """
-    strength = 10.0 ** ((predicted_db - predicted_db.max()) / 10.0)
-    variance = spread.sd_db**2 * (1.0 + 1.0 / binned.count[binned.filled]) / 2.0
-    variance = variance + (_DB * spread.leakage / strength) ** 2
-    if noise_db is not None:
-        variance = variance + (0.3 * _DB * np.minimum(10.0 ** ((noise_db - predicted_db) / 10.0), 1.0)) ** 2
-    return 1.0 / variance
-
-
 @dataclass(frozen=True, slots=True)
-class Spread:
-    """How the bins scatter about the fit: sd_db everywhere, and stray power `leakage` (of the strongest bin's)."""
+class Refined:
+    """bearing_deg, sigma_deg: of the direct wave. peak_db: its power where the antenna is strongest, without noise.
 
-    sd_db: float = 1.0
-    leakage: float = 0.0
+    fitted_db: (180,) the likeliest alternative at the bins' centres. kinds: probability of one wave alone, of an echo
+    besides, of a view from above.
+    """
 
-
-def estimate_spread(residual_db: NDArray[np.float64], predicted_db: NDArray[np.float64]) -> Spread:
-    """The likeliest Spread among LEAKAGES, given a fit's residuals (n,) and prediction (n,)."""
-    strength = 10.0 ** ((predicted_db - predicted_db.max()) / 10.0)
-    near_db = max(_standard_deviation(residual_db), 0.2)
-    best, best_score = Spread(near_db), np.inf
-    for leakage in LEAKAGES:
-        stray = (_DB * leakage / strength) ** 2
-        for sd_db in (0.25 * near_db, 0.5 * near_db, 0.7 * near_db, near_db, 1.4 * near_db):
-            variance = sd_db**2 + stray
-            # -2 log likelihood, residuals cut at HUBER standard deviations
-            score = float(np.sum(np.log(variance) + np.minimum(residual_db**2 / variance, HUBER**2)))
-            score += LEAKAGE_EVIDENCE if leakage > 0 else 0.0
-            if score < best_score - 1e-9:
-                best, best_score = Spread(sd_db, leakage), score
-    return best
+    bearing_deg: float
+    sigma_deg: float
+    peak_db: float
+    fitted_db: NDArray[np.float64]
+    kinds: tuple[float, ...]
 
 
-def fit_pattern(
-    curve: PatternCurve,
-    binned: BinnedSweep,
-    start_bearing_deg: NDArray[np.float64],
-    start_level_db: NDArray[np.float64],
-    noise_db: float | None,
-    spread: Spread,
-    iterations: int = 25,
-) -> Fit:
-    """Levenberg-Marquardt with Huber weights from the given sources; works on the filled bins."""
-    heading = binned.heading_deg[binned.filled]
-    power = binned.power_db[binned.filled]
-    noise = 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0)
-    sources = start_bearing_deg.size
-    theta = np.concatenate([start_bearing_deg, start_level_db]).astype(np.float64)
-    damping = 1e-3
-
-    predicted, jacobian = _model(curve, heading, theta, sources, noise)
-    residual = power - predicted
-    weight = relative_weights(binned, predicted, noise_db, spread)
-    limit = _huber_limit(residual, weight)
-    robust = _huber(residual, weight, limit)
-    cost = _cost(residual, weight, limit)
-    for _ in range(iterations):
-        normal = (jacobian * robust[:, None]).T @ jacobian
-        step = _damped_step(normal, (jacobian * robust[:, None]).T @ residual, damping)
-        step = np.clip(step, -10.0, 10.0)
-        trial = theta + step
-        trial_predicted, trial_jacobian = _model(curve, heading, trial, sources, noise)
-        trial_cost = _cost(power - trial_predicted, weight, limit)
-        if trial_cost <= cost:
-            settled = np.abs(step[:sources]).max() < 0.003 or cost - trial_cost < 1e-7 * cost
-            theta, jacobian, residual, cost = trial, trial_jacobian, power - trial_predicted, trial_cost
-            robust = _huber(residual, weight, limit)
-            damping = max(damping * 0.2, 1e-9)
-            if settled:
-                break
-        else:
-            damping *= 8.0
-            if damping > 1e6:
-                break
-    normal = (jacobian * weight[:, None]).T @ jacobian
-    covariance = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
-    order = np.argsort(-theta[sources:], kind="stable")
-    both = np.concatenate([order, order + sources])
-    return Fit(
-        theta[:sources][order] % 360.0,
-        theta[sources:][order],
-        covariance[np.ix_(both, both)],
-        residual,
-        power - residual,
-        weight,
-        cost,
-        ((weight * residual)[:, None] * jacobian)[:, both],
-    )
+def refine(
+    curve: PatternCurve, alternatives: Alternatives, binned: BinnedSweep, near_deg: float, noise_db: float | None
+) -> Refined:
+    """The bearing near `near_deg`, which is right within half a beam. noise_db: the receiver's floor, None: unknown."""
+    centre = profile_minimum(curve, binned, near_deg, noise_db)
+    steps = int(min(max(2.0 * curve.beam_deg / 3.0, 16.0), 60.0) / BIN_DEG)
+    around: NDArray[np.float64] = centre + BIN_DEG * np.arange(-steps, steps + 1, dtype=np.float64)
+    grid = _Grid(binned, around)
+    level_db = _level_db(curve, binned, centre, noise_db)
+    templates = _Templates(alternatives, level_db, noise_db)
+    look = grid.look(templates, 0, steps, np.ones(grid.size))
+    first = grid.cost(templates, _weights(look))
+    free = max(grid.size / FIRST_CORRELATION, FEWEST_FREE)
+    k, place = divmod(int(np.argmax(alternatives.log_prior[:, None] - 0.5 * free * np.log(first))), first.shape[1])
+    look = grid.look(templates, k, place, _weights(look))
+    templates = _Templates(alternatives, level_db + look.shift_db, noise_db)
+    weight = _weights(look)
+    return _posterior(alternatives, templates, grid, look, weight, grid.cost(templates, weight))
 
 
 def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
@@ -188,69 +134,173 @@ def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float
     return float(grid[int(np.argmin((power - predicted) ** 2 @ count))])
 
 
-def smooth_minimum(curve: PatternCurve, binned: BinnedSweep, fit: Fit, noise_db: float | None) -> Fit:
-    """A single source's bearing at the foot of a parabola through the cost around it.
+class _Templates:
+    """The alternatives at one level. db: (k, 180) with noise. share: (k, 180) of the wave in the power, None: all."""
 
-    A measured pattern is a polygon: its corners make small steps in the cost that the exact minimum would fall into.
+    def __init__(self, alternatives: Alternatives, level_db: float, noise_db: float | None) -> None:
+        self.level_db = level_db
+        power = alternatives.power * 10.0 ** (level_db / 10.0)
+        if noise_db is None:
+            self.db, self.share = _DB * np.log(power), None
+        else:
+            total = power + 10.0 ** (noise_db / 10.0)
+            self.db, self.share = _DB * np.log(total), power / total
+
+    def between(self, k: int, low: NDArray[np.int64], part: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """(n,) decibels, their slope a degree, and the wave's share at places low + part of template k."""
+        high = (low + 1) % BINS
+        db = self.db[k]
+        share = np.ones(part.size) if self.share is None else _mix(self.share[k][low], self.share[k][high], part)
+        return _mix(db[low], db[high], part), (db[high] - db[low]) / BIN_DEG, share
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """The filled bins against one template at one bearing, its level fitted: by shift_db.
+
+    residual_db, share: (n,); slope: (n,) dB a degree of bearing, what a change of level explains taken out.
     """
-    heading = binned.heading_deg[binned.filled]
-    noise = 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0)
-    off = np.linspace(-SMOOTHING_DEG, SMOOTHING_DEG, 9)
-    relative = fit.bearing_deg[0] + np.subtract.outer(off, heading)
-    predicted = _DB * np.log(10.0 ** ((fit.level_db[0] + curve.gain_db(relative)) / 10.0) + noise)
-    residual = binned.power_db[binned.filled] - predicted
-    level = residual @ fit.weight / fit.weight.sum()
-    residual = residual - level[:, None]
-    limit = _huber_limit(fit.residual_db, fit.weight)
-    size = np.abs(residual) * np.sqrt(fit.weight)
-    cost = np.sum(np.where(size <= limit, size**2, 2.0 * limit * size - limit**2), axis=1)
-    second, first, _ = np.polyfit(off, cost, 2)
-    if second <= 0.0:
-        return fit
-    step = float(np.clip(-first / (2.0 * second), -SMOOTHING_DEG, SMOOTHING_DEG))
-    return replace(fit, bearing_deg=(fit.bearing_deg + step) % 360.0)
+
+    residual_db: NDArray[np.float64]
+    share: NDArray[np.float64]
+    slope: NDArray[np.float64]
+    shift_db: float
 
 
-def _damped_step(normal: NDArray[np.float64], gradient: NDArray[np.float64], damping: float) -> NDArray[np.float64]:
-    damped = normal.copy()
-    damped.flat[:: normal.shape[0] + 1] *= 1.0 + damping
-    damped.flat[:: normal.shape[0] + 1] += 1e-12
-    return np.asarray(np.linalg.solve(damped, gradient), dtype=np.float64)
+class _Grid:
+    """The filled bins seen from (j,) bearings: template places b - h_i = (low + part) bins, both (n, j)."""
+
+    def __init__(self, binned: BinnedSweep, bearing_deg: NDArray[np.float64]) -> None:
+        self.bearing_deg = bearing_deg
+        self.heading_deg = binned.heading_deg[binned.filled]
+        self.power_db = binned.power_db[binned.filled]
+        self.size = self.power_db.size
+        at = (np.subtract.outer(bearing_deg, self.heading_deg).T % 360.0) / BIN_DEG
+        self.low = np.floor(at).astype(np.int64) % BINS
+        self.part = at - np.floor(at)
+
+    def look(self, templates: _Templates, k: int, place: int, weight: NDArray[np.float64]) -> _Look:
+        db, slope, share = templates.between(k, self.low[:, place], self.part[:, place])
+        # d(model) / d(level) = share
+        leverage = weight * share / np.sum(weight * share**2)
+        residual = self.power_db - db
+        shift = float(leverage @ residual)
+        steep = slope - share * float(leverage @ slope)
+        return _Look(residual - share * shift, share, steep, float(np.clip(shift, -LARGEST_SHIFT_DB, LARGEST_SHIFT_DB)))
+
+    def cost(self, templates: _Templates, weight: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(k, j) weighted sum of squares with the level profiled out, to first order in the level.
+
+        sum w (m - T - L s)^2 over L = sum w (m - T)^2 - (sum w s (m - T))^2 / sum w s^2, for all at once by matrices.
+        """
+        m = self.power_db
+        of_weight, of_power = self._spread(weight), self._spread(weight * m)
+        db, share = templates.db, templates.share
+        squares = (weight @ m**2) - 2.0 * (db @ of_power) + (db**2) @ of_weight
+        if share is None:
+            along, norm = weight @ m - db @ of_weight, np.full(1, weight.sum())
+        else:
+            along, norm = share @ of_power - (share * db) @ of_weight, np.maximum((share**2) @ of_weight, 1e-9)
+        return np.maximum(squares - along**2 / norm, 1e-6)
+
+    def _spread(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(180, j) the bins' values at their places in the template, shared between the two next to them."""
+        count = self.bearing_deg.size
+        column = np.arange(count)
+        spread = np.zeros(BINS * count)
+        for place, part in ((self.low, 1.0 - self.part), ((self.low + 1) % BINS, self.part)):
+            spread += np.bincount((place * count + column).ravel(), (value[:, None] * part).ravel(), BINS * count)
+        return spread.reshape(BINS, count)
 
 
-def _model(
-    curve: PatternCurve, heading: NDArray[np.float64], theta: NDArray[np.float64], sources: int, noise: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n,) dB and (n, 2k) derivative by bearings (per degree) and levels (per dB)."""
-    total = np.full(heading.size, noise)
-    parts: list[NDArray[np.float64]] = []
-    for k in range(sources):
-        # a_k G(phi_k - h_i)
-        parts.append(10.0 ** ((theta[sources + k] + curve.gain_db(theta[k] - heading)) / 10.0))
-        total = total + parts[-1]
-    jacobian = np.empty((heading.size, 2 * sources))
-    for k, part in enumerate(parts):
-        share = part / total
-        jacobian[:, k] = share * curve.slope_db_deg(theta[k] - heading)
-        jacobian[:, sources + k] = share
-    return _DB * np.log(total), jacobian
+def _weights(look: _Look) -> NDArray[np.float64]:
+    """(n,) inverse variances 1 / (e^2 + (f s)^2) with the likeliest e and f, times Huber's weights."""
+    residual, share = look.residual_db, look.share
+    scale = max(_standard_deviation(residual), 0.05)
+    even, fading = (scale * _SD_GRID)[:, None, None], (scale * _FADING_GRID)[None, :, None]
+    variance = even**2 + (fading * share) ** 2
+    # -2 log likelihood, residuals cut at HUBER standard deviations
+    unlikely = np.sum(np.log(variance) + np.minimum(residual**2 / variance, HUBER**2), axis=2)
+    unlikely[:, 1:] += _FADING_EVIDENCE
+    i, j = divmod(int(np.argmin(unlikely)), _FADING_GRID.size)
+    likeliest = variance[i, j]
+    size = np.abs(residual) / np.sqrt(likeliest)
+    return np.minimum(1.0, HUBER / np.maximum(size, 1e-12)) / likeliest
 
 
-def _standard_deviation(scaled: NDArray[np.float64]) -> float:
+def _posterior(
+    alternatives: Alternatives,
+    templates: _Templates,
+    grid: _Grid,
+    look: _Look,
+    weight: NDArray[np.float64],
+    cost: NDArray[np.float64],
+) -> Refined:
+    shape, turn = _alike(grid.heading_deg, look, weight)
+    least = cost.min(axis=1, keepdims=True)
+    score = alternatives.log_prior[:, None]
+    score = score - 0.5 * max(grid.size / max(shape, turn), FEWEST_FREE) * np.log(least)
+    score = score - 0.5 * max(grid.size / turn, FEWEST_FREE) * np.log(cost / least)
+    kept = np.flatnonzero(score.max(axis=1) > score.max() - NEGLIGIBLE)
+    off = grid.bearing_deg - grid.bearing_deg[0]
+    fine = np.arange(0.0, off[-1] + 1e-9, _FINE_DEG)
+    mass = np.exp(CubicSpline(off, score[kept].T)(fine) - score.max())
+    mass /= mass.sum()
+    kinds = tuple(float(mass[:, alternatives.kind[kept] == kind].sum()) for kind in range(KINDS))
+    likeliest = mass[:, alternatives.kind[kept] == int(np.argmax(kinds))].sum(axis=1)
+    bearing = float(likeliest @ fine / likeliest.sum())
+    spread = math.sqrt(float(mass.sum(axis=1) @ (fine - bearing) ** 2))
+    k, place = divmod(int(np.argmax(score)), score.shape[1])
+    shift_db = grid.look(templates, k, place, weight).shift_db
+    return Refined(
+        float(grid.bearing_deg[0] + bearing) % 360.0,
+        math.hypot(spread, SIGMA_FLOOR_DEG),
+        templates.level_db + shift_db,
+        _drawn(templates, k, float(grid.bearing_deg[place]), shift_db),
+        kinds,
+    )
+
+
+def _alike(heading_deg: NDArray[np.float64], look: _Look, weight: NDArray[np.float64]) -> tuple[float, float]:
+    """(r, q) of the module's docstring, each at least 1."""
+    z, turn = look.residual_db * np.sqrt(weight), look.slope * np.sqrt(weight)
+    apart = np.abs((heading_deg[:, None] - heading_deg[None, :] + 180.0) % 360.0 - 180.0)
+    kernel = np.maximum(1.0 - apart / CORRELATION_DEG, 0.0)
+    squares, steep = max(float(z @ z), 1e-12), max(float(turn @ turn), 1e-12)
+    shape = float(z @ kernel @ z) / squares
+    # autocorrelation by lag, of the bins that turn the bearing
+    lag = np.minimum(np.rint(apart / BIN_DEG), CORRELATION_DEG / BIN_DEG).astype(np.int64)
+    pair = np.abs(np.outer(turn, turn))
+    covariance = np.bincount(lag.ravel(), (np.outer(z, z) * pair).ravel())
+    rho = covariance / np.maximum(np.bincount(lag.ravel(), pair.ravel()), 1e-12)
+    rho = rho / max(float(rho[0]), 1e-12)
+    correlated = float(turn @ (rho[lag] * kernel) @ turn) / steep
+    uneven = float(turn**2 @ z**2) / steep * z.size / squares
+    return max(shape, 1.0), max(correlated, 1.0) * max(uneven, 1.0)
+
+
+def _level_db(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
+    """The wave's power at the antenna's maximum: least squares in linear power, which the strong bins decide."""
+    measured_db = binned.power_db[binned.filled]
+    top_db = float(measured_db.max())
+    noise = 0.0 if noise_db is None else 10.0 ** ((noise_db - top_db) / 10.0)
+    gain = 10.0 ** ((curve.gain_db(bearing_deg - binned.heading_deg[binned.filled]) - curve.peak_db) / 10.0)
+    power = float(gain @ (10.0 ** ((measured_db - top_db) / 10.0) - noise)) / float(gain @ gain)
+    return top_db + 10.0 * math.log10(max(power, 1e-3))
+
+
+def _drawn(templates: _Templates, k: int, bearing_deg: float, shift_db: float) -> NDArray[np.float64]:
+    """(180,) template k at the bins' centres."""
+    at: NDArray[np.float64] = ((bearing_deg - (np.arange(BINS, dtype=np.float64) + 0.5) * BIN_DEG) % 360.0) / BIN_DEG
+    low = np.floor(at).astype(np.int64) % BINS
+    db, _, share = templates.between(k, low, at - np.floor(at))
+    return db + share * shift_db
+
+
+def _mix(low: NDArray[np.float64], high: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(low * (1.0 - part) + high * part, dtype=np.float64)
+
+
+def _standard_deviation(residual: NDArray[np.float64]) -> float:
     """Of residuals with some outliers: from the median, but not far below the root mean square."""
-    return max(1.4826 * float(np.median(np.abs(scaled))), 0.75 * float(np.sqrt(np.mean(scaled**2))))
-
-
-def _huber_limit(residual: NDArray[np.float64], weight: NDArray[np.float64]) -> float:
-    """HUBER standard deviations of the weighted residuals, at least 2."""
-    return max(HUBER * _standard_deviation(residual * np.sqrt(weight)), 2.0)
-
-
-def _huber(residual: NDArray[np.float64], weight: NDArray[np.float64], limit: float) -> NDArray[np.float64]:
-    size = np.abs(residual) * np.sqrt(weight)
-    return weight * np.minimum(1.0, limit / np.maximum(size, 1e-12))
-
-
-def _cost(residual: NDArray[np.float64], weight: NDArray[np.float64], limit: float) -> float:
-    size = np.abs(residual) * np.sqrt(weight)
-    return float(np.sum(np.where(size <= limit, size**2, 2.0 * limit * size - limit**2)))
+    return max(1.4826 * float(np.median(np.abs(residual))), 0.75 * float(np.sqrt(np.mean(residual**2))))
