@@ -199,6 +199,20 @@ class BearingMeasured(Fact):
     fitted_db: list[Known]
 
 
+class RecordingImported(Fact):
+    """Recorded sweeps were brought in; their facts follow. recording_id: SHA-256 of the files and of what was said
+    about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood and why.
+    """
+
+    kind: Literal["recording_imported"] = "recording_imported"
+    recording_id: str
+    filename: str
+    by: str
+    recorded_at_utc: datetime | None
+    sweep_ids: list[str]
+    remarks: list[str]
+
+
 class BearingExcluded(Fact):
     kind: Literal["bearing_excluded"] = "bearing_excluded"
     bearing_id: str
@@ -343,6 +357,7 @@ Event = Annotated[
     | SweepStarted
     | SweepRejected
     | BearingMeasured
+    | RecordingImported
     | BearingExcluded
     | BeliefUpdated
     | HoldOrdered

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from backend.events import BeliefUpdated, Recorded
+from backend.mission.area import corner_of
 from backend.mission.localization import localization
 from backend.mission.state import MissionState, evolve
-from backend.spec import MissionSpec, Place
 from backend.wire.belief_frame import encode_belief
 
 FOLDED_KINDS = (
@@ -29,7 +29,7 @@ def belief_frame(mission_id: str, recorded: Sequence[Recorded], bearings: int, l
     state = _state_at(recorded, bearings)
     if state is None:
         return None
-    task = localization(state.mission, state.home or _corner(state.mission), state.home_amsl_m)
+    task = localization(state.mission, state.home or corner_of(state.mission.area), state.home_amsl_m)
     _, belief = task.belief_fact(state.bearings)
     return encode_belief(mission_id, bearings, belief.density, task.corners_lon_lat(belief), lite=lite)
 
@@ -42,10 +42,3 @@ def _state_at(recorded: Sequence[Recorded], bearings: int) -> MissionState | Non
         if prior or (isinstance(record.event, BeliefUpdated) and record.event.bearings == bearings):
             found = state
     return found
-
-
-def _corner(spec: MissionSpec) -> Place:
-    """A place to put the local frame while the home is not known."""
-    rings = spec.area.coordinates if spec.area.type == "Polygon" else spec.area.coordinates[0]
-    lon, lat = rings[0][0]
-    return Place(lat=lat, lon=lon)

@@ -20,6 +20,8 @@ from backend.wire.problem import Problem
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 BODY_BYTES = 8 * 2**20
+RECORDING_BYTES = 128 * 2**20
+"""A minute of IQ at the usual rates."""
 UPLOADS = ("/api/maps", "/api/overlays")
 """Their bodies are files, streamed to disk under limits of their own."""
 
@@ -84,19 +86,28 @@ class Guard:
 
 
 def _too_large(scope: Scope, headers: Headers) -> Problem | None:
-    length = headers.get("content-length", "0")
-    if scope["path"].startswith(UPLOADS) or not length.isdigit() or int(length) <= BODY_BYTES:
+    length, most = headers.get("content-length", "0"), _most_bytes(scope["path"])
+    if most is None or not length.isdigit() or int(length) <= most:
         return None
     return Problem(
         title="Too large",
         status=413,
-        detail=f"A request may have at most {BODY_BYTES // 2**20} MB.",
+        detail=f"A request may have at most {most // 2**20} MB.",
         remedy="Simplify the geometry, or split the file.",
     )
 
 
+def _most_bytes(path: str) -> int | None:
+    """None: the endpoint has its own limit."""
+    if path.startswith(UPLOADS):
+        return None
+    recording = path.startswith("/api/missions/") and path.endswith("/recordings")
+    return RECORDING_BYTES if recording else BODY_BYTES
+
+
 def _counted(scope: Scope, receive: Receive) -> Receive:
-    if scope["path"].startswith(UPLOADS):
+    most = _most_bytes(scope["path"])
+    if most is None:
         return receive
     taken = 0
 
@@ -104,8 +115,8 @@ def _counted(scope: Scope, receive: Receive) -> Receive:
         nonlocal taken
         message = await receive()
         taken += len(message.get("body", b""))
-        if taken > BODY_BYTES:
-            raise HTTPException(413, f"A request may have at most {BODY_BYTES // 2**20} MB.")
+        if taken > most:
+            raise HTTPException(413, f"A request may have at most {most // 2**20} MB.")
         return message
 
     return counted

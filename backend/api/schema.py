@@ -16,14 +16,14 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 
-from backend.api import maps, missions, planning, review, scene, system
+from backend.api import maps, missions, planning, recordings, review, scene, system
 from backend.commands import Command
 from backend.events import Event
 from backend.spec import Area
 from backend.wire.messages import LiveMessage
 from backend.wire.problem import Problem
 
-ROUTERS = (system.router, missions.router, review.router, planning.router, maps.router, scene.router)
+ROUTERS = (system.router, missions.router, recordings.router, review.router, planning.router, maps.router, scene.router)
 
 UNIONS: dict[str, Any] = {"LiveMessage": LiveMessage, "Event": Event, "Command": Command, "Area": Area}
 """Named unions of the live channel and the journal: pydantic writes them in place, the page wants them by name."""

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from backend.cli.edge import parse_place, print_json, remark, stop
-from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, PatternError, load_pattern
-from hardware.direction_finding.recordings import RecordedSweep
+from hardware.direction_finding.recordings import RecordedSweep, mounted
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import BearingReading
 from hardware.sdr.pulses import PulseSetting
@@ -93,14 +91,6 @@ def _pulses(width_s: float | None, period_s: float | None) -> PulseSetting | Non
     if width_s is None or period_s is None:
         raise ValueError("a pulsed tag needs both --pulse-width-s and --pulse-period-s")
     return PulseSetting(width_s, period_s)
-
-
-def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset: float | None) -> AntennaPattern:
-    """The pattern with the offset that holds for this sweep: the user's, else the file's, else the pattern's."""
-    if recorded.of_antenna:
-        return dataclasses.replace(antenna, offset_to_nose_deg=offset or 0.0)
-    stated = offset if offset is not None else (recorded.antenna_offset_deg or None)
-    return antenna if stated is None else dataclasses.replace(antenna, offset_to_nose_deg=stated)
 
 
 def _answer(recorded: RecordedSweep, reading: BearingReading, place: tuple[float, float] | None) -> dict[str, Any]:

@@ -122,6 +122,13 @@ def _ring(coordinates: CoordinateSequence) -> Ring:
     return np.asarray(coordinates, dtype=float)[:-1, :2]
 
 
+def corner_of(area: spec.Area) -> spec.Place:
+    """The first corner: where the local frame lies while a mission's home is not known."""
+    rings = area.coordinates if isinstance(area, spec.Polygon) else area.coordinates[0]
+    lon, lat = rings[0][0]
+    return spec.Place(lat=lat, lon=lon)
+
+
 def centre_of(area: spec.Area) -> GeoPoint:
     """Middle of the bounding rectangle, for a frame while no vehicle's home is known.
 

@@ -72,12 +72,13 @@ async def measure(
         fact = _rejected(sweep_id, place_number, attempt, place, 0.0, str(error), nothing, nothing)
         return Measured(sweep_id, None, fact)
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
-    return Measured(sweep_id, sweep, _fact(mission, sweep_id, sweep, reading, place_number, attempt))
+    return Measured(sweep_id, sweep, sweep_fact(mission, sweep_id, sweep, reading, place_number, attempt))
 
 
-def _fact(
+def sweep_fact(
     mission: MissionSpec, sweep_id: str, sweep: Sweep, reading: BearingReading, place_number: int, attempt: int
 ) -> BearingMeasured | SweepRejected:
+    """What is recorded of a sweep: its bearing, or why it has none."""
     place = Place(lat=sweep.position.lat_deg, lon=sweep.position.lon_deg)
     binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
     wanted = mission.sensor.minimum_quality

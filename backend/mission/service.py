@@ -11,14 +11,15 @@ from uuid import uuid4
 
 from backend import commands
 from backend.commands import CommandReply, CommandRequest
-from backend.events import Event, MissionDrafted, PreflightChecked
+from backend.events import Event, MissionDrafted, PreflightChecked, Recorded
 from backend.mission import effects, inputs
-from backend.mission.area import centre_of, target_area
+from backend.mission.area import centre_of, corner_of
 from backend.mission.checklist import checklist, home_of
 from backend.mission.describe import doing, waits_for
 from backend.mission.equipment import Equipment
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.forecast import Forecast, Preview, forecast, preview
+from backend.mission.importing import Upload, import_facts, imported_before
 from backend.mission.localization import Localization, localization
 from backend.mission.machine import transition
 from backend.mission.patient_vehicle import MendsFailsafes, PatientVehicle
@@ -28,7 +29,6 @@ from backend.mission.safety import Veto, battery_to_return_percent
 from backend.mission.state import GROUND, TERMINAL, MissionState, fold
 from backend.mission.watch import GOING_HOME
 from backend.spec import MissionSpec, Place
-from hardware.frame import LocalFrame
 from hardware.ports import VehicleUnreachable
 from hardware.readings import Telemetry
 from planner.types import PlannerError
@@ -128,6 +128,7 @@ class MissionService:
             if state.phase not in GROUND:
                 raise MissionConflict("the mission has started and can no longer be edited", "draft a new mission")
             await self._record(mission_id, state, inputs.Edited(spec))
+            await self._settle_belief(mission_id)
         log.info("mission %s edited by %s", mission_id, by)
 
     async def preflight(self, mission_id: str) -> PreflightChecked:
@@ -164,7 +165,44 @@ class MissionService:
                     given.command_id, by, request.command, (Veto("ended", "the mission has ended", "draft a new one"),)
                 )
             asked, seq = await self._record(mission_id, state, given)
-            return _reply(request, asked, seq or last_seq)
+            return _reply(request, asked, await self._settle_belief(mission_id) or seq or last_seq)
+
+    async def import_recording(self, mission_id: str, upload: Upload, by: str) -> tuple[list[Recorded], bool]:
+        """Bring recorded sweeps into a mission that is not flying: its facts about them, and whether they were there
+        before. All or nothing. Raises MissionNotFound, MissionConflict, MissionInputError."""
+        async with self._lock(mission_id):
+            recorded = await self._equipment.journal.read(mission_id)
+            if not recorded:
+                raise MissionNotFound(mission_id)
+            before = imported_before(recorded, upload.recording_id)
+            if before:
+                return before, True
+            state = fold(recorded)
+            if self._running(mission_id) is not None or state.phase not in GROUND | TERMINAL:
+                raise MissionConflict("the mission is flying", "import the recording when it has ended")
+            equipment = self._equipment
+            found = await asyncio.to_thread(
+                import_facts, mission_id, state, upload, equipment.finder, equipment.pattern, by
+            )
+            for kept in found.sweeps:
+                await equipment.journal.save_sweep(mission_id, kept.sweep_id, kept.place_number, 1, kept.sweep)
+            new = await equipment.journal.append(mission_id, found.facts)
+            equipment.publisher.events(new)
+        log.info("mission %s: %s imported by %s", mission_id, upload.filename, by)
+        return new, False
+
+    async def _settle_belief(self, mission_id: str) -> int | None:
+        """On the ground nobody folds the belief when imported bearings or the area under them change. The last seq."""
+        state, _ = await self._load(mission_id)
+        if state.phase not in GROUND or state.belief_current or not state.measured:
+            return None
+        try:
+            task = await asyncio.to_thread(localization, state.mission, corner_of(state.mission.area), 0.0)
+            belief, _ = await asyncio.to_thread(task.belief_fact, state.bearings)
+        except (MissionInputError, PlannerError) as error:
+            log.warning("mission %s: no belief can be made of its bearings: %s", mission_id, error)
+            return None
+        return await self._append(mission_id, [belief])
 
     async def _to_runner(self, runner: Runner, request: CommandRequest, by: str) -> CommandReply:
         """At once: what moves or stops the vehicle is under way before the journal is waited for."""
@@ -326,14 +364,12 @@ class MissionService:
         self._equipment.publisher.events(recorded)
         return recorded[-1].seq
 
-    def _check_spec(self, spec: MissionSpec) -> None:
-        """Raises MissionInputError when the areas make no sense, wherever the vehicle is."""
-        home, home_amsl_m = home_of(self.telemetry())
-        if home is not None:
-            localization(spec, home, home_amsl_m or 0.0)
-        else:
-            frame = LocalFrame(centre_of(spec.area))
-            target_area(spec, frame)
+    @staticmethod
+    def _check_spec(spec: MissionSpec) -> None:
+        """Raises MissionInputError when the areas make no sense, wherever the vehicle is: a mission may be planned far
+        from it, or hold recordings only. Preflight refuses to fly it there."""
+        middle = centre_of(spec.area)
+        localization(spec, Place(lat=middle.lat_deg, lon=middle.lon_deg), 0.0)
 
 
 def _reply(request: CommandRequest, asked: tuple[effects.Effect, ...], seq: int) -> CommandReply:

@@ -118,9 +118,13 @@ def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
     """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
-            return replace(state, spec=spec, automatic=spec.flight.automatic)
+            return replace(state, spec=spec, automatic=spec.flight.automatic, belief_current=False)
         case MissionStarted():
-            return replace(state, home=event.home, home_amsl_m=event.home_amsl_m, started_at_s=at_s)
+            # bearings from before the start (imported) are folded anew in the frame of the home
+            current = state.belief_current and not state.measured
+            return replace(
+                state, home=event.home, home_amsl_m=event.home_amsl_m, started_at_s=at_s, belief_current=current
+            )
         case PhaseChanged(after=after, reason=reason):
             back = reason if after == "returning" else state.return_reason
             return replace(state, phase=after, phase_reason=reason, return_reason=back)
@@ -144,6 +148,7 @@ def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
             return replace(
                 state,
                 measured=(*state.measured, event),
+                place_number=max(state.place_number, event.place_number),
                 chosen=None,
                 accepted=False,
                 avoid=(),

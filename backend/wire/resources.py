@@ -187,3 +187,28 @@ class AreaImport(Model):
     area_m2: float
     vertices: int
     notes: list[str]
+
+
+class ImportedSweep(Model):
+    """One sweep of a recording. `bearing_deg`, `sigma_deg`: None when it was rejected; `reason` says why."""
+
+    sweep_id: str
+    place_number: int
+    place: Place
+    accepted: bool
+    bearing_deg: float | None
+    sigma_deg: float | None
+    quality: float
+    reason: str
+
+
+class RecordingImport(Model):
+    """`already`: the same recording was imported before, nothing was added. `remarks`: what was left out and why,
+    each naming file and line."""
+
+    recording_id: str
+    filename: str
+    already: bool
+    sweeps: list[ImportedSweep]
+    remarks: list[str]
+    last_seq: int

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
 from hardware.direction_finding.uavrt import is_uavrt, read_rotations
 from hardware.readings import GeoPoint, Sweep
@@ -35,6 +36,14 @@ class Recording:
 
     sweeps: tuple[RecordedSweep, ...]
     remarks: tuple[str, ...]
+
+
+def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset_deg: float | None) -> AntennaPattern:
+    """The pattern with the offset that holds for this sweep: the one that is given, else the file's, else its own."""
+    if recorded.of_antenna:
+        return replace(antenna, offset_to_nose_deg=offset_deg or 0.0)
+    stated = offset_deg if offset_deg is not None else (recorded.antenna_offset_deg or None)
+    return antenna if stated is None else replace(antenna, offset_to_nose_deg=stated)
 
 
 def read_recording(path: Path | str, tag: str | None = None) -> Recording:

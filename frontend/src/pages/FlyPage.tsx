@@ -6,6 +6,7 @@ import { mission, source } from "../app/store";
 import { t } from "../i18n";
 import { AlertBanner } from "../panels/AlertsButton";
 import { EstimatePanel } from "../panels/EstimatePanel";
+import { ImportRecording } from "../panels/ImportRecording";
 import { PlanPanel } from "../panels/PlanPanel";
 import { PreflightPanel } from "../panels/PreflightPanel";
 import { Scene } from "../panels/Scene";
@@ -42,21 +43,22 @@ function MapArea() {
 }
 
 export function FlyPage() {
-  const { phase, missionId } = mission.value;
+  const { phase, missionId, bearings, rejected } = mission.value;
   const before = phase === "draft" || phase === "ready";
+  const heard = bearings.length + rejected.length > 0;
   return (
     <div class="fly" data-testid="fly">
       <MapArea />
       <aside class="side">
-        {before && missionId ? (
-          <PreflightPanel missionId={missionId} />
-        ) : (
+        {before && missionId && <PreflightPanel missionId={missionId} />}
+        {(!before || heard) && (
           <>
             <EstimatePanel />
             <SweepPanel />
-            <PlanPanel />
           </>
         )}
+        {!before && <PlanPanel />}
+        <ImportRecording />
       </aside>
       <Timeline />
     </div>

@@ -16,6 +16,7 @@ import type {
   Preview,
   Problem,
   Recorded,
+  RecordingImport,
   Track,
 } from "../wire";
 import { decodeBeliefFrame, type BeliefFrame } from "../wire/beliefFrame";
@@ -100,6 +101,9 @@ export const sendCommand = (id: string, command: Command, commandId = newCommand
 
 export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
   json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place }, signal));
+
+export const importRecording = (id: string, form: FormData) =>
+  json<RecordingImport>(`${missionPath(id)}/recordings`, { method: "POST", body: form });
 
 export const importArea = (text: string, filename: string) =>
   json<AreaImport>("/areas", withBody("POST", { text, filename }));

@@ -73,6 +73,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "bearing_measured":
     case "sweep_rejected":
     case "bearing_excluded":
+    case "recording_imported":
       return "bearing";
     case "plan_chosen":
     case "plan_vetoed":
@@ -142,6 +143,8 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         number: event.place_number,
         quality: formatNumber(event.quality, 2),
       });
+    case "recording_imported":
+      return t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: told(event.by) });
     case "bearing_excluded":
       return t("event.bearing_excluded", { by: told(event.by), reason: told(event.reason) });
     case "belief_updated":

@@ -168,6 +168,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions/{mission_id}/recordings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Import Recording
+         * @description Import recorded sweeps into a draft or an ended mission, as if they had been flown there.
+         *
+         *     One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
+         *     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
+         */
+        post: operations["import_recording"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/events": {
         parameters: {
             query?: never;
@@ -786,7 +809,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         EventMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -989,6 +1012,17 @@ export interface components {
              */
             kind: "hold_ordered";
             by: string;
+            reason: string;
+        };
+        /** @description One sweep of a recording. `bearing_deg`, `sigma_deg`: None when it was rejected; `reason` says why. */
+        ImportedSweep: {
+            sweep_id: string;
+            place_number: number;
+            place: components["schemas"]["Place"];
+            accepted: boolean;
+            bearing_deg: number | null;
+            sigma_deg: number | null;
+            quality: number;
             reason: string;
         };
         LinearConstantMotionSpec: {
@@ -1522,7 +1556,51 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        };
+        /**
+         * @description What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
+         *     wrongly. offset_deg: the antenna's front, clockwise of the nose. The rest is for IQ.
+         */
+        RecordingForm: {
+            files: string[];
+            lat?: number | null;
+            lon?: number | null;
+            at_utc?: string | null;
+            tag?: string | null;
+            offset_deg?: number | null;
+            frequency_hz?: number | null;
+            pulse_width_s?: number | null;
+            pulse_period_s?: number | null;
+        };
+        /**
+         * @description `already`: the same recording was imported before, nothing was added. `remarks`: what was left out and why,
+         *     each naming file and line.
+         */
+        RecordingImport: {
+            recording_id: string;
+            filename: string;
+            already: boolean;
+            sweeps: components["schemas"]["ImportedSweep"][];
+            remarks: string[];
+            last_seq: number;
+        };
+        /**
+         * @description Recorded sweeps were brought in; their facts follow. recording_id: SHA-256 of the files and of what was said
+         *     about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood and why.
+         */
+        RecordingImported: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "recording_imported";
+            recording_id: string;
+            filename: string;
+            by: string;
+            recorded_at_utc: string | null;
+            sweep_ids: string[];
+            remarks: string[];
         };
         /** @description Continue after hold, restart or a pilot's takeover (then it also releases the pilot latch). */
         Resume: {
@@ -1579,7 +1657,7 @@ export interface components {
         /**
          * @description mission_id None: the mission that flies now, and the next one after it. seq None: follow the live mission; a
          *     number: the mission as it was after that event. `hidden`: layers left out. `belief_height_m`: height of the belief's
-         *     peak; None: chosen from the area.
+         *     peak; None: chosen from the area. `language`: of the labels; the window's own panel keeps that of its opening.
          */
         SceneRequest: {
             mission_id?: string | null;
@@ -1591,6 +1669,11 @@ export interface components {
              * @enum {string}
              */
             theme: "dark" | "light";
+            /**
+             * @default en
+             * @enum {string}
+             */
+            language: "en" | "de";
         };
         /**
          * @description `url`: the page to put into a frame. `mission_id`: what is shown, None while nothing flies. `shown_seq`: the last
@@ -2138,6 +2221,51 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["PreflightReply"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    import_recording: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": components["schemas"]["RecordingForm"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordingImport"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordingImport"];
                 };
             };
             /** @description What went wrong and how to mend it */

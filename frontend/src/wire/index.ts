@@ -48,4 +48,5 @@ export type TrackFact = Schemas["TrackFact"];
 export type ExpectedTime = Schemas["ExpectedTime"];
 export type Preview = Schemas["Preview"];
 export type AreaImport = Schemas["AreaImport"];
+export type RecordingImport = Schemas["RecordingImport"];
 export type Health = Schemas["Health"];

@@ -25,7 +25,7 @@ TARGET = (30.0, 60.0)
 def recorded(x: float, y: float, at_s: float = 0.0, place_known: bool = True) -> RecordedSweep:
     n = 90
     position = FRAME.to_geo(x, y)
-    sweep = Sweep(at_s + np.arange(n) * 0.1, np.arange(n) * 4.0, np.full(n, -60.0), 868.3e6, position, 140.0)
+    sweep = Sweep(np.linspace(at_s, at_s + 9.0, n), np.linspace(0.0, 356.0, n), np.full(n, -60.0), 868.3e6, position, 140.0)
     return RecordedSweep(sweep, None, place_known)
 
 

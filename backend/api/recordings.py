@@ -1,0 +1,182 @@
+"""Recorded sweeps, uploaded into a mission: UAV-RT rotations, plain tables of heading and power, SigMF of a turn."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import shutil
+import tempfile
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Form, Response, UploadFile
+from pydantic import AfterValidator, Field, StringConstraints
+
+from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
+from backend.api.problems import PROBLEM_RESPONSES
+from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
+from backend.mission.errors import MissionInputError
+from backend.mission.importing import Upload
+from backend.spec import Model, Place
+from backend.wire.resources import ImportedSweep, RecordingImport
+from hardware.direction_finding.recordings import Recording
+from hardware.direction_finding.table_file import RecordingError
+from hardware.sdr.pulses import PulseSetting
+from hardware.sdr.rotation import IqReading, read_sweeps
+from hardware.sdr.sigmf_file import ARCHIVE, DATA, META
+from hardware.sdr.spectrum import SpectrumError
+
+router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
+
+SIGMF = (META, DATA, ARCHIVE)
+MOST_FILES = 3
+FORMS = "a UAV-RT rotation file, a CSV of heading_deg and power_db, or SigMF"
+
+
+def _past(moment: datetime | None) -> datetime | None:
+    """Radio has been recorded since there are computers; a date outside of that is a slip."""
+    if moment is None:
+        return None
+    moment = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+    if not 1970 < moment.year < 2100:
+        raise ValueError("a recording is from the years 1971 to 2099")
+    return moment
+
+
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class RecordingForm(Model):
+    """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
+    wrongly. offset_deg: the antenna's front, clockwise of the nose. The rest is for IQ."""
+
+    files: list[UploadFile]
+    lat: Annotated[Finite, Field(ge=-90, le=90)] | None = None
+    lon: Annotated[Finite, Field(ge=-180, le=180)] | None = None
+    at_utc: Annotated[datetime | None, AfterValidator(_past)] = None
+    tag: Name | None = None
+    offset_deg: Annotated[Finite, Field(ge=-360, le=360)] | None = None
+    frequency_hz: Annotated[Finite, Field(gt=0, le=1e12)] | None = None
+    pulse_width_s: Annotated[Finite, Field(gt=0, le=10)] | None = None
+    pulse_period_s: Annotated[Finite, Field(gt=0, le=100)] | None = None
+
+
+@router.post("/recordings", status_code=201, responses={200: {"model": RecordingImport}})
+async def import_recording(
+    mission_id: MissionId,
+    form: Annotated[RecordingForm, Form(media_type="multipart/form-data")],
+    services: ServicesDep,
+    principal: PrincipalDep,
+    response: Response,
+) -> RecordingImport:
+    """Import recorded sweeps into a draft or an ended mission, as if they had been flown there.
+
+    One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
+    heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
+    """
+    upload = await _read(form)
+    facts, already = await services.missions.import_recording(mission_id, upload, principal.name)
+    if already:
+        response.status_code = 200
+    return _reply(facts, already)
+
+
+async def _read(form: RecordingForm) -> Upload:
+    """Raises MissionInputError."""
+    if (form.lat is None) != (form.lon is None):
+        raise MissionInputError("a place needs both latitude and longitude", "give lat and lon, or neither", "lat")
+    place = None if form.lat is None or form.lon is None else Place(lat=form.lat, lon=form.lon)
+    with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
+        names = await asyncio.to_thread(_stored, form.files, Path(folder))
+        recording_id = await asyncio.to_thread(_identity, names, form)
+        try:
+            recording = await asyncio.to_thread(_parsed, names, form)
+        except (RecordingError, SpectrumError) as error:
+            raise MissionInputError(_renamed(str(error), names), f"upload {FORMS}", "files") from error
+    first = next(iter(names.values()))
+    return Upload(
+        recording_id,
+        first,
+        Recording(recording.sweeps, tuple(_renamed(remark, names) for remark in recording.remarks)),
+        place,
+        None if form.at_utc is None else form.at_utc.timestamp(),
+        form.offset_deg,
+    )
+
+
+def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
+    """Where each file lies under a name of ours, and what its owner calls it; the recording itself first."""
+    if len(files) > MOST_FILES:
+        raise MissionInputError(
+            f"{len(files)} files are more than one recording", "upload one file, or meta, data and headings", "files"
+        )
+    kept: dict[Path, str] = {}
+    called = [Path((file.filename or "").replace("\\", "/")).name[-120:] or "recording" for file in files]
+    sigmf = any(name.lower().endswith(SIGMF) for name in called)
+    for file, name in zip(files, called, strict=True):
+        ending = next((e for e in SIGMF if name.lower().endswith(e)), None)
+        path = folder / (f"recording{ending}" if ending else ("headings.csv" if sigmf else "recording.csv"))
+        if path in kept:
+            raise MissionInputError(
+                f"{name} and {kept[path]} are two recordings", "upload them one after the other", "files"
+            )
+        with path.open("wb") as stream:
+            shutil.copyfileobj(file.file, stream)
+        kept[path] = name
+    return dict(sorted(kept.items(), key=lambda item: item[0].name == "headings.csv"))
+
+
+def _identity(names: dict[Path, str], form: RecordingForm) -> str:
+    digest = hashlib.sha256()
+    for path in sorted(names):
+        with path.open("rb") as stream:
+            digest.update(hashlib.file_digest(stream, "sha256").digest())
+    digest.update(form.model_dump_json(exclude={"files"}).encode())
+    return digest.hexdigest()
+
+
+def _parsed(names: dict[Path, str], form: RecordingForm) -> Recording:
+    recording = next(iter(names))
+    headings = next((path for path in names if path.name == "headings.csv"), None)
+    width, period = form.pulse_width_s, form.pulse_period_s
+    if (width is None) != (period is None):
+        raise RecordingError("a pulsed tag needs both its pulse width and its period")
+    pulses = None if width is None or period is None else PulseSetting(width, period)
+    return read_sweeps(recording, form.tag, IqReading(headings, form.frequency_hz, pulses))
+
+
+def _renamed(text: str, names: dict[Path, str]) -> str:
+    """The owner's file names for ours."""
+    for path, name in names.items():
+        text = text.replace(str(path), name).replace(path.name, name)
+    return text
+
+
+def _reply(facts: Sequence[Recorded], already: bool) -> RecordingImport:
+    imported = facts[0].event
+    assert isinstance(imported, RecordingImported)
+    sweeps = [
+        ImportedSweep(
+            sweep_id=fact.sweep_id,
+            place_number=fact.place_number,
+            place=fact.place,
+            accepted=isinstance(fact, BearingMeasured),
+            bearing_deg=fact.bearing_deg if isinstance(fact, BearingMeasured) else None,
+            sigma_deg=fact.sigma_deg if isinstance(fact, BearingMeasured) else None,
+            quality=fact.quality,
+            reason=fact.reason if isinstance(fact, SweepRejected) else "",
+        )
+        for fact in (record.event for record in facts)
+        if isinstance(fact, BearingMeasured | SweepRejected)
+    ]
+    return RecordingImport(
+        recording_id=imported.recording_id,
+        filename=imported.filename,
+        already=already,
+        sweeps=sweeps,
+        remarks=imported.remarks,
+        last_seq=facts[-1].seq,
+    )
