@@ -17,6 +17,7 @@ from backend.scene.content import Content, Story, VehicleMark, content, flown_pa
 from backend.scene.flight import moving
 from backend.scene.items import Scene
 from backend.scene.sources import SceneSource
+from backend.scene.words import in_language
 from backend.wire.scene import SceneRequest
 from planner.belief.grid import GridBelief
 
@@ -80,7 +81,8 @@ class Composer:
         path = _longer(take.content.path, mark)
         shown = replace(take.content, path=path, vehicle=mark)
         palette = PALETTES[take.request.theme]
-        fresh = [item for item in moving(shown, palette, take.scene.extent_m) if item.layer not in take.request.hidden]
+        moved = in_language(moving(shown, palette, take.scene.extent_m), take.request.language)
+        fresh = [item for item in moved if item.layer not in take.request.hidden]
         names = {item.name for item in fresh}
         still = [item for item in take.scene.items if item.layer not in MOVING_LAYERS and item.name not in names]
         return replace(take, content=shown, scene=replace(take.scene, items=(*still, *fresh)))
@@ -113,7 +115,7 @@ def _compose(
     shown = content(story, track, now)
     if now is not None:
         shown = replace(shown, path=flown_path(story.frame, track))
-    return shown, compose(shown, belief, request.hidden, request.belief_height_m, request.theme)
+    return shown, compose(shown, belief, request.hidden, request.belief_height_m, request.theme, request.language)
 
 
 def _longer(path: np.ndarray, mark: VehicleMark) -> np.ndarray:

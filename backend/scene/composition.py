@@ -16,8 +16,9 @@ from backend.scene.findings import findings
 from backend.scene.flight import flight
 from backend.scene.items import Item, Scene
 from backend.scene.surroundings import surroundings
+from backend.scene.words import in_language
 from backend.spec import Place
-from backend.wire.scene import SceneLayer
+from backend.wire.scene import SceneLanguage, SceneLayer
 from planner.belief.grid import GridBelief
 
 
@@ -59,6 +60,7 @@ def compose(
     hidden: Collection[SceneLayer] = (),
     belief_height_m: float | None = None,
     theme: Theme = "dark",
+    language: SceneLanguage = "en",
 ) -> Scene:
     palette = PALETTES[theme]
     west, south, east, north = shapely.union_all([shown.area, shown.fence]).bounds
@@ -76,7 +78,7 @@ def compose(
     unwanted = set(hidden)
     return Scene(
         mission_id=shown.mission_id,
-        items=tuple(item for item in items if item.layer not in unwanted),
+        items=tuple(in_language((item for item in items if item.layer not in unwanted), language)),
         centre=(*middle, 0.0),
         extent_m=extent,
         background=palette.sky,

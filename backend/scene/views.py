@@ -132,7 +132,7 @@ class SceneViews:
         view = self._views.get(view_id)
         if view is None:
             return
-        view.windows[window.client_id] = Drawer(window)
+        view.windows[window.client_id] = Drawer(window, view.request.language)
         view.wake.set()
         if view.task is None or view.task.done():
             view.task = asyncio.create_task(self._keep_up(view))

@@ -20,9 +20,10 @@ export function Scene() {
   const id = mission.value.missionId;
   const seq = cursor.value;
   const theme = settings.value.theme === "indoor" ? "dark" : "light";
+  const language = settings.value.language;
   useEffect(() => {
     const timer = setTimeout(() => {
-      showScene(VIEW_ID, { mission_id: id, seq, theme, hidden: [], belief_height_m: null }).then(
+      showScene(VIEW_ID, { mission_id: id, seq, theme, hidden: [], belief_height_m: null, language }).then(
         (view) => {
           setUrl(view.url);
           setProblem(null);
@@ -31,7 +32,7 @@ export function Scene() {
       );
     }, REST_MS);
     return () => clearTimeout(timer);
-  }, [id, seq, theme]);
+  }, [id, seq, theme, language]);
   if (problem) {
     return (
       <div class="center">
@@ -44,5 +45,5 @@ export function Scene() {
     );
   }
   if (!url) return <p class="center muted">{t("scene.loading")}</p>;
-  return <iframe class="scene" src={url} title={t("scene.title")} data-testid="scene" />;
+  return <iframe key={language} class="scene" src={url} title={t("scene.title")} data-testid="scene" />;
 }

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from backend.scene.composition import scene_items, story_belief
-from backend.scene.content import read_story
+from backend.scene.composition import compose, scene_items, story_belief
+from backend.scene.content import content, read_story
 from backend.scene.items import Item, Label, Lines, Scene, Surface, same
 from planner.belief.grid import digest
 
@@ -155,3 +155,17 @@ def test_themes_differ_in_colours_only(recorded, belief, track) -> None:
 
 def test_nothing_drafted_no_scene() -> None:
     assert scene_items([], None) is None
+
+
+def test_the_labels_speak_the_viewers_language_and_nothing_else_changes(recorded, belief, track, scene) -> None:
+    story = read_story(recorded)
+    assert story is not None
+    german = compose(content(story, track, None), belief, language="de")
+    english = [item for item in scene.items if isinstance(item, Label)]
+    spoken = [item for item in german.items if isinstance(item, Label)]
+    assert [item.name for item in english] == [item.name for item in spoken]
+    assert named(german, "home/label").text == "Start"
+    assert named(german, "estimate/label").text.startswith(("noch nicht", "gefunden"))
+    assert "," in named(german, "estimate/label").text
+    words = {item.text for item in english} & {item.text for item in spoken}
+    assert all(not any(letter.islower() for letter in text.removesuffix(" m")) for text in words)

@@ -177,3 +177,11 @@ def test_a_heading_turns_clockwise_seen_from_above() -> None:
     cos, sin = w * w - z * z, 2 * w * z
     assert (x, y) == (0.0, 0.0)
     assert np.array([[cos, -sin], [sin, cos]]) @ north == pytest.approx((1.0, 0.0))
+
+
+def test_the_panel_speaks_german_when_the_viewer_does(window) -> None:
+    Drawer(window, "de")
+    assert set(window.gui.boxes) == {
+        *("Wahrscheinlichkeit", "Peilungen", "Drehungen", "Nächste Orte", "Flugweg", "Zaun", "Beschriftung")
+    }
+    assert set(window.gui.buttons) == {"Von oben", "Von der Seite"}

@@ -53,7 +53,8 @@ class PaperSource:
 class PaperDrawer:
     """Keeps the scenes it was told to draw; None when it was cleared."""
 
-    def __init__(self, window: SimpleNamespace) -> None:
+    def __init__(self, window: SimpleNamespace, language: str) -> None:
+        self.language = language
         self.shown: list[Scene | None] = window.shown
 
     def draw(self, scene: Scene) -> int:
