@@ -45,6 +45,8 @@ FEWEST_FREE = 3.0
 FIRST_CORRELATION = 4.0
 """r assumed while the residuals are not known yet."""
 LARGEST_SHIFT_DB = 6.0
+SINGLE_THREAD = 2**18
+"""Multiplications in a matrix product up to which OpenBLAS keeps to one thread."""
 _SD_GRID = np.array([0.2, 0.35, 0.5, 0.7, 1.0, 1.4])
 _FADING_GRID = np.array([0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 _FADING_EVIDENCE = 2.0
@@ -124,14 +126,14 @@ def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float
     gain = curve.gain_db(np.subtract.outer(grid, binned.heading_deg[binned.filled]))
     power = binned.power_db[binned.filled]
     count = binned.count[binned.filled].astype(np.float64)
-    level = (power - gain) @ count / count.sum()
+    level = np.sum((power - gain) * count, axis=1) / count.sum()
     if noise_db is not None:
         # the level that the strongest bins show, so that bins at the noise floor do not pull it up
         near = gain > gain.max(axis=1, keepdims=True) - 6.0
         level = np.sum((power - gain) * near * count, axis=1) / np.sum(near * count, axis=1)
     noise = 0.0 if noise_db is None else 10.0 ** (noise_db / 10.0)
     predicted = _DB * np.log(10.0 ** ((level[:, None] + gain) / 10.0) + noise)
-    return float(grid[int(np.argmin((power - predicted) ** 2 @ count))])
+    return float(grid[int(np.argmin(np.sum((power - predicted) ** 2 * count, axis=1)))])
 
 
 class _Templates:
@@ -196,11 +198,12 @@ class _Grid:
         m = self.power_db
         of_weight, of_power = self._spread(weight), self._spread(weight * m)
         db, share = templates.db, templates.share
-        squares = (weight @ m**2) - 2.0 * (db @ of_power) + (db**2) @ of_weight
+        squares = (weight @ m**2) - 2.0 * _product(db, of_power) + _product(db**2, of_weight)
         if share is None:
-            along, norm = weight @ m - db @ of_weight, np.full(1, weight.sum())
+            along, norm = weight @ m - _product(db, of_weight), np.full(1, weight.sum())
         else:
-            along, norm = share @ of_power - (share * db) @ of_weight, np.maximum((share**2) @ of_weight, 1e-9)
+            along = _product(share, of_power) - _product(share * db, of_weight)
+            norm = np.maximum(_product(share**2, of_weight), 1e-9)
         return np.maximum(squares - along**2 / norm, 1e-6)
 
     def _spread(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -267,14 +270,14 @@ def _alike(heading_deg: NDArray[np.float64], look: _Look, weight: NDArray[np.flo
     apart = np.abs((heading_deg[:, None] - heading_deg[None, :] + 180.0) % 360.0 - 180.0)
     kernel = np.maximum(1.0 - apart / CORRELATION_DEG, 0.0)
     squares, steep = max(float(z @ z), 1e-12), max(float(turn @ turn), 1e-12)
-    shape = float(z @ kernel @ z) / squares
+    shape = float(np.einsum("i,ij,j", z, kernel, z)) / squares
     # autocorrelation by lag, of the bins that turn the bearing
     lag = np.minimum(np.rint(apart / BIN_DEG), CORRELATION_DEG / BIN_DEG).astype(np.int64)
     pair = np.abs(np.outer(turn, turn))
     covariance = np.bincount(lag.ravel(), (np.outer(z, z) * pair).ravel())
     rho = covariance / np.maximum(np.bincount(lag.ravel(), pair.ravel()), 1e-12)
     rho = rho / max(float(rho[0]), 1e-12)
-    correlated = float(turn @ (rho[lag] * kernel) @ turn) / steep
+    correlated = float(np.einsum("i,ij,j", turn, rho[lag] * kernel, turn)) / steep
     uneven = float(turn**2 @ z**2) / steep * z.size / squares
     return max(shape, 1.0), max(correlated, 1.0) * max(uneven, 1.0)
 
@@ -295,6 +298,15 @@ def _drawn(templates: _Templates, k: int, bearing_deg: float, shift_db: float) -
     low = np.floor(at).astype(np.int64) % BINS
     db, _, share = templates.between(k, low, at - np.floor(at))
     return db + share * shift_db
+
+
+def _product(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """left @ right in blocks too small for BLAS to share among threads, which on a busy machine wait for each other."""
+    rows = max(SINGLE_THREAD // right.size, 1)
+    product = np.empty((left.shape[0], right.shape[1]))
+    for first in range(0, left.shape[0], rows):
+        np.matmul(left[first : first + rows], right, out=product[first : first + rows])
+    return product
 
 
 def _mix(low: NDArray[np.float64], high: NDArray[np.float64], part: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -42,7 +42,7 @@ def rms(values: np.ndarray) -> float:
 )
 def test_sigma_is_true_and_least_squares_no_better(condition: Condition) -> None:
     rng, pattern = np.random.default_rng(3), beam(condition.beam_deg)
-    truths = [float(b) for b in rng.uniform(0.0, 360.0, 80)]
+    truths = [float(b) for b in rng.uniform(0.0, 360.0, 60)]
     sweeps = [simulate(condition, pattern, truth, rng) for truth in truths]
     ours = [FINDER.estimate(sweep, pattern) for sweep in sweeps]
     plain = errors([LeastSquaresDirectionFinder().estimate(sweep, pattern) for sweep in sweeps], truths)
@@ -74,11 +74,11 @@ def world_sweep(rng: np.random.Generator, distance_m: float, power_dbm: float, r
 )
 def test_sigma_covers_the_error_in_the_simulated_world(distance_m: float, power_dbm: float, reflectors: int) -> None:
     rng, pattern = np.random.default_rng(8), load_pattern(SMALL_YAGI)
-    taken = [world_sweep(rng, distance_m, power_dbm, reflectors) for _ in range(50)]
+    taken = [world_sweep(rng, distance_m, power_dbm, reflectors) for _ in range(40)]
     readings = [(FINDER.estimate(sweep, pattern), truth) for truth, sweep in taken]
     heard = [(r, truth) for r, truth in readings if r.accepted]
     made = errors([r for r, _ in heard], [truth for _, truth in heard])
-    assert len(heard) > 25
+    assert len(heard) > 20
     assert rms(made / np.array([r.sigma_deg for r, _ in heard])) < 1.7
 
 
