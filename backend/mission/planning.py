@@ -21,7 +21,7 @@ from planner.plan import expected_time_from, plan
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
 from planner.travel import travel_path
-from planner.types import Bearing, Decision, PlannerError, Ring
+from planner.types import Bearing, Decision, PlannerError, Problem, Ring
 
 COST_ROLLOUTS = 200
 
@@ -69,7 +69,7 @@ def decide(
     if wanted.method == "base_policy":
         return base_policy_decision(task, belief, platform, without)
     return plan(
-        task.problem,
+        foreseen(task.problem, bearings),
         belief,
         bearings,
         platform,
@@ -81,6 +81,16 @@ def decide(
         threads=threads,
         without=without,
     )
+
+
+def foreseen(problem: Problem, bearings: Sequence[Bearing]) -> Problem:
+    """The problem with the sensor as this mission found it, for the bearings to come.
+
+    sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): the specification counts as one bearing. A geometric mean, since
+    sigma is a scale: one bad sweep in a good signal does not undo the others.
+    """
+    logarithms = [math.log(problem.sigma), *(math.log(bearing.sigma) for bearing in bearings if bearing.sigma > 0.0)]
+    return replace(problem, sigma=math.exp(sum(logarithms) / len(logarithms)))
 
 
 def base_policy_decision(
@@ -143,7 +153,7 @@ def cost_of(
     """Time until localized when the next bearing is taken at `place` (m ENU)."""
     try:
         found = expected_time_from(
-            task.problem,
+            foreseen(task.problem, bearings),
             belief,
             bearings,
             place,

@@ -7,9 +7,10 @@ from ground import AREA, FRAME, HOME, towards
 
 from backend.mission.forecast import forecast, preview
 from backend.mission.localization import Localization, localization
-from backend.mission.planning import next_place, way_to
+from backend.mission.planning import cost_of, foreseen, next_place, way_to
 from backend.spec import FlightSpec, MissionSpec, Place, PlannerSpec, Polygon
 from hardware.readings import GeoPoint
+from planner.types import Bearing
 
 
 def task(**more: object) -> Localization:
@@ -92,3 +93,30 @@ def test_a_preview_plans_from_the_prior() -> None:
     assert seen.candidates
     assert seen.mean_s == pytest.approx(sum(seen.times_s) / len(seen.times_s))
     assert seen.rollouts <= 200
+
+
+def test_before_the_first_bearing_the_sensor_is_as_specified() -> None:
+    problem = task().problem
+
+    assert foreseen(problem, ()).sigma == pytest.approx(problem.sigma, rel=1e-12)
+
+
+def test_bearings_to_come_are_expected_as_good_as_those_that_came() -> None:
+    problem = task().problem
+    bearings = [Bearing(0.0, 0.0, 1.0, math.radians(sigma)) for sigma in (1.0, 1.0, 4.0)]
+
+    expected = (math.degrees(problem.sigma) * 1.0 * 1.0 * 4.0) ** 0.25
+
+    assert math.degrees(foreseen(problem, bearings).sigma) == pytest.approx(expected)
+
+
+def test_a_sharper_sensor_than_specified_shortens_the_forecast() -> None:
+    made = task()
+    said = [made.planner_bearings([towards(0.0, -20.0, (200.0, 80.0), sigma=sigma)]) for sigma in (1.0, 7.0)]
+    belief = made.planning_belief(said[1])
+
+    sharp, blunt = (cost_of(made, belief, bearings, (0.0, -20.0), (150.0, -30.0)).mean_s for bearings in said)
+
+    assert sharp is not None
+    assert blunt is not None
+    assert sharp < 0.8 * blunt
