@@ -43,6 +43,8 @@ class Settings(BaseSettings):
 
     vehicle_url: str | None = None
     simulate: Literal["px4", "ardupilot"] = "px4"
+    world: Literal["open", "multipath"] = "open"
+    """The simulated emitter's surroundings: open ground, or walls that reflect, so that some bearings are wrong."""
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
     home_lat_deg: float = Field(default=50.6234, ge=-80, le=80, allow_inf_nan=False)

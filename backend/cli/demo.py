@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 import tempfile
 import webbrowser
 from dataclasses import dataclass, field
@@ -57,6 +58,10 @@ def demo(
     vehicle: Annotated[
         str | None, typer.Option(help="Fly this autopilot instead, around its own home (udpin://0.0.0.0:14540 ...).")
     ] = None,
+    world: Annotated[
+        str | None,
+        typer.Option(help="Simulated surroundings: open, or multipath (walls that reflect). Default: open."),
+    ] = None,
     mend_failsafes: Annotated[
         bool,
         typer.Option(help="Set failsafe parameters of the autopilot that would not act, and say which."),
@@ -81,6 +86,7 @@ def demo(
             simulate=flavour,
             time_factor=speedup if speedup is not None else (10.0 if vehicle is None else 1.0),
             seed=seed,
+            world=world,
         )
     except ValueError as error:
         stop(error)
@@ -263,6 +269,8 @@ def summary(log: MissionLog, settings: Settings, truth: GeoPoint | None) -> dict
         "expected_rmse_m": None if estimate is None else estimate.expected_rmse_m,
         "in_c95": in_c95,
         "bearings": len(log.all(BearingMeasured)),
+        "bearing_errors_deg": [] if truth is None else [_bearing_error(b, truth) for b in log.all(BearingMeasured)],
+        "bearing_sigmas_deg": [b.sigma_deg for b in log.all(BearingMeasured)],
         "rejected_sweeps": len(log.all(SweepRejected)),
         "mission_time_s": ended.mission_time_s,
         "plan_ms": [p.plan_ms for p in log.all(PlanChosen) if p.source == "planner"],
@@ -271,8 +279,15 @@ def summary(log: MissionLog, settings: Settings, truth: GeoPoint | None) -> dict
         "reason": ended.reason,
         "holds": log.holds,
         "seed": settings.seed,
+        "world": settings.world,
         "mission_id": log.mission_id,
     }
+
+
+def _bearing_error(measured: BearingMeasured, truth: GeoPoint) -> float:
+    """Measured minus true bearing, degrees in [-180, 180)."""
+    east, north = LocalFrame(GeoPoint(measured.place.lat, measured.place.lon)).to_enu(truth)
+    return (measured.bearing_deg - math.degrees(math.atan2(east, north)) + 180.0) % 360.0 - 180.0
 
 
 def _sentence(result: dict[str, Any]) -> str:

@@ -42,6 +42,10 @@ def serve(
         float | None, typer.Option(help="Seconds of simulated time a second of the wall. Default: 1.")
     ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Of the simulated world: where the emitter stands.")] = None,
+    world: Annotated[
+        str | None,
+        typer.Option(help="Simulated surroundings: open, or multipath (walls that reflect). Default: open."),
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object when the server answers.")] = False,
 ) -> None:
     """Start the server and say where the page is. Without --vehicle it flies a simulated one. Ctrl-C stops it.
@@ -60,6 +64,7 @@ def serve(
             simulate=flavour,
             time_factor=speedup,
             seed=seed,
+            world=world,
         )
     except ValueError as error:
         stop(error)

@@ -12,7 +12,7 @@ from backend.api.suggestion import suggested_mission
 from backend.mission.area import target_area
 from backend.settings import Settings
 from backend.spec import Place
-from backend.wiring import EmitterAroundHome, Hangar, emitter_place, open_simulation
+from backend.wiring import EmitterAroundHome, Hangar, emitter_place, open_simulation, walls
 from hardware.clock import ScaledClock
 from hardware.frame import LocalFrame
 from hardware.ports import ReceiverError
@@ -33,6 +33,14 @@ def test_the_simulated_emitter_stands_in_the_suggested_area_by_its_seed(seed: in
 def test_another_seed_is_another_place() -> None:
     home = GeoPoint(50.0, 7.0)
     assert len({emitter_place(seed, home) for seed in range(20)}) == 20
+
+
+def test_the_walls_of_the_multipath_world_stand_around_the_area_by_its_seed() -> None:
+    home = GeoPoint(50.0, 7.0)
+    frame = LocalFrame(home)
+    around = target_area(suggested_mission(Place(lat=50.0, lon=7.0)), frame).buffer(90.0)
+    assert walls(3, home) == walls(3, home) != walls(4, home)
+    assert all(around.contains(Point(frame.to_enu(wall.place))) for seed in range(20) for wall in walls(seed, home))
 
 
 class ParkedVehicle:
