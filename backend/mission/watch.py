@@ -12,6 +12,7 @@ from backend.mission.listening import Listening
 from backend.mission.ports import TrackPoint
 from backend.mission.safety import BATTERY_STALE_S, NOMINAL_DRAIN_PERCENT_S, Limits, Situation, battery_vetoes
 from backend.mission.state import MissionState
+from hardware.autopilot.patience import Deadline
 from hardware.readings import Telemetry
 
 TICK_S = 0.2
@@ -23,7 +24,7 @@ HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
 GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
 """Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
-HEARD_AGAIN_S = 15.0
+HEARD_AGAIN_S, HEARD_AGAIN_WALL_S = 15.0, 5.0
 """So long after it was heard again a vehicle may still be acting on the silence before: it hears us later."""
 
 MEASURED_DRAIN_AFTER_S = 60.0
@@ -67,7 +68,7 @@ class Watch:
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
     _console_seen: bool = False
     _battery_told: bool = False
-    _heard_again_at: float = -math.inf
+    _heard_again: Deadline | None = None
     _battery_unheard_since: float | None = None
     _on_ground_since: float | None = None
     _tracked_at: float = -math.inf
@@ -86,7 +87,7 @@ class Watch:
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         self.listening.wait(min(max(now - self._ticked_at, 0.0), LONGEST_TICK_S))
         if math.isinf(self._ticked_at):
-            self._heard_again_at = now
+            self._heard_again = Deadline(self.equipment.clock, HEARD_AGAIN_S, HEARD_AGAIN_WALL_S)
         self._ticked_at = now
         self.drain.update(telemetry, now)
         self.notice_pilot("")
@@ -101,7 +102,7 @@ class Watch:
         mode = telemetry.mode or "unknown"
         unheard = "vehicle" in self._down_since or not telemetry.connected
         if telemetry.controller == "pilot" and mode in GOING_HOME and mode != self.tolerated_mode:
-            just_heard = self.equipment.clock.now() - self._heard_again_at < HEARD_AGAIN_S
+            just_heard = self._heard_again is not None and not self._heard_again.passed
             if unheard or self.tolerated_mode is not None:
                 self.tolerated_mode = mode
             elif just_heard and self.state().phase == "hold":
@@ -132,7 +133,7 @@ class Watch:
             self.give(inputs.LinkDown(link, detail))
         elif up and link in self._down_since:
             if link == "vehicle":
-                self._heard_again_at = now
+                self._heard_again = Deadline(self.equipment.clock, HEARD_AGAIN_S, HEARD_AGAIN_WALL_S)
             going_home = link == "vehicle" and self.tolerated_mode is not None
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 

@@ -22,7 +22,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -206,7 +206,7 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
 
 async def loop(kills: int, folder: Path, database: str | None, speedup: float, seed: int, whole: int) -> Findings:
     chance, found = random.Random(seed), Findings()
-    servers = Servers(arguments(folder, database, speedup, seed))
+    servers, server = Servers(arguments(folder, database, speedup, seed)), None
     mission_id, before = "", list[Event]()
     try:
         while True:
@@ -245,6 +245,9 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
             if sys.stderr.isatty() or found.kills % 20 == 0:
                 print(json.dumps(found.summary()), file=sys.stderr, flush=True)
     finally:
+        if server is not None:
+            with suppress(ProcessLookupError):
+                server.kill()
         await servers.close()
 
 

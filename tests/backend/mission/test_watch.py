@@ -6,7 +6,7 @@ import pytest
 from doubles import FRAME, Stage, spec
 from missions import Walk
 
-from backend.mission import inputs
+from backend.mission import inputs, watch
 from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
 from backend.mission.localization import localization
@@ -147,7 +147,10 @@ def test_a_return_that_began_while_the_link_was_lost_is_the_failsafes_one_seen_t
     assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
 
 
-def test_a_return_right_after_the_vehicle_was_heard_again_is_the_failsafes_a_later_one_is_not(scene: Scene) -> None:
+def test_a_return_right_after_the_vehicle_was_heard_again_is_the_failsafes_a_later_one_is_not(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watch, "HEARD_AGAIN_WALL_S", 0.0)
     scene.state = Walk().to("hold").state
     scene.tick(20)
     scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
