@@ -92,6 +92,7 @@ export const de: Record<MessageKey, string> = {
 
   "estimate.title": "Schätzung",
   "estimate.none": "Noch keine Schätzung",
+  "estimate.against": "{against} von {bearings} Peilungen sprechen dagegen",
   "estimate.inconsistent": "Die Peilungen widersprechen sich: keine Schätzung",
   "estimate.copy": "Kopieren",
   "estimate.copied": "Kopiert",
@@ -341,7 +342,7 @@ export const de: Record<MessageKey, string> = {
   "edit.noFly": "Flugverbot",
   "edit.noFly.remove": "Flugverbot {number} entfernen",
   "edit.prior": "Vorher bekannt",
-  "edit.prior.uniform": "nichts: überall im Gebiet",
+  "edit.prior.uniform": "nichts",
   "edit.prior.gaussian": "um einen Ort",
   "edit.prior.ring": "im Ring um einen Ort",
   "edit.prior.centre": "Mitte",
@@ -411,7 +412,7 @@ export const de: Record<MessageKey, string> = {
 
   "settings.title": "Einstellungen",
   "settings.theme": "Farben",
-  "settings.theme.outdoor": "draußen (hell, kontrastreich)",
+  "settings.theme.outdoor": "draußen (hell)",
   "settings.theme.indoor": "drinnen (dunkel)",
   "settings.scale": "Größe",
   "settings.units": "Einheiten",
@@ -427,7 +428,7 @@ export const de: Record<MessageKey, string> = {
   "settings.language.de": "Deutsch",
   "settings.tones": "Alarmtöne",
   "settings.speech": "Alarme vorlesen",
-  "settings.lite": "Dünne Leitung: kleinere Bilder der Verteilung",
+  "settings.lite": "Dünne Leitung: kleinere Bilder, Telemetrie einmal je Sekunde",
 
   "keys.title": "Tasten",
   "keys.abort": "Abbruch",
@@ -520,6 +521,7 @@ export const de: Record<MessageKey, string> = {
   "event.bearing_measured": "Peilung {bearing} ± {sigma}° an Ort {number}, Güte {quality}",
   "event.bearing_excluded": "Peilung weggelassen von {by}: {reason}",
   "event.belief_updated": "Erwarteter Fehler {rmse}, noch nicht: {reason}",
+  "event.belief_localized_against": "Gefunden gegen {against} von {bearings} Peilungen: erwarteter Fehler {rmse}",
   "event.belief_localized": "Gefunden: erwarteter Fehler {rmse}",
   "event.belief_inconsistent": "Die Peilungen widersprechen sich",
   "event.hold_ordered": "Halten durch {by}: {reason}",

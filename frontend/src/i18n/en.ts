@@ -91,6 +91,7 @@ export const en = {
 
   "estimate.title": "Estimate",
   "estimate.none": "No estimate yet",
+  "estimate.against": "Stands against {against} of {bearings} bearings",
   "estimate.inconsistent": "The bearings contradict each other: no estimate",
   "estimate.copy": "Copy",
   "estimate.copied": "Copied",
@@ -340,7 +341,7 @@ export const en = {
   "edit.noFly": "No-fly areas",
   "edit.noFly.remove": "Remove no-fly area {number}",
   "edit.prior": "Known beforehand",
-  "edit.prior.uniform": "nothing: anywhere in the area",
+  "edit.prior.uniform": "nothing",
   "edit.prior.gaussian": "around a place",
   "edit.prior.ring": "in a ring around a place",
   "edit.prior.centre": "Centre",
@@ -426,7 +427,7 @@ export const en = {
   "settings.language.de": "Deutsch",
   "settings.tones": "Alert tones",
   "settings.speech": "Speak alerts",
-  "settings.lite": "Thin link: send smaller belief pictures",
+  "settings.lite": "Thin link: smaller pictures, telemetry once a second",
 
   "keys.title": "Keys",
   "keys.abort": "Abort",
@@ -520,6 +521,7 @@ export const en = {
   "event.bearing_excluded": "Bearing left out by {by}: {reason}",
   "event.belief_updated": "Expected error {rmse}, not yet: {reason}",
   "event.belief_localized": "Localized: expected error {rmse}",
+  "event.belief_localized_against": "Localized against {against} of {bearings} bearings: expected error {rmse}",
   "event.belief_inconsistent": "The bearings contradict each other",
   "event.hold_ordered": "Hold by {by}: {reason}",
   "event.resume_ordered": "Resume by {by}",

@@ -79,7 +79,7 @@ function BatteryThen() {
   const verdict = lasts(budget, worstS) ? "enough" : lasts(budget, left.meanS) ? "tight" : "short";
   const percent = (seconds: number) => Math.max(0, Math.round(chargeAfter(budget, seconds)));
   return (
-    <div data-testid="battery-then" data-verdict={verdict}>
+    <div class="battery-then" data-testid="battery-then" data-verdict={verdict}>
       <dt>{t("estimate.batteryThen")}</dt>
       <dd class={`battery-${verdict}`}>
         {t("estimate.batteryMean", { percent: percent(left.meanS) })}{" "}
@@ -110,6 +110,11 @@ export function EstimatePanel() {
       </h2>
       {!fact && <p class="muted">{t("estimate.none")}</p>}
       {fact && !estimate && <p data-testid="inconsistent">{t("estimate.inconsistent")}</p>}
+      {fact && estimate && fact.contradicting.length > 0 && (
+        <p data-testid="against">
+          {t("estimate.against", { against: fact.contradicting.length, bearings: fact.bearings })}
+        </p>
+      )}
       {estimate && (
         <>
           <Coordinates lat={estimate.lat} lon={estimate.lon} />

@@ -14,6 +14,8 @@ const SPEED = 14;
 const TICK_MS = 50;
 const TURN_DEG_S = 90;
 
+const clock = (seconds: number) => `${Math.floor(seconds / 60)}:${String(Math.round(seconds % 60)).padStart(2, "0")}`;
+
 /** Mulberry32: the same example each time. */
 function random(seed: number): () => number {
   let a = seed;
@@ -115,7 +117,7 @@ export class FixtureSource implements Source {
 
   private fly(): void {
     this.emit({ kind: "mission_started", by: "operator", home: placeOf(this.home), home_amsl_m: 62, software: "example" });
-    this.become("taking_off", "started");
+    this.become("taking_off", "started by operator");
     this.emit({ kind: "took_off", place: placeOf(this.home), altitude_relative_m: 40 });
     this.plan();
   }
@@ -144,7 +146,7 @@ export class FixtureSource implements Source {
     this.goal = best.at;
     this.emit({
       kind: "plan_chosen", place_number: this.place, place: placeOf(best.at), source: "planner",
-      reason: this.place === 1 ? "looks along the whole area from its edge" : "crosses the first bearing at a wide angle, 60 m outside the 95 % region",
+      reason: `localized in about ${clock(best.value)} by way of this place, ${Math.round(candidates[1]!.value - best.value + 2)} s sooner than by any other of ${candidates.length} places tried`,
       expected_time_s: best.value, time_90_s: best.value * 1.6, candidates: facts, rollouts: 1004, plan_ms: 18.4, by: null,
     }); // prettier-ignore
     if (this.automatic) this.depart();
@@ -173,8 +175,8 @@ export class FixtureSource implements Source {
     const at = placeOf(this.at);
     if (this.place === 2 && this.turned >= 0) {
       this.turned = -1;
-      this.emit({ kind: "sweep_rejected", sweep_id: sweepId, place_number: 2, attempt: 1, quality: 0.52, reason: "the power does not follow the antenna's pattern", place: at, binned_db: binned.map((v, i) => (v === null ? null : v + 7 * Math.sin(i / 9))), fitted_db: fitted });
-      this.emit({ kind: "alert_raised", alert_id: "quality-2", level: "caution", text: "Sweep at place 2 rejected, quality 0.52.", remedy: "It is taken again; if this repeats, check the antenna." });
+      this.emit({ kind: "sweep_rejected", sweep_id: sweepId, place_number: 2, attempt: 1, quality: 0.52, reason: "the sweep does not look like the antenna (similarity 0.52, needs 0.70): reflections, interference or no signal", place: at, binned_db: binned.map((v, i) => (v === null ? null : v + 7 * Math.sin(i / 9))), fitted_db: fitted });
+      this.emit({ kind: "alert_raised", alert_id: "quality-2", level: "caution", text: "no usable bearing here: quality 0.52 is below 0.70", remedy: "look at the vehicle and resume, or order the return" });
       this.emit({ kind: "sweep_started", place_number: 2, attempt: 2 });
       this.samples = [];
       return;
@@ -187,13 +189,13 @@ export class FixtureSource implements Source {
     this.belief_.update(this.at, bearing, SIGMA);
     const estimate = this.belief_.estimate();
     const localized = !this.endless && this.place >= 3 && estimate.expected_rmse_m < 14;
-    const notYet = localized ? [] : this.place === 1 ? ["both bearings must come from two places: so far one"] : [`expected error ${estimate.expected_rmse_m.toFixed(1)} m, the goal is 10 m`];
-    this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, digest: "" });
+    const notYet = localized ? [] : this.place === 1 ? ["not yet: one bearing from one place, 2 places are needed"] : [`not yet: expected error ${estimate.expected_rmse_m.toFixed(0)} m, wanted below 10 m`];
+    this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, contradicting: [], digest: "" });
     this.remember();
     if (localized || (!this.endless && this.place >= 6)) {
       this.goal = this.home;
       this.become("returning", "localized");
-      this.emit({ kind: "mission_ended", outcome: localized ? "localized" : "not_localized", reason: "three bearings agree", mission_time_s: this.tick * (TICK_MS / 1000) });
+      this.emit({ kind: "mission_ended", outcome: localized ? "localized" : "not_localized", reason: "the expected error is below the threshold", mission_time_s: this.tick * (TICK_MS / 1000) });
     } else this.plan();
   }
 
@@ -231,7 +233,7 @@ export class FixtureSource implements Source {
     const words: Partial<Record<Phase, string>> = {
       flying: `flying to bearing ${this.place}, 0:${String(Math.round(left)).padStart(2, "0")}`,
       measuring: `taking bearing ${this.place}, turned ${Math.round(Math.abs(this.turned))}°`,
-      draft: "draft", ready: "ready to start", hold: "holding: ordered by the operator", waiting: `waiting for you: place ${this.place} is proposed`,
+      draft: "draft", ready: "ready to start", hold: "holding: held by operator", waiting: `waiting for you: place ${this.place} is proposed`,
       returning: "returning home", done: "done: localized", aborted: "aborted",
     }; // prettier-ignore
     return words[this.phase] ?? this.phase;
@@ -239,7 +241,7 @@ export class FixtureSource implements Source {
 
   private arrive(): void {
     if (this.phase === "returning") {
-      this.become("done", "localized, landed at home");
+      this.become("done", "the expected error is below the threshold");
       return;
     }
     this.emit({ kind: "place_reached", place_number: this.place, place: placeOf(this.at), distance_m: 0.4, flight_time_s: 12 });
@@ -270,7 +272,7 @@ export class FixtureSource implements Source {
         break;
       case "hold":
         this.emit({ kind: "hold_ordered", by: "operator", reason: "ordered" });
-        this.become("hold", "ordered by the operator");
+        this.become("hold", "held by operator");
         break;
       case "resume":
         this.emit({ kind: "resume_ordered", by: "operator" });
@@ -280,11 +282,11 @@ export class FixtureSource implements Source {
       case "return":
         this.emit(command.kind === "abort" ? { kind: "abort_ordered", by: "operator", reason: "ordered" } : { kind: "return_ordered", by: "operator", reason: "ordered" });
         this.goal = this.home;
-        this.become("returning", "ordered by the operator");
+        this.become("returning", `${command.kind === "abort" ? "aborted" : "return ordered"} by operator`);
         break;
       case "override":
         this.goal = lonLat(command.place);
-        this.emit({ kind: "plan_chosen", place_number: this.place, place: command.place, source: "operator", reason: "the operator's place", expected_time_s: null, time_90_s: null, candidates: [], rollouts: 0, plan_ms: 0, by: "operator" });
+        this.emit({ kind: "plan_chosen", place_number: this.place, place: command.place, source: "operator", reason: "chosen by operator", expected_time_s: null, time_90_s: null, candidates: [], rollouts: 0, plan_ms: 0, by: "operator" });
         this.depart();
         break;
       case "accept":
@@ -327,7 +329,7 @@ export class FixtureSource implements Source {
       { name: "Antenna pattern", ok: true, detail: "3-element Yagi, 868 MHz", remedy: "", blocking: true },
     ];
     this.emit({ kind: "preflight_checked", passed: true, checks });
-    this.become("ready", "all checks passed");
+    this.become("ready", "preflight passed");
     return { passed: true, checks };
   }
 
