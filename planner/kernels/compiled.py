@@ -14,7 +14,7 @@ One file, because numba's cache looks at the file of the compiled function only:
 # An intrinsic is called without the typing context that its definition takes.
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
@@ -41,30 +41,35 @@ from planner.kernels.reference import (
     DEEPEST_DOUBLING,
     HISTOGRAM_BINS,
     HISTOGRAM_SHIFT,
-    LIGHT,
     MEDIAN_STEPS,
     NEARLY,
 )
 from planner.observation import WEDGE_SIGMAS
 from planner.types import FloatArray
 
-_jit = njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+_FLAGS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+_FASTMATH = {"reassoc", "contract", "arcp", "nsz"}
+_outer = njit(fastmath=_FASTMATH, **_FLAGS)
+_jit = njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS)
+"""Counts no references to arrays: numba's atomic counters took a sixth of the time, and threads fought for them."""
+_inlined = njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS)
+"""For functions that take `rules` or `work`: these are passed by value, some hundred words a call."""
 _INDEX_MASK = (1 << TIE_BITS) - 1
 _BLOCK = 128
 _PAD = 16
+_FIRST = 2
 _ALIGN = 1e-9
 
 
 class _Workspace(NamedTuple):
-    """Scratch of one call. weight: (2, n), used in turn, as are offset, low, high: (2, r) and hull: (2, v, 2).
+    """Scratch of one call. weight: (3, n), offset, low, high: (3, r) and hull: (3, v, 2) hold beliefs: the one that
+    every rollout starts with at _FIRST, then 0 and 1 in turn.
 
-    first, first_offset: the starting belief without the cells outside low..high. along, across: (n,) m, cell centres in
-    the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (l,) of the places. chain: (4 r, 2) corners.
-    Arrays of cells have _PAD cells more, because whole blocks are written and the next row overwrites the excess.
+    along, across: (n,) m, cell centres in the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (l,) of
+    the places. chain: (4 r, 2) corners. Arrays of cells have _PAD cells more, because whole blocks are written and the
+    next row overwrites the excess.
     """
 
-    first: FloatArray
-    first_offset: NDArray[np.int64]
     weight: FloatArray
     along: FloatArray
     across: FloatArray
@@ -141,47 +146,45 @@ def _copy_doubled_block(typingctx, target, index, source, begin):
     return types.void(target, types.int64, source, types.int64), codegen
 
 
-@_jit
+@_outer
 def rollouts(start: Start, rules: Rules, actions: Actions, paths: Paths, tasks: Tasks, out: Outcomes) -> None:
     """Run every task and fill `out`; see reference.rollouts."""
     work = _workspace(start, rules)
+    work.hull[_FIRST, : len(start.hull)] = start.hull
+    work.low[_FIRST, : len(start.low)], work.high[_FIRST, : len(start.low)] = start.low, start.high
     filled = 0
-    heaviest = 0.0
     for j in range(start.density.shape[0]):
-        work.first_offset[j] = filled
+        work.offset[_FIRST, j] = filled
         for i in range(start.low[j], start.high[j]):
-            work.first[filled] = start.density[j, i]
-            heaviest = max(heaviest, work.first[filled])
+            work.weight[_FIRST, filled] = start.density[j, i]
             filled += 1
     for t in range(len(tasks.action)):
-        _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], heaviest, work, out, t)
+        _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], work, out, t)
 
 
-@_jit
+@_outer
 def _workspace(start, rules):
     ny, nx = start.density.shape
     rows = max(ny, 2 * COARSE_CELLS)
     cells = max(ny * nx, 4 * COARSE_CELLS * COARSE_CELLS) + _PAD
     columns = max(nx, 2 * COARSE_CELLS) + _PAD
     return _Workspace(
-        np.empty(cells),
-        np.empty(rows, np.int64),
-        np.empty((2, cells)),
+        np.empty((3, cells)),
         np.empty(cells),
         np.empty(cells),
         np.arange(columns).astype(np.float64),
-        np.empty((2, rows), np.int64),
-        np.empty((2, rows), np.int64),
-        np.empty((2, rows), np.int64),
-        np.empty((2, len(start.hull) + 2 * rules.horizon + 2, 2)),
+        np.empty((3, rows), np.int64),
+        np.empty((3, rows), np.int64),
+        np.empty((3, rows), np.int64),
+        np.empty((3, len(start.hull) + 2 * rules.horizon + 2, 2)),
         np.empty(HISTOGRAM_BINS),
         np.empty(max(len(rules.places), rules.grid_x * rules.grid_y)),
         np.empty((4 * rows + len(start.hull) + 2 * rules.horizon + 4, 2)),
     )
 
 
-@_jit
-def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, out, t):
+@_inlined
+def _rollout(start, rules, actions, paths, action, path, work, out, t):
     tx, ty = paths.targets[path, 0], paths.targets[path, 1]
     px, py = actions.places[action, 0], actions.places[action, 1]
     heading, lattice, cost = actions.headings[action], actions.lattice[action], actions.costs[action]
@@ -189,22 +192,15 @@ def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, 
     ny, nx = start.density.shape
     now, bearings, localized, heaviest = 1, start.bearings, False, 0
     ex = ey = xx = xy = yy = 0.0
+    half_c, half_s = np.cos(WEDGE_SIGMAS * rules.sigma), np.sin(WEDGE_SIGMAS * rules.sigma)
     step = 0
     while True:
-        direction = np.arctan2(ty - py, tx - px) + paths.noise[path, step]
-        c, s = np.cos(direction), np.sin(direction)
-        before, now = now, 1 - now
-        if step == 0:
-            x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb = _measure(
-                work.first, work.first_offset, start.low, start.high, start.hull, LIGHT * heaviest_weight,
-                corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now,
-            )  # fmt: skip
-        else:
-            x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb = _measure(
-                work.weight[before], work.offset[before], work.low[before], work.high[before], work.hull[before],
-                LIGHT * work.weight[before, heaviest],
-                corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now,
-            )  # fmt: skip
+        c, s = _bearing(tx - px, ty - py, paths.noise[path, step])
+        before, now = _FIRST if step == 0 else now, 1 - now
+        x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb = _measure(
+            work.weight[before], work.offset[before], work.low[before], work.high[before], work.hull[before],
+            corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, half_c, half_s, work, now,
+        )  # fmt: skip
         bearings += 1
         weight, along, across = work.weight[now], work.along, work.across
         if rules.estimator == GEOMETRIC_MEDIAN:
@@ -229,10 +225,12 @@ def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, 
             qx, qy, following = _ellipse(ex, ey, xx, xy, yy, px, py, rules.ratios, rules.distances)
         else:
             qx, qy, following = _fisher(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0, y0, h, nx, ny)
-        distance = np.hypot(qx - px, qy - py)
+        distance = np.sqrt((qx - px) ** 2 + (qy - py) ** 2)
         if lattice >= 0 and following >= 0 and len(rules.travel) > 0:
             distance = rules.travel[lattice, following]
-        towards = np.arctan2(qy - py, qx - px) if distance > 0.0 else heading
+        towards = heading
+        if rules.motion == FULL and distance > 0.0:
+            towards = np.arctan2(qy - py, qx - px)
         cost += _flight_time(rules, distance, towards - heading) + rules.measurement_time  # (4.5)
         px, py, heading, lattice = qx, qy, towards, following
     out.costs[t] = cost
@@ -246,13 +244,21 @@ def _rollout(start, rules, actions, paths, action, path, heaviest_weight, work, 
 
 
 @_jit
+def _bearing(dx, dy, noise):
+    """Cosine and sine of atan2(dy, dx) + noise (4.2)."""
+    distance = np.sqrt(dx * dx + dy * dy)
+    east, north = (dx / distance, dy / distance) if distance > 0.0 else (1.0, 0.0)
+    c, s = np.cos(noise), np.sin(noise)
+    return east * c - north * s, north * c + east * s
+
+
+@_inlined
 def _measure(
-    weight, offset, low, high, hull, light, corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, work, now
+    weight, offset, low, high, hull, corners, x0, y0, h, nx, ny, doubled, rules, px, py, c, s, half_c, half_s, work, now
 ):
     """Clip, crop, multiply. Returns the new geometry (x0, y0, h, nx, ny, corners, doubled), the number of live cells,
     the heaviest of them, and the moments m0, ma, mb, maa, mab, mbb in the bearing's frame.
     """
-    half_c, half_s = np.cos(WEDGE_SIGMAS * rules.sigma), np.sin(WEDGE_SIGMAS * rules.sigma)
     rx, ry = -(s * half_c - c * half_s), c * half_c + s * half_s
     lx, ly = s * half_c + c * half_s, -(c * half_c - s * half_s)
     target = work.hull[now]
@@ -272,7 +278,7 @@ def _measure(
                 break
             k += 1
         cells = _gather(
-            weight, offset, low, high, light, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
+            weight, offset, low, high, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
         )
         _weigh(work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell)
         m0, ma, mb, maa, mab, mbb, heaviest = _moments(work.weight[now], work.along, work.across, cells)
@@ -280,7 +286,8 @@ def _measure(
             doubled = max(i1 - i0, j1 - j0) < COARSE_CELLS
             x0, y0 = x0 + i0 * cell, y0 + j0 * cell
             return x0, y0, cell, i1 - i0, j1 - j0, left, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb
-    target[:corners] = hull[:corners]
+    for v in range(corners):
+        target[v, 0], target[v, 1] = hull[v, 0], hull[v, 1]
     cells = _copy(weight, offset, low, high, x0, y0, h, ny, px, py, c, s, work, now)
     m0, ma, mb, maa, mab, mbb, heaviest = _moments(work.weight[now], work.along, work.across, cells)
     return x0, y0, h, nx, ny, corners, doubled, cells, heaviest, m0, ma, mb, maa, mab, mbb
@@ -320,10 +327,10 @@ def _aligned_range(low, high, h, n):
     return first, min(max(int(np.ceil(high / h - _ALIGN)), first + 1), n)
 
 
-@_jit
-def _gather(weight, offset, low, high, light, x0, y0, h, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now):
+@_inlined
+def _gather(weight, offset, low, high, x0, y0, h, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now):
     """Copy the live cells of rows j0..j1, columns i0..i1 that the widened wedge touches; h and the indices are those of
-    the grid doubled k times. The light ends of rows are left out. Returns how many cells there are.
+    the grid doubled k times. Returns how many cells there are.
     """
     target = work.weight[now]
     left, bottom = x0 + i0 * h - px, y0 + (j0 + 0.5) * h - py
@@ -339,10 +346,6 @@ def _gather(weight, offset, low, high, light, x0, y0, h, k, i0, i1, j0, j1, px, 
         a, b = _narrowed(a, b, c_way, c_start + c_slope * up)
         first, last, base = low[row], high[row], offset[row] - low[row]
         first, last = max(first, (a + i0) >> k), min(last, ((b + i0 - 1) >> k) + 1)
-        while first < last and weight[base + first] < light:
-            first += 1
-        while first < last and weight[base + last - 1] < light:
-            last -= 1
         a, b = max(a, (first << k) - i0), min(b, (last << k) - i0)
         count = max(b - a, 0)
         work.offset[now, j - j0], work.low[now, j - j0], work.high[now, j - j0] = n, a, a + count
@@ -404,7 +407,7 @@ def _narrowed(a, b, way, column):
     return (a, b) if column >= 0.0 else (a, a)
 
 
-@_jit
+@_inlined
 def _copy(weight, offset, low, high, x0, y0, h, ny, px, py, c, s, work, now):
     """All live cells as they are, in the frame of a bearing that changed nothing. Returns how many."""
     target, along, across = work.weight[now], work.along, work.across
@@ -519,7 +522,7 @@ def _ellipse(ex, ey, xx, xy, yy, px, py, ratios, distances):
     return ex + dx, ey + dy, -1
 
 
-@_jit
+@_inlined
 def _fisher(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0, y0, h, nx, ny):
     """See reference.fisher_action. Places are held against C95 only as far as the answer needs it."""
     fixed = len(rules.places) > 0
@@ -562,7 +565,7 @@ def _gain(x, y, xx, xy, yy, nearest):
     return (xx * y * y - 2.0 * xy * x * y + yy * x * x) / (r2 * r2)
 
 
-@_jit
+@_inlined
 def _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, corners):
     """r_min, or what it shrinks to so that two places are left (6.1)."""
     first = second = -1.0
@@ -578,7 +581,7 @@ def _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, co
     return min(rules.standoff, second if n > 1 else first) - NEARLY * rules.standoff
 
 
-@_jit
+@_inlined
 def _action_grid(rules, x0, y0, h, nx, ny):
     """South-west corner and cell sizes of the action grid; see reference.grid_places."""
     width, height = nx * h, ny * h
@@ -589,7 +592,7 @@ def _action_grid(rules, x0, y0, h, nx, ny):
     return left, bottom, (right - left) / rules.grid_x, (top - bottom) / rules.grid_y
 
 
-@_jit
+@_inlined
 def _place(rules, fixed, k, left, bottom, step_x, step_y):
     if fixed:
         return rules.places[k, 0], rules.places[k, 1]
@@ -608,12 +611,13 @@ def _clear(hull, corners, x, y, needed, at_most):
     return _distance_to_hull(hull, corners, x, y) >= needed
 
 
-@_jit
+@_inlined
 def _confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny):
     """Counter-clockwise hull of the 95 % cells in work.chain, see reference.confidence_hull; returns its corners."""
     weight, histogram, chain = work.weight[now], work.histogram, work.chain
     top = _bits(weight[heaviest]) >> HISTOGRAM_SHIFT
-    histogram[:] = 0.0
+    for i in range(HISTOGRAM_BINS):
+        histogram[i] = 0.0
     for i in range(cells):
         below = top - (_bits(weight[i]) >> HISTOGRAM_SHIFT)
         if below < HISTOGRAM_BINS:
@@ -683,7 +687,7 @@ def _distance_to_hull(hull, corners, x, y):
     return 0.0 if inside else np.sqrt(nearest)
 
 
-@_jit
+@_inlined
 def _flight_time(rules, distance, turn):
     """See reference.flight_time."""
     if rules.motion != FULL:

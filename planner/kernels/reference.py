@@ -42,7 +42,7 @@ HISTOGRAM_BINS = 512
 MEDIAN_STEPS = 20
 DEEPEST_DOUBLING = 12
 LIGHT = 1e-6
-"""The ends of a row lighter than this share of the heaviest cell are left out of the next update."""
+"""Rollouts start without the ends of rows that are lighter than this share of the heaviest cell."""
 
 
 class Belief(NamedTuple):
@@ -130,8 +130,7 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
     columns = np.arange(nx)
     touched = (columns >= low[:, None]) & (columns < high[:, None])
     dx = x0 + (columns + 0.5) * h - place[0]
-    weight = without_light_ends(np.where(touched, weight, 0.0), LIGHT * belief.weight.max())
-    weight = weight * likelihood(rules, dx[None, :], dy[:, None], angle, NEARLY * h)
+    weight = np.where(touched, weight, 0.0) * likelihood(rules, dx[None, :], dy[:, None], angle, NEARLY * h)
     if not weight.sum() > 0:
         return unchanged
     return Belief(weight, x0, y0, h, hull, belief.bearings + 1, doubled=max(nx, ny) < COARSE_CELLS)
@@ -153,14 +152,6 @@ def _cropped(belief: Belief, hull: FloatArray) -> tuple[FloatArray, float, float
         doublings += 1
     rows, columns = np.arange(j0, j1) >> doublings, np.arange(i0, i1) >> doublings
     return belief.weight[np.ix_(rows, columns)], belief.x0 + i0 * h, belief.y0 + j0 * h, h
-
-
-def without_light_ends(weight: FloatArray, light: float) -> FloatArray:
-    """(ny, nx) with zeros before the first and after the last cell of each row that weighs at least `light`."""
-    heavy = weight >= light
-    begun = np.logical_or.accumulate(heavy, axis=1)
-    not_over = np.logical_or.accumulate(heavy[:, ::-1], axis=1)[:, ::-1]
-    return np.where(begun & not_over, weight, 0.0)
 
 
 def _narrowed(
