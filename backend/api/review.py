@@ -13,13 +13,14 @@ from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
+from backend.api.what_if import what_if
 from backend.events import Recorded
 from backend.mission.ports import TrackPoint
 from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
 from backend.wire.mcap_export import mcap
-from backend.wire.resources import EventPage, SweepRecord, Track
+from backend.wire.resources import EventPage, SweepRecord, Track, WhatIf, WhatIfRequest
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
@@ -90,6 +91,18 @@ async def get_belief(
     if frame is None:
         raise not_found("belief", f"after {bearings} bearings", "The mission has fewer bearings.")
     return Response(frame, media_type="application/octet-stream")
+
+
+@router.post("/what-if")
+async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: ServicesDep) -> WhatIf:
+    """What would have been believed and chosen with another sensor model or planner. Nothing is recorded."""
+    await stored_mission(services, mission_id)
+    recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
+    async with services.planning:
+        found = await asyncio.to_thread(what_if, mission_id, recorded, request)
+    if found is None:
+        raise not_found("belief", f"after {request.bearings} bearings", "The mission has fewer bearings.")
+    return found
 
 
 @router.get("/sweeps/{sweep_id}")

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from backend.events import CandidateFact, CheckFact, EstimateFact, Phase, Recorded
+from backend.events import BeliefUpdated, CandidateFact, CheckFact, EstimateFact, Phase, PlanChosen, Recorded
 from backend.spec import Area, MissionSpec, Model, Place
 
 Outcome = Literal["localized", "not_localized", "aborted", "failed"]
@@ -212,3 +212,37 @@ class RecordingImport(Model):
     sweeps: list[ImportedSweep]
     remarks: list[str]
     last_seq: int
+
+
+class WhatIfRequest(Model):
+    """A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
+    bearing, those taken and those the planner expects."""
+
+    bearings: int = Field(ge=0, le=200)
+    sigma_deg: float | None = Field(default=None, gt=0, le=60)
+    outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
+    method: Literal["rollout", "base_policy"] | None = None
+    base_policy: Literal["ellipse", "fisher"] | None = None
+    selection: Literal["uniform", "sequential_halving"] | None = None
+    estimator: Literal["map", "expected_value", "geometric_median"] | None = None
+
+
+class WhatIfStep(Model):
+    """After so many bearings: what would have been said, and what was (None: nothing was said then)."""
+
+    bearings: int
+    expected_rmse_m: float | None
+    localized: bool
+    flown_expected_rmse_m: float | None
+    flown_localized: bool | None
+
+
+class WhatIf(Model):
+    """`belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
+    binary frame (lite)."""
+
+    steps: list[WhatIfStep]
+    belief: BeliefUpdated
+    plan: PlanChosen | None
+    no_plan: str
+    frame_base64: str

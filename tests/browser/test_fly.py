@@ -62,12 +62,27 @@ def look_back(screen: Screen) -> None:
     expect(screen.part("state-words")).to_contain_text("Review of")
     expect(screen.part("verdict")).to_have_attribute("data-localized", "false")
     screen.expect_belief(1)
+    suppose_a_worse_sensor(screen)
     screen.page.locator("[data-testid=event-row][data-kind=mission_started]").click()
     expect(screen.part("outcome")).to_have_count(0)
     screen.expect_belief(0)
     screen.page.keyboard.press("l")
     expect(screen.part("outcome")).to_be_visible()
     screen.expect_belief(len(screen.page.locator("[data-kind=bearing_measured]").all()))
+
+
+def suppose_a_worse_sensor(screen: Screen) -> None:
+    """What would have been believed and chosen here, and back to what was."""
+    flown = screen.part("expected-rmse").get_attribute("data-value")
+    screen.part("what-if").locator("summary").click()
+    screen.part("what-if-sigma").fill("20")
+    screen.part("what-if-ask").click()
+    expect(screen.part("supposed")).to_be_visible()
+    expect(screen.part("what-if-steps").locator("tbody tr")).to_have_count(1)
+    assert float(screen.part("expected-rmse").get_attribute("data-value") or "nan") > float(flown or "nan")
+    screen.part("what-if-back").click()
+    expect(screen.part("supposed")).to_have_count(0)
+    expect(screen.part("expected-rmse")).to_have_attribute("data-value", flown or "")
 
 
 def test_abort_is_one_tap_and_reaches_the_vehicle(server: Server, screen: Screen) -> None:

@@ -3,8 +3,8 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import type { Source, SourceMessage } from "../sources/source";
 import { ageS } from "../state/age";
 import { emptyLive, reduceLive, type LiveState } from "../state/live";
-import { inFlight, missionAt, type MissionState } from "../state/mission";
-import type { Phase, TrackFact } from "../wire";
+import { inFlight, missionAt, suppose, type MissionState } from "../state/mission";
+import type { Phase, TrackFact, WhatIf } from "../wire";
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 
 export const live = signal<LiveState>(emptyLive);
@@ -22,9 +22,34 @@ export const cursor = signal<number | null>(null);
 export const events = computed(() => live.value.events);
 const liveMission = computed(() => live.value.mission);
 
-export const mission = computed<MissionState>(() =>
+/** A decision of the review taken anew with another sensor or planner: shown in place of what happened, never flown. */
+export interface Supposed {
+  missionId: string;
+  /** Counted bearings after which the decision is taken. */
+  bearings: number;
+  answer: WhatIf;
+  frame: BeliefFrame;
+}
+
+export const supposed = signal<Supposed | null>(null);
+
+const happened = computed<MissionState>(() =>
   cursor.value === null ? liveMission.value : missionAt(events.value, cursor.value),
 );
+
+/** Only in the review, and only where as many bearings count as it was asked for. */
+export const supposedHere = computed<Supposed | null>(() => {
+  const what = supposed.value;
+  const { missionId, bearings } = happened.value;
+  if (!what || cursor.value === null || what.missionId !== missionId) return null;
+  return bearings.filter((b) => !b.excluded).length === what.bearings ? what : null;
+});
+
+export const mission = computed<MissionState>(() => {
+  const real = happened.value;
+  const answer = supposedHere.value?.answer;
+  return answer ? suppose(real, answer.belief, answer.plan) : real;
+});
 
 /** UTC of the event looked at, ms; null while live. */
 export const reviewTimeMs = computed<number | null>(() => {
@@ -102,6 +127,9 @@ effect(() => {
 
 /** In flight the belief follows its event on the same socket: only when it does not is it asked for. */
 const PUSHED_WITHIN_MS = 1_500;
+
+/** The picture to draw: what is supposed, else what happened. */
+export const shownBelief = computed(() => supposedHere.value?.frame ?? belief.value);
 
 const liveBelief = computed(() => live.value.belief);
 const beliefIsPushed = computed(() => cursor.value === null && source.value?.kind === "live" && inFlight(liveMission.value.phase));
@@ -192,6 +220,7 @@ export function open(next: Source): void {
     belief.value = null;
     track.value = [];
     cursor.value = null;
+    supposed.value = null;
     live.value = {
       ...emptyLive,
       telemetry: lastTelemetry,

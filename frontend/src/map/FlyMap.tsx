@@ -4,7 +4,7 @@ import { Marker, type GeoJSONSource, type ImageSource, type Map as GlMap, type M
 import { useEffect, useRef } from "preact/hooks";
 import { highlighted } from "../app/highlight";
 import { settings } from "../app/settings";
-import { belief, cursor, live, mission, nowMs, path, source, vehicle } from "../app/store";
+import { cursor, live, mission, nowMs, path, shownBelief, source, vehicle } from "../app/store";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
 import { t, told, type MessageKey } from "../i18n";
 import { OLD_AFTER_S } from "../state/age";
@@ -37,7 +37,7 @@ function put(map: GlMap, name: SourceName, data: Features): void {
 }
 
 function paintBelief(map: GlMap): void {
-  const frame = belief.value;
+  const frame = shownBelief.value;
   const visible = frame !== null && !hidden.value.has("belief");
   map.setLayoutProperty("belief", "visibility", visible ? "visible" : "none");
   if (!frame) return;

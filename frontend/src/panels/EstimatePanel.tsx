@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { copyText } from "../app/clipboard";
 import { change, settings } from "../app/settings";
-import { live, mission, reviewTimeMs, shownTimeMs, vehicle } from "../app/store";
+import { live, mission, reviewTimeMs, shownTimeMs, supposedHere, vehicle } from "../app/store";
 import { t, told, toldReason, type MessageKey } from "../i18n";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
 import { distanceM, lonLat } from "../state/geometry";
@@ -102,6 +102,7 @@ export function EstimatePanel() {
     <section class="panel estimate" data-testid="estimate" data-tour="3" aria-label={t("estimate.title")}>
       <h2>
         {t("estimate.title")}
+        {supposedHere.value && <span class="supposed">{t("whatIf.mark")}</span>}
         {fact && (
           <span class={`verdict ${localized ? "verdict-yes" : ""}`} data-testid="verdict" data-localized={localized}>
             {t(localized ? "estimate.localized" : "estimate.notYet")}

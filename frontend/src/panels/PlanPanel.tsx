@@ -1,6 +1,6 @@
 // Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
 import { settings } from "../app/settings";
-import { cursor, live, mission, vehicle } from "../app/store";
+import { cursor, live, mission, source, supposedHere, vehicle } from "../app/store";
 import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { locale, t, told } from "../i18n";
@@ -12,6 +12,7 @@ import { formatPlace } from "../units/coordinates";
 import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
 import type { CandidateFact, PlanChosen } from "../wire";
 import { ProblemNote, ProblemText } from "./ProblemNote";
+import { WhatIfPanel } from "./WhatIfPanel";
 
 const SHOWN = 12;
 
@@ -185,6 +186,7 @@ export function PlanPanel() {
     <section class="panel plan" data-testid="plan" data-tour="5" aria-label={t("plan.title")}>
       <h2>
         {t("plan.title")}
+        {supposedHere.value && <span class="supposed" data-testid="supposed">{t("whatIf.mark")}</span>}
         {fact && here && (
           <span class="muted">
             {t("plan.distance", {
@@ -197,6 +199,7 @@ export function PlanPanel() {
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
       {missionId && isLive && startedAt && live.value.mission.missionId === missionId && <Decision id={missionId} />}
+      {cursor.value !== null && source.value?.kind === "live" && <WhatIfPanel />}
       {!fact && <p class="muted">{t("plan.none")}</p>}
       {fact && (
         <>

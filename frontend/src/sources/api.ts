@@ -18,6 +18,8 @@ import type {
   Recorded,
   RecordingImport,
   Track,
+  WhatIf,
+  WhatIfRequest,
 } from "../wire";
 import { decodeBeliefFrame, type BeliefFrame } from "../wire/beliefFrame";
 import { RequestFailed, unreachable } from "./problem";
@@ -104,6 +106,8 @@ export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
 
 export const importRecording = (id: string, form: FormData) =>
   json<RecordingImport>(`${missionPath(id)}/recordings`, { method: "POST", body: form });
+
+export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
 export const importArea = (text: string, filename: string) =>
   json<AreaImport>("/areas", withBody("POST", { text, filename }));

@@ -208,6 +208,12 @@ export function missionAt(events: readonly Recorded[], seq: number): MissionStat
   return state;
 }
 
+/** The same mission with another belief and another choice at its last moment. */
+export function suppose(state: MissionState, belief: BeliefUpdated, plan: PlanChosen | null): MissionState {
+  const [seq, at] = [state.lastSeq, state.belief?.at ?? state.startedAt ?? ""];
+  return { ...state, belief: { fact: belief, seq, at }, plan: plan && { fact: plan, seq, at } };
+}
+
 const IN_FLIGHT: readonly Phase[] = [
   "taking_off",
   "planning",

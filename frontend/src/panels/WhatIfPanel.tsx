@@ -1,0 +1,125 @@
+// The review's question: what would have been believed and chosen here with another sensor or planner?
+import { signal } from "@preact/signals";
+import { useState } from "preact/hooks";
+import { settings } from "../app/settings";
+import { mission, supposed, supposedHere } from "../app/store";
+import { asProblem } from "../commands/send";
+import { t, type MessageKey } from "../i18n";
+import * as api from "../sources/api";
+import { formatLength } from "../units/quantities";
+import type { Problem, WhatIf, WhatIfRequest } from "../wire";
+import { decodeBeliefFrame } from "../wire/beliefFrame";
+import { ProblemText } from "./ProblemNote";
+
+const PLANNERS = {
+  flown: {},
+  halving: { method: "rollout", selection: "sequential_halving" },
+  uniform: { method: "rollout", selection: "uniform" },
+  ellipse: { method: "base_policy", base_policy: "ellipse" },
+  fisher: { method: "base_policy", base_policy: "fisher" },
+} as const satisfies Record<string, Partial<WhatIfRequest>>;
+
+type PlannerName = keyof typeof PLANNERS;
+
+const sigma = signal("");
+const outliers = signal("");
+const planner = signal<PlannerName>("flown");
+
+/** A typed number, null for an empty field; NaN for what is none. */
+const typed = (text: string): number | null => (text.trim() === "" ? null : Number(text.replace(",", ".")));
+
+const bytesOf = (base64: string): ArrayBuffer => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
+
+function Steps({ answer }: { answer: WhatIf }) {
+  const units = settings.value.units;
+  const words = (rmse: number | null, localized: boolean | null) =>
+    `${rmse === null ? "–" : `±${formatLength(rmse, units)}`}${localized ? ` ${t("whatIf.localized")}` : ""}`;
+  return (
+    <table class="candidates" data-testid="what-if-steps">
+      <thead>
+        <tr>
+          <th scope="col">{t("whatIf.after")}</th>
+          <th scope="col">{t("whatIf.flown")}</th>
+          <th scope="col">{t("whatIf.supposed")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {answer.steps.slice(1).map((step) => (
+          <tr key={step.bearings}>
+            <td>{step.bearings}</td>
+            <td>{words(step.flown_expected_rmse_m, step.flown_localized)}</td>
+            <td>{words(step.expected_rmse_m, step.localized)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export function WhatIfPanel() {
+  const [asking, setAsking] = useState(false);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const { missionId, bearings, spec } = mission.value;
+  const counted = bearings.filter((b) => !b.excluded).length;
+  const shown = supposedHere.value;
+  if (!missionId || !spec) return null;
+  const ask = async () => {
+    setAsking(true);
+    setProblem(null);
+    const share = typed(outliers.value);
+    const wanted = { bearings: counted, sigma_deg: typed(sigma.value), outlier_probability: share === null ? null : share / 100, ...PLANNERS[planner.value] };
+    try {
+      const answer = await api.whatIf(missionId, wanted as WhatIfRequest);
+      supposed.value = { missionId, bearings: counted, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
+    } catch (error) {
+      setProblem(asProblem(error));
+    } finally {
+      setAsking(false);
+    }
+  };
+  const unreadable = [sigma, outliers].some((field) => Number.isNaN(typed(field.value)));
+  return (
+    <details class="more what-if" data-testid="what-if" open={shown !== null}>
+      <summary>{t("whatIf.title")}</summary>
+      <div class="what-if-fields">
+        <label>
+          {t("whatIf.sigma")}
+          <input data-testid="what-if-sigma" inputMode="decimal" placeholder={String(spec.sensor.sigma_deg)} value={sigma.value} onInput={(e) => (sigma.value = e.currentTarget.value)} />
+        </label>
+        <label>
+          {t("whatIf.outliers")}
+          <input data-testid="what-if-outliers" inputMode="decimal" placeholder={String(100 * spec.sensor.outlier_probability)} value={outliers.value} onInput={(e) => (outliers.value = e.currentTarget.value)} />
+        </label>
+        <label>
+          {t("whatIf.planner")}
+          <select data-testid="what-if-planner" value={planner.value} onChange={(e) => (planner.value = e.currentTarget.value as PlannerName)}>
+            {(Object.keys(PLANNERS) as PlannerName[]).map((name) => (
+              <option value={name} key={name}>
+                {t(`whatIf.planner.${name}` satisfies MessageKey)}
+              </option>
+            ))}
+          </select>
+        </label>
+      </div>
+      <div class="decision">
+        <button class="primary" data-testid="what-if-ask" disabled={asking || unreadable} onClick={() => void ask()}>
+          {t(asking ? "whatIf.asking" : "whatIf.ask", { count: counted })}
+        </button>
+        {shown && (
+          <button data-testid="what-if-back" onClick={() => (supposed.value = null)}>
+            {t("whatIf.back")}
+          </button>
+        )}
+      </div>
+      {problem && (
+        <div class="problem" role="alert">
+          <div>
+            <ProblemText problem={problem} />
+          </div>
+        </div>
+      )}
+      {shown && <Steps answer={shown.answer} />}
+      {shown?.answer.plan === null && <p class="muted">{t("whatIf.noPlan", { reason: shown.answer.no_plan })}</p>}
+    </details>
+  );
+}
