@@ -222,7 +222,8 @@ class BearingExcluded(Fact):
 
 class BeliefUpdated(Fact):
     """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
-    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate)."""
+    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate). `contradicting`:
+    ids of the bearings that do not point at the estimate; a claim that is made all the same stands against them."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     bearings: int
@@ -230,6 +231,7 @@ class BeliefUpdated(Fact):
     consistent: bool
     localized: bool
     not_yet: list[str]
+    contradicting: list[str] = Field(default_factory=list)
     digest: str
 
 

@@ -22,7 +22,7 @@ from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import GeoPoint
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, digest, fold
-from planner.belief.verdict import verdict
+from planner.belief.verdict import points_at, verdict
 from planner.types import (
     Bearing,
     FullMotion,
@@ -95,9 +95,17 @@ class Localization:
             consistent=said.consistent,
             localized=said.localized,
             not_yet=list(said.reasons),
+            contradicting=[] if folded is None else self._contradicting(folded, measured, bearings),
             digest=digest(shown),
         )
         return fact, shown
+
+    def _contradicting(
+        self, belief: GridBelief, measured: Sequence[BearingMeasured], bearings: Sequence[Bearing]
+    ) -> list[str]:
+        spread = estimate(belief, self.problem.estimator)
+        pairs = zip(measured, bearings, strict=True)
+        return [fact.bearing_id for fact, bearing in pairs if not points_at(bearing, spread.x, spread.y)]
 
     def estimate_fact(self, belief: GridBelief) -> EstimateFact:
         spread = estimate(belief, self.problem.estimator)

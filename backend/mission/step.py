@@ -126,9 +126,15 @@ def end(
 def finish(step: Step, reason: str) -> None:
     """The vehicle is down: say honestly what came of the search."""
     if step.state.localized:
-        end(step, "done", "localized", "the expected error is below the threshold")
+        end(step, "done", "localized", f"the expected error is below the threshold{_against(step.state)}")
     else:
         end(step, "done", "not_localized", reason + why_not_yet(step.state))
+
+
+def _against(state: MissionState) -> str:
+    """A claim that stands against a bearing says so (mission rule 6, decision 12)."""
+    against = 0 if state.belief is None else len(state.belief.contradicting)
+    return f"; it stands against {against} of {len(state.bearings)} bearings" if against else ""
 
 
 def why_not_yet(state: MissionState) -> str:

@@ -148,7 +148,13 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
     case "bearing_excluded":
       return t("event.bearing_excluded", { by: told(event.by), reason: told(event.reason) });
     case "belief_updated":
-      if (!event.consistent || !event.estimate) return t("event.belief_inconsistent");
+      if (!event.estimate || (!event.consistent && !event.localized)) return t("event.belief_inconsistent");
+      if (event.localized && event.contradicting.length > 0)
+        return t("event.belief_localized_against", {
+          against: event.contradicting.length,
+          bearings: event.bearings,
+          rmse: formatLength(event.estimate.expected_rmse_m, units),
+        });
       return event.localized
         ? t("event.belief_localized", { rmse: formatLength(event.estimate.expected_rmse_m, units) })
         : t("event.belief_updated", {

@@ -70,6 +70,23 @@ def test_contradicting_bearings_give_no_estimate_but_a_belief_to_plan_with() -> 
     assert not tolerant.consistent
 
 
+def test_a_claim_against_an_outlier_names_the_bearing_it_stands_against() -> None:
+    """Decision 12: three crossing bearings carry the claim, the one that points elsewhere is told beside it."""
+    target = (150.0, 60.0)
+    seen = [
+        bearing(x, y, math.degrees(math.atan2(target[0] - x, target[1] - y)) % 360.0, 2.0)
+        for x, y in ((50, -20), (250, -20), (150, 0), (60, 120))
+    ]
+    wrong = bearing(240, 120, 200.0, 2.0).model_copy(update={"bearing_id": "wrong"})
+    fact, _ = task(outlier_probability=0.05).belief_fact([*seen, wrong])
+    assert fact.localized
+    assert not fact.consistent
+    assert fact.contradicting == ["wrong"]
+    agreed, _ = task(outlier_probability=0.05).belief_fact(seen)
+    assert agreed.localized
+    assert agreed.contradicting == []
+
+
 def test_without_bearings_the_belief_is_the_prior_over_the_area() -> None:
     fact, belief = task().belief_fact([])
     assert fact.bearings == 0

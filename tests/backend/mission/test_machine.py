@@ -339,6 +339,16 @@ def test_a_localized_mission_whose_vehicle_landed_in_hold_is_done() -> None:
     assert (walk.state.phase, walk.state.outcome) == ("done", "localized")
 
 
+def test_the_end_of_a_claim_against_a_bearing_says_so() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    ready = belief_ready(walk.state, localized=True)
+    walk.give(inputs.BeliefReady(ready.bearing_ids, ready.fact.model_copy(update={"contradicting": ["b1"]})))
+    walk.give(inputs.Landed())
+    ended = next(r.event for r in walk.recorded if isinstance(r.event, MissionEnded))
+    assert ended.reason == "the expected error is below the threshold; it stands against 1 of 1 bearings"
+
+
 def test_a_restart_in_flight_holds_and_rebuilds_the_belief() -> None:
     for phase in IN_FLIGHT:
         walk = walk_in(phase)
