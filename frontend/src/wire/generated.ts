@@ -231,6 +231,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions/{mission_id}/what-if": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask What If
+         * @description What would have been believed and chosen with another sensor model or planner. Nothing is recorded.
+         */
+        post: operations["ask_what_if"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/sweeps/{sweep_id}": {
         parameters: {
             query?: never;
@@ -1932,6 +1952,38 @@ export interface components {
             kind: "veto";
         };
         /**
+         * @description `belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
+         *     binary frame (lite).
+         */
+        WhatIf: {
+            steps: components["schemas"]["WhatIfStep"][];
+            belief: components["schemas"]["BeliefUpdated"];
+            plan: components["schemas"]["PlanChosen"] | null;
+            no_plan: string;
+            frame_base64: string;
+        };
+        /**
+         * @description A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
+         *     bearing, those taken and those the planner expects.
+         */
+        WhatIfRequest: {
+            bearings: number;
+            sigma_deg?: number | null;
+            outlier_probability?: number | null;
+            method?: ("rollout" | "base_policy") | null;
+            base_policy?: ("ellipse" | "fisher") | null;
+            selection?: ("uniform" | "sequential_halving") | null;
+            estimator?: ("map" | "expected_value" | "geometric_median") | null;
+        };
+        /** @description After so many bearings: what would have been said, and what was (None: nothing was said then). */
+        WhatIfStep: {
+            bearings: number;
+            expected_rmse_m: number | null;
+            localized: boolean;
+            flown_expected_rmse_m: number | null;
+            flown_localized: boolean | null;
+        };
+        /**
          * @description `fraction` of the area, 0..1, that lies on tiles the archive has at this zoom. `metres_per_pixel`: ground size of
          *     a pixel of a 256-pixel tile at the area.
          */
@@ -2338,6 +2390,42 @@ export interface operations {
                 };
                 content: {
                     "application/octet-stream": string;
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    ask_what_if: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WhatIfRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhatIf"];
                 };
             };
             /** @description What went wrong and how to mend it */
