@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 
 class Model(BaseModel):
@@ -93,11 +93,20 @@ MotionSpec = Annotated[LinearMotionSpec | LinearConstantMotionSpec | FullMotionS
 
 
 class EmitterSpec(Model):
-    """What is looked for."""
+    """What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only."""
 
     frequency_hz: Positive = 868_300_000.0
     kind: Literal["carrier", "pulsed"] = "carrier"
     label: str = Field(default="emitter", max_length=80)
+    pulse_width_s: float = Field(default=0.02, gt=0, le=1, allow_inf_nan=False)
+    pulse_period_s: float = Field(default=1.3, gt=0, le=10, allow_inf_nan=False)
+    pulse_jitter_s: float = Field(default=0.03, ge=0, le=1, allow_inf_nan=False)
+
+    @model_validator(mode="after")
+    def pulses_have_pauses(self) -> EmitterSpec:
+        if self.kind == "pulsed" and self.pulse_width_s + self.pulse_jitter_s >= self.pulse_period_s:
+            raise ValueError("a pulse and its jitter must be shorter than the period")
+        return self
 
 
 class SensorSpec(Model):
@@ -107,6 +116,8 @@ class SensorSpec(Model):
     outlier_probability: float = Field(default=0.05, ge=0, le=0.5)
     measurement_time_s: Positive = 30.0
     turn_rate_deg_s: float = Field(default=30.0, ge=5, le=90)
+    pulses_per_heading: int = Field(default=2, ge=1, le=20)
+    """A sweep of a pulsed tag is complete when each sixteenth of the circle was listened to for so many pulses."""
     minimum_quality: float = Field(default=0.7, ge=0, le=1)
     maximum_retakes: int = Field(default=2, ge=0, le=10)
 

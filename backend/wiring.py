@@ -35,7 +35,7 @@ from hardware.frame import LocalFrame
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.ports import Receiver, ReceiverError, Vehicle
-from hardware.readings import GeoPoint, PowerSample
+from hardware.readings import GeoPoint, PowerSample, Pulses
 from hardware.sdr.device import receiver_from
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, find_simulated, launch_simulated
@@ -53,9 +53,27 @@ AROUND_M = 60.0
 """Of the multipath world, see `walls`."""
 
 
-def emitter_place(seed: int, home: GeoPoint) -> GeoPoint:
-    """Where the simulated emitter stands: anywhere in the area that is suggested around `home`, by the seed."""
-    rng = np.random.default_rng([seed, 868])
+@dataclass(frozen=True, slots=True)
+class SimulatedEmitter:
+    """pulse_period_s None: a carrier."""
+
+    frequency_hz: float
+    pulse_period_s: float | None = None
+
+
+EMITTERS = (
+    SimulatedEmitter(EmitterSpec().frequency_hz),
+    SimulatedEmitter(150_000_000.0, EmitterSpec().pulse_period_s),
+    SimulatedEmitter(121_500_000.0),
+    SimulatedEmitter(1_575_420_000.0),
+)
+"""What transmits in the simulated world, each from a place of its own: the suggested mission's emitter, and those of
+the page's presets (wildlife tag, rescue beacon, interference). A mission hears the one at its frequency."""
+
+
+def emitter_place(seed: int, home: GeoPoint, frequency_hz: float = EMITTERS[0].frequency_hz) -> GeoPoint:
+    """Where a simulated emitter stands: anywhere in the area that is suggested around `home`, by seed and frequency."""
+    rng = np.random.default_rng([seed, int(frequency_hz / 1e6)])
     east = rng.uniform(-WIDTH_M / 2 + EDGE_M, WIDTH_M / 2 - EDGE_M)
     north = rng.uniform(EDGE_M, HEIGHT_M - EDGE_M)
     return LocalFrame(home).to_geo(float(east), float(north))
@@ -84,7 +102,7 @@ def walls(seed: int, home: GeoPoint) -> tuple[Reflector, ...]:
 class EmitterAroundHome:
     """The Receiver port: a simulated world made around the vehicle's home once that is known.
 
-    truth: where the simulated emitter stands, None until then.
+    truth: where the simulated emitter that is listened to stands, None until then or when there is none.
     """
 
     def __init__(self, vehicle: Vehicle, clock: ScaledClock, seed: int, world: str = "open") -> None:
@@ -93,7 +111,13 @@ class EmitterAroundHome:
         self._seed = seed
         self._world = world
         self._receiver: SimulatedReceiver | None = None
+        self._pulses: Pulses | None = None
+        self._places: dict[float, GeoPoint] = {}
         self.truth: GeoPoint | None = None
+
+    def expect(self, pulses: Pulses | None) -> None:
+        """See HearsPulses."""
+        self._pulses = pulses
 
     async def open(self, frequency_hz: float) -> None:
         if self._receiver is None:
@@ -101,12 +125,16 @@ class EmitterAroundHome:
             home = telemetry.home or telemetry.position
             if home is None:
                 raise ReceiverError("the simulated emitter stands around the vehicle's home, which is not known yet")
-            self.truth = emitter_place(self._seed, home)
-            emitter = Emitter(self.truth, EmitterSpec().frequency_hz)
+            self._places = {e.frequency_hz: emitter_place(self._seed, home, e.frequency_hz) for e in EMITTERS}
+            emitters = tuple(
+                Emitter(self._places[e.frequency_hz], e.frequency_hz, pulse_period_s=e.pulse_period_s) for e in EMITTERS
+            )
             reflectors = walls(self._seed, home) if self._world == "multipath" else ()
-            world = World((emitter,), reflectors=reflectors, seed=self._seed)
+            world = World(emitters, reflectors=reflectors, seed=self._seed)
             ground = telemetry.home_amsl_m or 0.0
             self._receiver = SimulatedReceiver(world, self._vehicle.telemetry, self._clock, ground_amsl_m=ground)
+        self._receiver.expect(self._pulses)
+        self.truth = self._places.get(frequency_hz)
         await self._receiver.open(frequency_hz)
 
     async def close(self) -> None:

@@ -7,10 +7,19 @@ only when telemetry has confirmed the deed; it raises `VehicleError` (with what 
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.readings import BearingReading, GeoPoint, HeadingSample, PowerSample, PreflightCheck, Sweep, Telemetry
+from hardware.readings import (
+    BearingReading,
+    GeoPoint,
+    HeadingSample,
+    PowerSample,
+    PreflightCheck,
+    Pulses,
+    Sweep,
+    Telemetry,
+)
 
 
 class HardwareError(RuntimeError):
@@ -106,6 +115,15 @@ class Receiver(Protocol):
 
     def samples(self) -> AsyncIterator[PowerSample]:
         """Power samples from now on. Ends when closed; raises ReceiverError when the device is gone."""
+        ...
+
+
+@runtime_checkable
+class HearsPulses(Protocol):
+    """A Receiver that can also listen to a pulsed tag: one sample a pulse."""
+
+    def expect(self, pulses: Pulses | None) -> None:
+        """Before `open`: what is listened to from then on; None: what the receiver was made for (a carrier, mostly)."""
         ...
 
 

@@ -70,14 +70,27 @@ class PreflightCheck:
 
 
 @dataclass(frozen=True, slots=True)
+class Pulses:
+    """What a pulsed tag sends: pulses of `width_s` every `period_s`, each straying by up to `jitter_s`."""
+
+    width_s: float
+    period_s: float
+    jitter_s: float = 0.03
+
+
+@dataclass(frozen=True, slots=True)
 class PowerSample:
-    """Received narrow-band power at one moment. `power_db` relative to the receiver's reference."""
+    """Received narrow-band power at one moment. `power_db` relative to the receiver's reference.
+
+    detected False: a pulse was due and none was heard; `power_db` is the noise then. It shows that the receiver lives.
+    """
 
     at_s: float
     frequency_hz: float
     power_db: float
     noise_floor_db: float | None = None
     clipped: bool = False
+    detected: bool = True
 
 
 @dataclass(frozen=True, slots=True)

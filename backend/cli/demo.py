@@ -42,6 +42,11 @@ LONGEST_MISSION_S = 3_600.0
 PATIENCE_WALL_S = 60.0
 MOST_HOLDS = 5
 ENDED = frozenset({"done", "aborted", "failed"})
+TAG: dict[str, dict[str, Any]] = {
+    "emitter": {"frequency_hz": 150_000_000.0, "kind": "pulsed", "label": "wildlife tag"},
+    "sensor": {"measurement_time_s": 45.0, "sigma_deg": 9.0},
+}
+"""What the page's preset for wildlife sets."""
 
 
 class DemoFailed(RuntimeError):
@@ -62,6 +67,10 @@ def demo(
         str | None,
         typer.Option(help="Simulated surroundings: open, or multipath (walls that reflect). Default: open."),
     ] = None,
+    tag: Annotated[
+        bool,
+        typer.Option("--tag", help="Look for the simulated wildlife tag (pulses, 150 MHz), not the carrier."),
+    ] = False,
     mend_failsafes: Annotated[
         bool,
         typer.Option(help="Set failsafe parameters of the autopilot that would not act, and say which."),
@@ -91,7 +100,7 @@ def demo(
     except ValueError as error:
         stop(error)
     try:
-        result = asyncio.run(_demo(settings, headless, json_, mend_failsafes))
+        result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, TAG if tag else {}))
     except (CannotServe, DatabaseUnusable, ValueError) as error:
         stop(error)
     except (DatabaseAway, JournalUnavailable) as error:
@@ -108,12 +117,14 @@ def demo(
         typer.echo(_sentence(result))
 
 
-async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool) -> dict[str, Any]:
+async def _demo(
+    settings: Settings, headless: bool, json_: bool, mend: bool, changes: dict[str, dict[str, Any]]
+) -> dict[str, Any]:
     async with running_server(settings) as running:
         if not headless:
             remark(f"the page: {running.url}")
             await asyncio.to_thread(webbrowser.open, running.url)
-        log = await fly(running, settings, mend)
+        log = await fly(running, settings, mend, changes)
         result = summary(log, settings, None if running.receiver is None else running.receiver.truth)
         if not headless:
             typer.echo(_sentence(result), err=json_)
@@ -135,8 +146,13 @@ class MissionLog:
         return [r.event for r in self.recorded if isinstance(r.event, kind)]
 
 
-async def fly(running: RunningServer, settings: Settings, mend: bool = False) -> MissionLog:
-    """Draft and start the suggested mission by REST, then watch the websocket to its end. Raises DemoFailed."""
+async def fly(
+    running: RunningServer, settings: Settings, mend: bool = False, changes: dict[str, dict[str, Any]] | None = None
+) -> MissionLog:
+    """Draft and start the suggested mission by REST, then watch the websocket to its end. Raises DemoFailed.
+
+    changes: parts of the specification, merged into it.
+    """
     async with httpx.AsyncClient(base_url=running.url, timeout=60.0) as client:
         await _vehicle_there(client)
         if mend:
@@ -145,6 +161,8 @@ async def fly(running: RunningServer, settings: Settings, mend: bool = False) ->
         defaults = _answer(await client.get("/api/defaults"))
         spec = defaults["spec"] | {"name": f"Demo, seed {settings.seed}"}
         spec["planner"] = spec["planner"] | {"seed": settings.seed}
+        for part, values in (changes or {}).items():
+            spec[part] = spec[part] | values
         mission_id = _answer(await client.post("/api/missions", json=spec))["mission_id"]
         await _preflight_passed(client, mission_id)
         log = MissionLog(mission_id)

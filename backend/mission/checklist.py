@@ -7,7 +7,7 @@ import asyncio
 from backend.events import CheckFact
 from backend.mission.equipment import Equipment
 from backend.mission.errors import MissionInputError
-from backend.mission.listening import Listening
+from backend.mission.listening import Listening, expected_pulses
 from backend.mission.localization import Localization, localization
 from backend.mission.safety import Situation, start_vetoes
 from backend.spec import MissionSpec, Place
@@ -63,12 +63,15 @@ async def _receiver(mission: MissionSpec, equipment: Equipment, listening: Liste
     remedy = "check that the receiver is plugged in and not in use by another program"
     if listening is not None:
         return _fact("receiver", listening.state == "ok", listening.trouble or "delivers samples", remedy)
-    trial = Listening(equipment.receiver, equipment.clock, frequency, mission.timers.receiver_silent_s)
+    pulses = expected_pulses(mission.emitter)
+    trial = Listening(equipment.receiver, equipment.clock, frequency, mission.timers.receiver_silent_s, pulses)
     trial.start()
     try:
-        heard = await trial.first_sample(RECEIVER_WALL_S)
+        heard = await trial.first_sample(RECEIVER_WALL_S + (0.0 if pulses is None else 2.0 * pulses.period_s))
         detail = f"delivers samples at {frequency / 1e6:.4f} MHz" if heard else trial.trouble or "delivers no samples"
-        return _fact("receiver", heard, detail, "" if heard else remedy)
+        # a tag may be out of range where the vehicle stands
+        blocking = pulses is None or trial.state == "lost"
+        return _fact("receiver", heard, detail, "" if heard else remedy, blocking)
     finally:
         await trial.stop()
 

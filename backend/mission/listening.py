@@ -7,23 +7,35 @@ import logging
 from collections import deque
 from typing import Literal
 
-from hardware.ports import Clock, HardwareError, Receiver
-from hardware.readings import PowerSample
+from backend.spec import EmitterSpec
+from hardware.ports import Clock, HardwareError, HearsPulses, Receiver, ReceiverError
+from hardware.readings import PowerSample, Pulses
 
 log = logging.getLogger("crossfix.mission")
 
 KEPT_SAMPLES = 60_000
 REOPEN_S = 1.0
+MISSED_PULSES = 10
 
 
 class Listening:
     """Keeps the last samples. A receiver that fails is opened again every second until it answers."""
 
-    def __init__(self, receiver: Receiver, clock: Clock, frequency_hz: float, silent_after_s: float) -> None:
+    def __init__(
+        self,
+        receiver: Receiver,
+        clock: Clock,
+        frequency_hz: float,
+        silent_after_s: float,
+        pulses: Pulses | None = None,
+    ) -> None:
         self._receiver = receiver
         self._clock = clock
         self._frequency_hz = frequency_hz
-        self._silent_after_s = silent_after_s
+        # a tag that is far away may stay unheard for some of its pulses
+        patience_s = 0.0 if pulses is None else MISSED_PULSES * pulses.period_s
+        self._silent_after_s = max(silent_after_s, patience_s)
+        self._pulses = pulses
         self._samples: deque[PowerSample] = deque(maxlen=KEPT_SAMPLES)
         self._heard_at_s: float | None = None
         self._quiet_s = 0.0
@@ -44,6 +56,7 @@ class Listening:
     async def _listen(self) -> None:
         while True:
             try:
+                self._expect()
                 await self._receiver.open(self._frequency_hz)
                 async for sample in self._receiver.samples():
                     self._samples.append(sample)
@@ -57,6 +70,13 @@ class Listening:
                     log.warning("receiver: %s", error)
                 self._fault = str(error)
             await self._clock.sleep(REOPEN_S)
+
+    def _expect(self) -> None:
+        """Raises ReceiverError when pulses are wanted of a receiver that cannot find them."""
+        if isinstance(self._receiver, HearsPulses):
+            self._receiver.expect(self._pulses)
+        elif self._pulses is not None:
+            raise ReceiverError("this receiver measures carriers only; a pulsed tag needs one that delivers IQ")
 
     @property
     def state(self) -> Literal["ok", "silent", "off", "lost"]:
@@ -90,7 +110,7 @@ class Listening:
         return None if self._heard_at_s is None else self._clock.now() - self._heard_at_s
 
     def between(self, begin_s: float, end_s: float) -> list[PowerSample]:
-        """Samples taken in [begin_s, end_s], oldest first."""
+        """Samples taken in [begin_s, end_s], oldest first; pulses that were not heard among them."""
         found = []
         for sample in reversed(self._samples):
             if sample.at_s < begin_s:
@@ -107,3 +127,10 @@ class Listening:
         except TimeoutError:
             return False
         return True
+
+
+def expected_pulses(emitter: EmitterSpec) -> Pulses | None:
+    """What the receiver is told to listen for; None for a carrier."""
+    if emitter.kind == "carrier":
+        return None
+    return Pulses(emitter.pulse_width_s, emitter.pulse_period_s, emitter.pulse_jitter_s)

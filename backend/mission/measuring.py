@@ -13,6 +13,7 @@ import numpy as np
 from backend.events import BearingMeasured, Peak, SweepRejected
 from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
+from backend.mission.turning import turn_and_listen
 from backend.spec import MissionSpec, Place
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.ports import ReceiverError, VehicleError
@@ -43,21 +44,23 @@ async def measure(
     began_s = equipment.clock.now()
     progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, began_s))
     try:
-        await equipment.vehicle.turn(mission.sensor.turn_rate_deg_s)
-        ended_s = equipment.clock.now()
+        began_s, ended_s = await turn_and_listen(equipment, mission, listening)
         await equipment.clock.sleep(LATE_SAMPLES_S)
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)
     samples = listening.between(began_s, ended_s)
-    if not samples:
+    pulsed = mission.emitter.kind == "pulsed"
+    if not samples and not (pulsed and listening.state == "ok"):
         raise ReceiverError("the receiver delivered nothing during the turn; check that it is running and tuned")
     sweep_id = str(uuid4())
     telemetry = equipment.vehicle.telemetry()
     altitude_amsl_m = math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m
     try:
+        if pulsed and not any(sample.detected for sample in samples):
+            raise SweepError("no pulse of the tag was heard in any direction; it may be out of range or switched off")
         sweep = assemble_sweep(
-            samples,
+            [sample for sample in samples if sample.detected],
             equipment.vehicle.headings(began_s - 1.0),
             frequency_hz=mission.emitter.frequency_hz,
             altitude_amsl_m=altitude_amsl_m,
@@ -149,7 +152,7 @@ async def _show_progress(
         await equipment.clock.sleep(PROGRESS_S)
         await asyncio.sleep(0.05)
         headings = equipment.vehicle.headings(began_s)
-        samples = listening.between(began_s, equipment.clock.now())
+        samples = [s for s in listening.between(began_s, equipment.clock.now()) if s.detected]
         if len(headings) < 2 or not samples:
             continue
         nose = np.unwrap(np.array([h.heading_deg for h in headings]), period=360.0)

@@ -15,7 +15,7 @@ from backend.commands import Command, Override, Resume
 from backend.events import BeliefUpdated, Event
 from backend.mission import effects, inputs
 from backend.mission.equipment import Equipment
-from backend.mission.listening import Listening
+from backend.mission.listening import Listening, expected_pulses
 from backend.mission.localization import Localization
 from backend.mission.machine import transition
 from backend.mission.measuring import Measured
@@ -48,7 +48,11 @@ class Runner:
         self._equipment = equipment
         mission = state.mission
         self.listening = Listening(
-            equipment.receiver, equipment.clock, mission.emitter.frequency_hz, mission.timers.receiver_silent_s
+            equipment.receiver,
+            equipment.clock,
+            mission.emitter.frequency_hz,
+            mission.timers.receiver_silent_s,
+            expected_pulses(mission.emitter),
         )
         self.outbox = Outbox(
             mission_id,

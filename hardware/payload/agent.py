@@ -29,11 +29,12 @@ from hardware.payload.messages import (
     Status,
     Tune,
     Welcome,
+    WirePulses,
     parse_from_server,
 )
 from hardware.payload.spool import Spool, SpoolError
-from hardware.ports import HardwareError, Receiver
-from hardware.readings import PowerSample
+from hardware.ports import HardwareError, HearsPulses, Receiver, ReceiverError
+from hardware.readings import PowerSample, Pulses
 
 LOG = logging.getLogger("crossfix.payload")
 THERMAL_ZONE = Path("/sys/class/thermal/thermal_zone0/temp")
@@ -75,6 +76,7 @@ class PayloadAgent:
         self._spool = spool
         self._now = now
         self._frequency_hz = spool.frequency_hz or frequency_hz
+        self._pulses: Pulses | None = None
         self._retune = asyncio.Event()
         self._arrived = asyncio.Event()
         self._receiver_state, self._receiver_ok = "starting", False
@@ -96,6 +98,7 @@ class PayloadAgent:
         while True:
             try:
                 self._retune.clear()
+                self._expect_pulses()
                 await self._receiver.open(self._frequency_hz)
                 self._receiver_state, self._receiver_ok = "listening", True
                 await self._spool_until_retuned()
@@ -105,6 +108,13 @@ class PayloadAgent:
                 await asyncio.sleep(self._settings.retry_s * 2.0)
             finally:
                 await self._receiver.close()
+
+    def _expect_pulses(self) -> None:
+        """Raises ReceiverError when the server wants pulses that this radio cannot find."""
+        if isinstance(self._receiver, HearsPulses):
+            self._receiver.expect(self._pulses)
+        elif self._pulses is not None:
+            raise ReceiverError("this receiver measures carriers only; a pulsed tag needs one that delivers IQ")
 
     async def _spool_until_retuned(self) -> None:
         heard: list[PowerSample] = []
@@ -124,6 +134,8 @@ class PayloadAgent:
                         await self._retune.wait()
                         return
                     self._clipped.append(sample.clipped)
+                    if not sample.detected:
+                        continue  # a pulse that did not come is nothing to send
                     if sendable(sample):
                         heard.append(sample)
                     else:
@@ -133,7 +145,7 @@ class PayloadAgent:
                     await self._flush(batch)
         finally:
             if pending is not None and not pending.cancel() and pending.exception() is None:
-                heard += [sample for sample in (pending.result(),) if sendable(sample)]
+                heard += [sample for sample in (pending.result(),) if sample.detected and sendable(sample)]
             if heard:
                 await self._flush(heard)
 
@@ -192,7 +204,7 @@ class PayloadAgent:
         await self._received(greeting.received_seq)
         self._sent = greeting.received_seq
         if greeting.frequency_hz is not None:
-            self._tune(greeting.frequency_hz)
+            self._tune(greeting.frequency_hz, greeting.pulses)
         LOG.info("connected; the server has everything up to %d", greeting.received_seq)
         tasks = [
             asyncio.create_task(work)
@@ -252,7 +264,7 @@ class PayloadAgent:
                 self._sent = message.seq
                 self._arrived.set()
             elif isinstance(message, Tune):
-                self._tune(message.frequency_hz)
+                self._tune(message.frequency_hz, message.pulses)
             elif isinstance(message, Pong):
                 back_s = self._now()
                 trip_s = max(back_s - message.agent_s, 0.0)
@@ -265,9 +277,10 @@ class PayloadAgent:
         await asyncio.to_thread(self._spool.forget, seq)
         self._arrived.set()
 
-    def _tune(self, frequency_hz: float) -> None:
-        if frequency_hz != self._frequency_hz:
-            self._frequency_hz = frequency_hz
+    def _tune(self, frequency_hz: float, pulses: WirePulses | None) -> None:
+        wanted = None if pulses is None else Pulses(**pulses.model_dump())
+        if (frequency_hz, wanted) != (self._frequency_hz, self._pulses):
+            self._frequency_hz, self._pulses = frequency_hz, wanted
             self._spool.frequency_hz = frequency_hz
             self._retune.set()
 

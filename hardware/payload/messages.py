@@ -80,12 +80,22 @@ class Ping(Message):
 AgentMessage = Annotated[Hello | Samples | Status | Ping, Field(discriminator="type")]
 
 
+class WirePulses(Message):
+    """A pulsed tag's rhythm, see hardware.readings.Pulses."""
+
+    width_s: float = Field(gt=0, le=10)
+    period_s: float = Field(gt=0, le=100)
+    jitter_s: float = Field(ge=0, le=10)
+
+
 class Welcome(Message):
-    """received_seq: the server has everything up to here (0: nothing)."""
+    """received_seq: the server has everything up to here (0: nothing). pulses: None for a carrier, or for what the
+    agent itself is configured for."""
 
     type: Literal["welcome"] = "welcome"
     received_seq: int = Field(ge=0)
     frequency_hz: Hertz | None
+    pulses: WirePulses | None = None
 
 
 class Ack(Message):
@@ -103,6 +113,7 @@ class Resend(Message):
 class Tune(Message):
     type: Literal["tune"] = "tune"
     frequency_hz: Hertz
+    pulses: WirePulses | None = None
 
 
 class Pong(Message):

@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 
 from hardware.payload.session import PayloadHub, Subscription
 from hardware.ports import ReceiverError
-from hardware.readings import PowerSample
+from hardware.readings import PowerSample, Pulses
 
 
 class PayloadReceiver:
@@ -23,12 +23,17 @@ class PayloadReceiver:
         self._gone_after_s = gone_after_s
         self._frequency_hz: float | None = None
         self._subscription: Subscription | None = None
+        self._pulses: Pulses | None = None
+
+    def expect(self, pulses: Pulses | None) -> None:
+        """See HearsPulses: passed on to the payload, which listens for them."""
+        self._pulses = pulses
 
     async def open(self, frequency_hz: float) -> None:
         """Tune the payload. Raises ReceiverError when none connects in time."""
         if not frequency_hz > 0:
             raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
-        self._hub.tune(frequency_hz)
+        self._hub.tune(frequency_hz, self._pulses)
         waited = 0.0
         while not self._hub.connected():
             if waited >= self._connect_within_s:

@@ -13,7 +13,7 @@ import hmac
 import time
 from collections import deque
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 
 from hardware.payload.messages import (
     PROTOCOL,
@@ -29,9 +29,10 @@ from hardware.payload.messages import (
     Status,
     Tune,
     Welcome,
+    WirePulses,
     parse_from_agent,
 )
-from hardware.readings import PowerSample
+from hardware.readings import PowerSample, Pulses
 
 CLOCK_OFFSET_LIMIT_S = 0.005
 """A measured clock offset below this is taken as none: the measurement is not better."""
@@ -91,6 +92,7 @@ class PayloadHub:
         self.now = now
         self.agents: dict[str, AgentState] = {}
         self.frequency_hz: float | None = None
+        self.pulses: WirePulses | None = None
         self._received: dict[str, int] = {}
         self._subscriptions: list[Subscription] = []
         self._sessions: dict[str, PayloadSession] = {}
@@ -100,11 +102,12 @@ class PayloadHub:
         matches = [hmac.compare_digest(token.encode(), known.encode()) for known in self._tokens]
         return any(matches)
 
-    def tune(self, frequency_hz: float) -> None:
-        """Ask every payload, now and when it connects, to listen at this frequency."""
+    def tune(self, frequency_hz: float, pulses: Pulses | None = None) -> None:
+        """Ask every payload, now and when it connects, to listen at this frequency, to this tag's pulses."""
         self.frequency_hz = frequency_hz
+        self.pulses = None if pulses is None else WirePulses(**asdict(pulses))
         for session in self._sessions.values():
-            session.send(Tune(frequency_hz=frequency_hz))
+            session.send(Tune(frequency_hz=frequency_hz, pulses=self.pulses))
 
     def subscribe(self) -> Subscription:
         subscription = Subscription()
@@ -216,7 +219,7 @@ class PayloadSession:
                 )
             self._hello = message
             received = self._hub.welcome(self, message)
-            self.send(Welcome(received_seq=received, frequency_hz=self._hub.frequency_hz))
+            self.send(Welcome(received_seq=received, frequency_hz=self._hub.frequency_hz, pulses=self._hub.pulses))
         elif isinstance(message, Ping):
             self.send(Pong(agent_s=message.agent_s, server_s=self._hub.now()))
         elif self._hello is None:

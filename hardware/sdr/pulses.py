@@ -73,7 +73,7 @@ class PulseMeter:
         self._clipped = np.empty(0, dtype=bool)
 
     def feed(self, block: IqBlock) -> list[PowerSample]:
-        """Pulses found in what has been heard so far."""
+        """Pulses found in what has been heard so far, and where a whole period brought none (detected False)."""
         if block.lost or not math.isfinite(self._start_s):
             self._samples, self._clipped = np.empty(0, dtype=np.complex64), np.empty(0, dtype=bool)
             self._start_s, self._skip = block.at_s, 0
@@ -84,8 +84,7 @@ class PulseMeter:
         window = int(self.setting.period_s * self.sample_rate_hz)
         while self._samples.size >= window + self._size:
             pulse, self._skip = self._search(window)
-            if pulse is not None:
-                found.append(pulse)
+            found.append(pulse)
             self._advance()
         return found
 
@@ -96,8 +95,8 @@ class PulseMeter:
         self._start_s += used / self.sample_rate_hz
         self._skip -= used
 
-    def _search(self, window: int) -> tuple[PowerSample | None, int]:
-        """The loudest pulse in one period from the front, and how many samples to step on."""
+    def _search(self, window: int) -> tuple[PowerSample, int]:
+        """The loudest pulse in one period from the front (or that there is none), and how many samples to step on."""
         hop = max(self._size // 4, 1)
         starts = np.arange(0, window, hop)
         cells = np.lib.stride_tricks.sliding_window_view(self._samples, self._size)[starts]
@@ -108,8 +107,10 @@ class PulseMeter:
         row, column = np.unravel_index(int(np.argmax(eligible)), power.shape)
         peak = float(eligible[row, column])
         threshold = 10.0 ** (self.setting.threshold_db / 10.0)
+        floor_db = 10.0 * math.log10(max(3.0 * noise, LEVEL_FLOOR)) - self.gain_db
         if peak <= threshold * max(noise, LEVEL_FLOOR):
-            return None, window // 2
+            middle_s = self._start_s + window / 2.0 / self.sample_rate_hz
+            return PowerSample(middle_s, self.frequency_hz, floor_db, floor_db, detected=False), window // 2
         begin = int(starts[row])
         at_s = self._start_s + (begin + self._size / 2.0) / self.sample_rate_hz
         self._last_pulse_s = at_s
@@ -120,7 +121,7 @@ class PulseMeter:
             at_s=at_s,
             frequency_hz=self.frequency_hz,
             power_db=10.0 * math.log10(level) - self.gain_db,
-            noise_floor_db=10.0 * math.log10(max(3.0 * noise, LEVEL_FLOOR)) - self.gain_db,
+            noise_floor_db=floor_db,
             clipped=bool(self._clipped[begin : begin + self._size].mean() > CLIPPED_SHARE),
         )
         # go on just before the earliest time at which the next pulse can come

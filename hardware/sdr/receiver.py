@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 
 from hardware.iq import IqSource
 from hardware.ports import ReceiverError
-from hardware.readings import PowerSample
+from hardware.readings import PowerSample, Pulses
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.spectrum import SpectrumError, ToneMeter, ToneSetting
 
@@ -25,12 +25,20 @@ class IqReceiver:
         self, source: IqSource, setting: ToneSetting | PulseSetting | None = None, silent_after_s: float = 5.0
     ) -> None:
         self._source = source
-        self._setting = setting or ToneSetting()
+        self._made_for = self._setting = setting or ToneSetting()
         self._silent_after_s = silent_after_s
         self._meters: list[ToneMeter | PulseMeter] = []
         self._gain_frozen = False
         self.lost_samples = 0
         """IQ samples the source reported as lost since open."""
+
+    def expect(self, pulses: Pulses | None) -> None:
+        """See HearsPulses. Raises ReceiverError for pulses that cannot be."""
+        try:
+            told = None if pulses is None else PulseSetting(pulses.width_s, pulses.period_s, pulses.jitter_s)
+        except SpectrumError as error:
+            raise ReceiverError(str(error)) from error
+        self._setting = told or self._made_for
 
     async def open(self, frequency_hz: float, *others_hz: float) -> None:
         """Tune so that all frequencies fit. Raises ReceiverError."""

@@ -126,7 +126,7 @@ def _strongest_hz(recorded: SigmfRecording) -> float:
 
 def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
     meter = _meter(recorded, frequency_hz, pulses)
-    heard = [sample for block in _blocks(recorded) for sample in meter.feed(block)]
+    heard = [sample for block in _blocks(recorded) for sample in meter.feed(block) if sample.detected]
     if pulses is not None:
         if not heard:
             raise RecordingError(

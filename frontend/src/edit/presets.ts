@@ -24,7 +24,7 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
   const preset = presets[name];
   return {
     ...spec,
-    emitter: { frequency_hz: preset.frequencyHz, kind: preset.kind, label: preset.label },
+    emitter: { ...spec.emitter, frequency_hz: preset.frequencyHz, kind: preset.kind, label: preset.label },
     sensor: {
       ...spec.sensor,
       sigma_deg: preset.sigmaDeg,

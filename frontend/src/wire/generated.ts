@@ -796,7 +796,7 @@ export interface components {
             spec: components["schemas"]["MissionSpec"];
             home: components["schemas"]["Place"] | null;
         };
-        /** @description What is looked for. */
+        /** @description What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only. */
         EmitterSpec: {
             /** @default 868300000 */
             frequency_hz: number;
@@ -807,8 +807,14 @@ export interface components {
             kind: "carrier" | "pulsed";
             /** @default emitter */
             label: string;
+            /** @default 0.02 */
+            pulse_width_s: number;
+            /** @default 1.3 */
+            pulse_period_s: number;
+            /** @default 0.03 */
+            pulse_jitter_s: number;
         };
-        /** @description What is looked for. */
+        /** @description What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only. */
         EmitterSpecInput: {
             /** @default 868300000 */
             frequency_hz: number;
@@ -819,6 +825,12 @@ export interface components {
             kind: "carrier" | "pulsed";
             /** @default emitter */
             label: string;
+            /** @default 0.02 */
+            pulse_width_s: number;
+            /** @default 1.3 */
+            pulse_period_s: number;
+            /** @default 0.03 */
+            pulse_jitter_s: number;
         };
         /** @description Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180). */
         EstimateFact: {
@@ -1719,6 +1731,8 @@ export interface components {
             measurement_time_s: number;
             /** @default 30 */
             turn_rate_deg_s: number;
+            /** @default 2 */
+            pulses_per_heading: number;
             /** @default 0.7 */
             minimum_quality: number;
             /** @default 2 */
@@ -1734,6 +1748,8 @@ export interface components {
             measurement_time_s: number;
             /** @default 30 */
             turn_rate_deg_s: number;
+            /** @default 2 */
+            pulses_per_heading: number;
             /** @default 0.7 */
             minimum_quality: number;
             /** @default 2 */

@@ -25,7 +25,8 @@ TARGET = (30.0, 60.0)
 def recorded(x: float, y: float, at_s: float = 0.0, place_known: bool = True) -> RecordedSweep:
     n = 90
     position = FRAME.to_geo(x, y)
-    sweep = Sweep(np.linspace(at_s, at_s + 9.0, n), np.linspace(0.0, 356.0, n), np.full(n, -60.0), 868.3e6, position, 140.0)
+    times, headings = np.linspace(at_s, at_s + 9.0, n), np.linspace(0.0, 356.0, n)
+    sweep = Sweep(times, headings, np.full(n, -60.0), 868.3e6, position, 140.0)
     return RecordedSweep(sweep, None, place_known)
 
 

@@ -10,6 +10,7 @@ import signal
 import sys
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,7 @@ from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.payload.spool import Spool
 from hardware.ports import ReceiverError
-from hardware.readings import PowerSample
+from hardware.readings import PowerSample, Pulses
 
 TOKEN = "a-token-of-some-length"
 FREQUENCY_HZ = 868_300_000.0
@@ -215,6 +216,39 @@ async def test_server_tunes_the_payload_and_it_remembers(tmp_path: Path) -> None
         sample = await asyncio.wait_for(anext(aiter(receiver.samples())), 10)
         assert sample.frequency_hz == 433_920_000.0
     assert Spool(tmp_path / "samples.sqlite").frequency_hz == 433_920_000.0
+
+
+class TagReceiver(CountingReceiver):
+    """Hears every third pulse."""
+
+    expected: Pulses | None = None
+
+    def expect(self, pulses: Pulses | None) -> None:
+        self.expected = pulses
+
+    async def samples(self) -> AsyncIterator[PowerSample]:
+        async for sample in super().samples():
+            yield replace(sample, detected=self.made % 3 == 0)
+
+
+async def test_a_tag_is_passed_on_to_the_payload_which_sends_only_pulses_it_heard(tmp_path: Path) -> None:
+    radio, pulses = TagReceiver(), Pulses(0.02, 1.3, 0.03)
+    async with running_server() as server, running_agent(tmp_path, server.port, radio):
+        receiver = PayloadReceiver(server.hub)
+        receiver.expect(pulses)
+        await receiver.open(150e6)
+        await until(lambda: radio.expected == pulses)
+        stream = aiter(receiver.samples())
+        got = numbers([await asyncio.wait_for(anext(stream), 10) for _ in range(10)])
+    assert all(number % 3 == 0 for number in got)
+
+
+async def test_a_payload_that_finds_no_pulses_says_so(tmp_path: Path) -> None:
+    async with running_server() as server, running_agent(tmp_path, server.port, CountingReceiver()):
+        receiver = PayloadReceiver(server.hub)
+        receiver.expect(Pulses(0.02, 1.3))
+        await receiver.open(150e6)
+        await until(lambda: "carriers only" in server.hub.agents["payload"].receiver)
 
 
 async def test_wrong_token_never_gets_in(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES
 from hardware.payload.session import PayloadHub, PayloadSession, Subscription
+from hardware.readings import Pulses
 
 TOKEN = "a-token-of-some-length"
 
@@ -96,7 +97,10 @@ def test_agents_clock_is_corrected_and_frequency_is_told() -> None:
     session.receive(hello())
     assert answers(session)[0]["frequency_hz"] == 433e6
     server.tune(434e6)
-    assert answers(session) == [{"type": "tune", "frequency_hz": 434e6}]
+    assert answers(session) == [{"type": "tune", "frequency_hz": 434e6, "pulses": None}]
+    server.tune(434e6, Pulses(0.02, 1.3, 0.05))
+    (tuned,) = answers(session)
+    assert tuned["pulses"] == {"width_s": 0.02, "period_s": 1.3, "jitter_s": 0.05}
     session.receive(batch(1, 1, offset=3.0))
     assert drained(subscription) == [4.0]
 

@@ -29,13 +29,13 @@ def stream(seconds: float, level_db: float, seed: int = 1, jitter_s: float = 0.0
     return samples.astype(np.complex64), begins + SETTING.width_s / 2.0
 
 
-def heard(samples: np.ndarray, block: int = 600) -> list[PowerSample]:
+def heard(samples: np.ndarray, block: int = 600, missed: bool = False) -> list[PowerSample]:
     meter = PulseMeter(CENTRE_HZ, CENTRE_HZ, RATE_HZ, setting=SETTING)
     pulses: list[PowerSample] = []
     for start in range(0, samples.size, block):
         part = samples[start : start + block]
         pulses += meter.feed(IqBlock(start / RATE_HZ, part, clipped_at_full_scale(part)))
-    return pulses
+    return pulses if missed else [pulse for pulse in pulses if pulse.detected]
 
 
 @pytest.mark.parametrize("block", [100, 600, 5000])
@@ -53,6 +53,14 @@ def test_every_pulse_is_heard_once_at_its_time_and_level(block: int) -> None:
 def test_noise_gives_hardly_a_pulse() -> None:
     samples, _ = stream(120.0, -300.0)
     assert len(heard(samples)) <= 3
+
+
+def test_silence_is_told_at_least_once_a_period() -> None:
+    samples, _ = stream(30.0, -300.0)
+    told = heard(samples, missed=True)
+    assert not told[5].detected
+    assert told[5].power_db == told[5].noise_floor_db
+    assert max(np.diff([sample.at_s for sample in told])) <= SETTING.period_s
 
 
 def test_weak_pulses_are_mostly_heard() -> None:

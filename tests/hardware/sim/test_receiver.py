@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 
+import numpy as np
 import pytest
 
 from hardware.direction_finding.estimate import SparseDirectionFinder
@@ -12,7 +13,7 @@ from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.sweep import assemble_sweep
 from hardware.frame import LocalFrame
 from hardware.ports import ReceiverError
-from hardware.readings import GeoPoint, HeadingSample, PowerSample, Sweep, Telemetry
+from hardware.readings import GeoPoint, HeadingSample, PowerSample, Pulses, Sweep, Telemetry
 from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World
 
@@ -133,3 +134,18 @@ async def test_without_an_emitter_in_band_only_noise_is_heard() -> None:
     stream = receiver.samples()
     heard = [await anext(stream) for _ in range(50)]
     assert all(abs(s.power_db - world.front_end.noise_dbm) < 3.0 for s in heard)
+
+
+async def test_a_tag_is_heard_once_a_pulse_and_only_in_its_own_rhythm() -> None:
+    world = world_with_emitter_at(60.0, 150.0)
+    tag = dataclasses.replace(world.emitters[0], pulse_period_s=1.3)
+    clock = SteppedClock()
+    receiver = SimulatedReceiver(dataclasses.replace(world, emitters=(tag,)), TurningVehicle(clock).telemetry, clock)
+    receiver.expect(Pulses(0.02, 1.3, 0.03))
+    heard = await listen(receiver, 26.0)
+    assert all(sample.detected for sample in heard)
+    assert np.diff([sample.at_s for sample in heard]) == pytest.approx(1.3, abs=1e-6)
+    receiver.expect(Pulses(0.02, 1.7, 0.03))
+    assert not any(sample.detected for sample in await listen(receiver, 10.0))
+    receiver.expect(None)
+    assert len(await listen(receiver, 5.0)) > 90

@@ -1,0 +1,44 @@
+"""A pulsed tag, flown over real sockets: slow sweeps of single pulses find it, at its own frequency and place."""
+
+from __future__ import annotations
+
+import math
+
+import httpx
+import pytest
+from console import console
+
+from backend.cli.demo import TAG
+from backend.cli.running import RunningServer
+from backend.wiring import emitter_place
+from hardware.frame import LocalFrame
+from hardware.readings import GeoPoint
+
+pytestmark = pytest.mark.system
+
+
+async def test_a_wildlife_tag_is_found_by_its_pulses(server: RunningServer) -> None:
+    async with console(server.url) as operator:
+        await operator.draft(planner={"seed": 3}, **TAG)
+        await operator.ready()
+        await operator.watch()
+        assert (await operator.order("start"))["accepted"]
+        await operator.until_event("mission_ended", wall_s=180)
+        mission = (await operator.client.get(f"/api/missions/{operator.mission_id}")).json()
+        assert mission["outcome"] == "localized"
+        assert server.receiver is not None
+        home = GeoPoint(mission["home"]["lat"], mission["home"]["lon"])
+        truth = server.receiver.truth
+        assert truth is not None
+        estimate = GeoPoint(mission["estimate"]["lat"], mission["estimate"]["lon"])
+        assert math.hypot(*LocalFrame(truth).to_enu(estimate)) < 4 * mission["estimate"]["expected_rmse_m"]
+        assert math.hypot(*LocalFrame(truth).to_enu(emitter_place(3, home, 150e6))) < 1.0
+        bearing = operator.of("bearing_measured")[0]["event"]
+        sweep = await _sweep(operator.client, operator.mission_id, bearing["sweep_id"])
+        seconds = sweep["at_s"][-1]
+        assert seconds >= 16 * 2 * 1.3 * 0.9
+        assert len(sweep["power_db"]) == pytest.approx(seconds / 1.3, abs=6)
+
+
+async def _sweep(client: httpx.AsyncClient, mission_id: str, sweep_id: str) -> dict:
+    return (await client.get(f"/api/missions/{mission_id}/sweeps/{sweep_id}")).json()
