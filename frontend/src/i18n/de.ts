@@ -87,7 +87,7 @@ export const de: Record<MessageKey, string> = {
   "menu.close": "Schließen",
 
   "slide.hint": "oder Leertaste halten",
-  "slide.expires": "verfällt in {seconds} s",
+  "slide.expires": "noch {seconds} s",
   "slide.cancel": "Verwerfen",
 
   "estimate.title": "Schätzung",
@@ -179,7 +179,7 @@ export const de: Record<MessageKey, string> = {
   "proposal.same": "so lang wie der Ort des Planers",
   "proposal.unknownCost": "Was es kostet, ist nicht bekannt",
   "proposal.notAllowed": "Nicht erlaubt: {reason}",
-  "proposal.slide": "Schieben: als Nächstes dorthin",
+  "proposal.slide": "Schieben: dorthin fliegen",
   "proposal.cancel": "Beim Ort des Planers bleiben",
 
   "map.label": "Karte",

@@ -82,6 +82,8 @@ export function AlertsButton() {
   );
 }
 
+const sentence = (text: string) => (/[.!?]$/.test(text) ? text : `${text}.`);
+
 /** The most urgent open alert, over the map until somebody acknowledges it. */
 export function AlertBanner() {
   const first = sortAlerts(open.value)[0];
@@ -90,7 +92,7 @@ export function AlertBanner() {
   return (
     <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner">
       <span>
-        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {told(first.text)}{" "}
+        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {sentence(told(first.text))}{" "}
         {first.remedy && t("problem.remedy", { remedy: told(first.remedy) })}
       </span>
       {id && (

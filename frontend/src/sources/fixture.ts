@@ -320,16 +320,16 @@ export class FixtureSource implements Source {
 
   async preflight(): Promise<PreflightReply> {
     const checks = [
-      { name: "Vehicle", ok: true, detail: "connected, PX4", remedy: "", blocking: true },
-      { name: "GPS", ok: true, detail: "3D fix, 14 satellites", remedy: "", blocking: true },
-      { name: "Battery", ok: true, detail: "96 %, the mission needs about 40 %", remedy: "", blocking: true },
-      { name: "Fence", ok: true, detail: "search area with 60 m around it", remedy: "", blocking: true },
-      { name: "Autopilot failsafe", ok: false, detail: "NAV_DLL_ACT is 0: it would hover for ever when this station is lost", remedy: "set NAV_DLL_ACT to 2 (return)", blocking: false },
-      { name: "Receiver", ok: true, detail: "hears -71 dB at 868.3 MHz", remedy: "", blocking: true },
-      { name: "Antenna pattern", ok: true, detail: "3-element Yagi, 868 MHz", remedy: "", blocking: true },
+      { name: "Vehicle link", ok: true, detail: "px4, mode HOLD", remedy: "", blocking: true },
+      { name: "GPS", ok: true, detail: "3D, 14 satellites", remedy: "", blocking: true },
+      { name: "Battery", ok: true, detail: "96 %", remedy: "", blocking: true },
+      { name: "safety", ok: true, detail: "fence, battery and position allow the start", remedy: "", blocking: true },
+      { name: "Failsafe NAV_DLL_ACT", ok: false, detail: "ground station lost: NAV_DLL_ACT = 0", remedy: "Set NAV_DLL_ACT to 2 (return): at 0 a vehicle without its station hovers until its battery is empty.", blocking: false },
+      { name: "receiver", ok: true, detail: "delivers samples at 868.3000 MHz", remedy: "", blocking: true },
+      { name: "antenna pattern", ok: true, detail: "3-element Yagi, 868 MHz", remedy: "", blocking: true },
     ];
     this.emit({ kind: "preflight_checked", passed: true, checks });
-    this.become("ready", "preflight passed");
+    if (!inFlight(this.phase)) this.become("ready", "preflight passed");
     return { passed: true, checks };
   }
 
