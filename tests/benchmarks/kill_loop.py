@@ -90,6 +90,8 @@ class Servers:
         words = await process.stderr.readline()
         while not words.strip().isdigit():
             words = await process.stderr.readline()
+            if not words:
+                raise RuntimeError("the process that forks servers is gone")
         url = json.loads(await asyncio.wait_for(process.stdout.readline(), 60))["url"]
         return Server(url, int(words), began)
 
@@ -161,7 +163,22 @@ def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
 
 
 async def phase_of(client: httpx.AsyncClient, mission_id: str) -> str:
-    return (await client.get(f"/api/missions/{mission_id}")).json()["phase"]
+    """Asked again while the database is too busy to answer (503), as the page does."""
+    async with asyncio.timeout(30):
+        while (answer := await client.get(f"/api/missions/{mission_id}")).status_code == 503:  # noqa: ASYNC110 (as a page would)
+            await asyncio.sleep(0.1)
+    assert answer.status_code == 200, f"the mission is not there any more: {answer.text}"
+    return answer.json()["phase"]
+
+
+async def all_shown(shown: Console, count: int) -> None:
+    """So many events; the websocket is opened again when a busy server closed it, as the page does."""
+    async with asyncio.timeout(60):
+        while len(shown.events) < count:
+            if shown.cut_off:
+                shown.events.clear()
+                await shown.watch()
+            await asyncio.sleep(0.05)
 
 
 async def new_mission(shown: Console) -> None:
@@ -185,7 +202,7 @@ async def fly_until_killed(server: Server, shown: Console, folder: Path, chance:
 
 async def compare(shown: Console, before: list[Event], found: Findings) -> None:
     """What was shown before the kill is there unchanged, and the belief comes back the same."""
-    await shown.until(lambda: len(shown.events) >= len(before), 30)
+    await all_shown(shown, len(before))
     found.lost += sum(one != two for one, two in zip(before, shown.events, strict=False))
     found.lost += sum(r["seq"] != n for n, r in enumerate(shown.events, 1))
     known = last_belief(before)
@@ -271,7 +288,15 @@ async def database_url(kind: str) -> AsyncIterator[str | None]:
             cluster.stop()
 
 
+def warm_up() -> None:
+    """Into numba's cache, or every server that is killed while it compiles leaves the work to the next."""
+    from backend.wiring import _warm_up
+
+    _warm_up()
+
+
 async def run(kills: int, database: str, speedup: float, seed: int, whole: int) -> Findings:
+    await asyncio.to_thread(warm_up)
     with tempfile.TemporaryDirectory(prefix="crossfix-kills-") as folder:
         async with database_url(database) as url:
             return await loop(kills, Path(folder), url, speedup, seed, whole)

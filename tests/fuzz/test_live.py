@@ -84,7 +84,9 @@ async def one_connection(url: str, chance: random.Random, mission_id: str, ends:
 @pytest.mark.timeout(120 + MESSAGES)
 async def test_no_message_makes_the_live_channel_stumble(tmp_path: Path, capsys):
     chance, ends, sent, faults = random.Random(7), Counter(), 0, Faults()
-    server_settings = Settings(port=0, data_dir=tmp_path, time_factor=10.0, spool_reserve_bytes=2**20)
+    server_settings = Settings(
+        port=0, data_dir=tmp_path, time_factor=10.0, spool_reserve_bytes=2**20, live_ping_timeout_s=60
+    )
     async with running_server(server_settings) as running, httpx.AsyncClient(base_url=running.url) as client:
         logging.getLogger("uvicorn.error").addHandler(faults)
         spec = (await client.get("/api/defaults")).json()["spec"]

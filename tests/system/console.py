@@ -73,6 +73,11 @@ class Console:
                         self.events.append(told["recorded"])
                 self._news.set()
 
+    @property
+    def cut_off(self) -> bool:
+        """The websocket has ended."""
+        return self._watching is not None and self._watching.done()
+
     async def until(self, happened: Callable[[], bool], wall_s: float = 60.0) -> None:
         try:
             async with asyncio.timeout(wall_s):
