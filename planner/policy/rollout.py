@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -18,10 +19,14 @@ from planner.policy.simulation import HORIZON, BasePolicy, KernelName, Simulatio
 from planner.sampling import Sampling, deterministic_paths, random_paths
 from planner.selection.sequential_halving import sequential_halving
 from planner.selection.types import IntArray, Selection, SelectionResult
+from planner.selection.uniform import uniform
 from planner.types import Candidate, Decision, FloatArray, PlannerError, Problem
 
 PATH_BLOCK = 64
 """Common random paths are drawn in blocks of so many, so that path j does not depend on who asked for it first."""
+
+MOST_LOOKS = 16
+"""How often uniform allocation stops to see which actions have lost: every call of the kernel costs some time."""
 
 
 @dataclass(slots=True)
@@ -130,8 +135,15 @@ class Rollout:
             paths = 2 ** int(np.log2(budget // len(places)))
             budget = paths * len(places)
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
-        result = self.selection(sampler.sample, len(places), budget, rng)
+        result = self._selection(simulation, places, budget)(sampler.sample, len(places), budget, rng)
         return _decision(places, result, sampler)
+
+    def _selection(self, simulation: Simulation, places: FloatArray, budget: int) -> Selection:
+        """With common paths, uniform allocation gives up what loses for sure: no path is shorter than its first leg."""
+        if self.selection is not uniform or self.sampling == "pmc" or self.terminal is not None:
+            return self.selection
+        stride = max(1, budget // len(places) // MOST_LOOKS)
+        return partial(uniform, least=simulation.first_actions(places).costs, stride=stride)
 
     def _places(self, problem: Problem, belief: GridBelief, simulation: Simulation) -> FloatArray:
         places = constrained_actions(problem, belief)

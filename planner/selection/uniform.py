@@ -8,6 +8,9 @@ from planner.selection.tally import Tally, check_budget, spread_evenly
 from planner.selection.types import IntArray, Sample, SelectionResult
 from planner.types import FloatArray
 
+ROUNDING = 1e-12
+"""Of a sum: what is equal but for rounding is not given up."""
+
 
 def uniform(
     sample: Sample,
@@ -23,6 +26,7 @@ def uniform(
     least: (n,) lower bound of any single cost of each action. With it, an action is given up as soon as its partial
     sum plus the least possible rest exceeds the best complete sum, looked at every `stride` paths. That is exact: the
     chosen action is the one that the whole budget would have chosen, given that path j costs the same whenever asked.
+    What was given up counts as dropped in round 1; its mean is over its first paths only, and larger than the best.
     """
     del rng  # the allocation is fixed
     check_budget(n_actions, budget)
@@ -33,28 +37,32 @@ def uniform(
         tally.add(actions, sample(actions, 0, paths))
     else:
         _sample_with_pruning(sample, tally, actions, paths, least, stride)
-    return tally.result(_least_complete_mean(tally, paths))
+    complete = tally.counts == paths
+    tally.dropped_in_round[actions[~complete[actions]]] = 1
+    return tally.result(int(np.argmin(np.where(complete, tally.sums, np.inf))))
 
 
 def _sample_with_pruning(
     sample: Sample, tally: Tally, actions: IntArray, paths: int, least: FloatArray, stride: int
 ) -> None:
-    first = min(stride, paths)
-    tally.add(actions, sample(actions, 0, first))
+    costs = np.empty((len(actions), paths))
+    spent = np.full(len(actions), min(stride, paths))
+    costs[:, : spent[0]] = sample(actions, 0, int(spent[0]))
     # The front runner is finished first: its complete sum is the bar that the others must stay below.
-    leader = actions[np.argmin(tally.sums[actions])][None]
-    if first < paths:
-        tally.add(leader, sample(leader, first, paths))
-    bar = float(tally.sums[leader[0]])
-    alive = actions[actions != leader[0]]
-    for start in range(first, paths, stride):
-        alive = alive[tally.sums[alive] + (paths - start) * least[alive] <= bar]
-        if not len(alive):
-            return
+    leader = int(np.argmin(costs[:, : spent[0]].sum(axis=1)))
+    if spent[leader] < paths:
+        costs[leader, spent[leader] :] = sample(actions[leader, None], int(spent[leader]), paths)[0]
+    spent[leader] = paths
+    bar = float(costs[leader].sum()) * (1.0 + ROUNDING)
+    alive = np.flatnonzero(spent < paths)
+    for start in range(stride, paths, stride):
+        lowest = costs[alive, :start].sum(axis=1) + (paths - start) * least[actions[alive]]
+        alive = alive[lowest <= bar]
+        if len(alive) == 0:
+            break
         stop = min(start + stride, paths)
-        tally.add(alive, sample(alive, start, stop))
-
-
-def _least_complete_mean(tally: Tally, paths: int) -> int:
-    complete = tally.counts == paths
-    return int(np.argmin(np.where(complete, tally.sums, np.inf)))
+        costs[alive, start:stop] = sample(actions[alive], start, stop)
+        spent[alive] = stop
+    for count in np.unique(spent):
+        those = np.flatnonzero(spent == count)
+        tally.add(actions[those], costs[those, :count])

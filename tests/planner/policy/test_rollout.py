@@ -120,7 +120,8 @@ def test_both_kernels_decide_alike():
 
 def test_deterministic_sampling_gives_each_action_a_power_of_two_of_paths():
     decision = rollout(selection=uniform, sampling="deterministic", budget=64 * 11)
-    assert {c.rollouts for c in decision.candidates} == {8}
+    assert {c.rollouts for c in decision.candidates if c.dropped_in_round is None} == {8}
+    assert len(decision.times) == 8
 
 
 def test_a_refused_place_is_not_offered_again():
@@ -150,3 +151,24 @@ def test_what_cannot_be_planned_is_said():
 def test_times_are_told_in_minutes_and_seconds():
     assert clock(59.6) == "1:00"
     assert clock(130.2) == "2:10"
+
+
+@pytest.mark.parametrize("sampling", ["deterministic", "crn"])
+@pytest.mark.parametrize("seed", range(6))
+def test_giving_up_hopeless_places_changes_no_decision(sampling, seed):
+    """Against uniform allocation that knows no lower bound."""
+
+    def whole(sample, n_actions, budget, rng):
+        return uniform(sample, n_actions, budget, rng)
+
+    problem = replace(PROBLEM, prior=GaussianPrior(100.0 + 20 * seed, 150.0, np.diag([100.0, 200.0 * (1 + seed)])))
+    spared, full = (
+        rollout(seed, problem, selection=selection, sampling=sampling, budget=512) for selection in (uniform, whole)
+    )
+    assert (spared.x, spared.y) == (full.x, full.y)
+    assert (spared.times == full.times).all()
+    assert spared.rollouts < full.rollouts == 512
+    assert sum(candidate.rollouts for candidate in spared.candidates) == spared.rollouts
+    given_up = [c for c in spared.candidates if c.dropped_in_round is not None]
+    assert given_up
+    assert all(c.rollouts < 8 and c.value > spared.times.mean() for c in given_up)

@@ -35,8 +35,20 @@ def test_pruning_never_changes_the_choice(n_actions, paths, stride, seed):
     plain = uniform(table_sampler(costs), n_actions, n_actions * paths, rng)
     pruned = uniform(table_sampler(costs), n_actions, n_actions * paths, rng, least=least, stride=stride)
     assert pruned.best == plain.best
-    assert pruned.means[pruned.best] == pytest.approx(plain.means[plain.best])
+    assert pruned.means[pruned.best] == plain.means[plain.best]
     assert (pruned.counts <= plain.counts).all()
+    given_up = pruned.counts < paths
+    assert (pruned.dropped_in_round == given_up).all()
+    assert (pruned.means[given_up] > pruned.means[pruned.best]).all()
+
+
+def test_ties_up_to_rounding_are_not_given_up():
+    least = np.array([0.7, 0.1])
+    costs = np.array([[0.7, 0.7, 0.7], [0.1, 0.1, 1.9]])  # equal sums, in floating point the second is the larger
+    plain = uniform(table_sampler(costs), 2, 6, np.random.default_rng(0))
+    pruned = uniform(table_sampler(costs), 2, 6, np.random.default_rng(0), least=least)
+    assert pruned.counts.tolist() == [3, 3]
+    assert pruned.best == plain.best
 
 
 def test_pruning_spares_hopeless_actions():
