@@ -7,7 +7,7 @@ antenna heading:
     with an echo         P(x) = g(x)^2 + a^2 g(x + d)^2 + 2 a cos(t) g(x) g(x + d)
     from e degrees below P(x) = g(arccos(cos x cos e))^2
 
-The echo arrives d degrees clockwise, weaker by a (a < 1), with phase t: both waves have one frequency, so fields add,
+The echo arrives d degrees clockwise, weaker by a (a <= 1), with phase t: both waves have one frequency, so fields add,
 not powers. An echo within the beam is seen as a lobe that is shifted, wider or narrower, hardly as a second one.
 Looking down, an antenna whose gain depends on the angle to its boom (any end-fire array) sees each heading difference x
 as the angle arccos(cos x cos e): its lobe widens and its front stops standing out.
@@ -25,7 +25,8 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.sweep import BIN_DEG, BINS
 
 ECHO_APART_DEG = 12.0
-ECHO_LEVELS_DB = (-18.0, -12.0, -8.0, -5.0, -2.5)
+ECHO_LEVELS_DB = (-16.0, -10.0, -6.0, -3.0, 0.0)
+"""The direct wave is the strongest, or no stronger than its echo."""
 ECHO_PHASES_DEG = (22.5, 67.5, 112.5, 157.5)
 """Midpoints of quarters of the half circle: +t and -t look alike."""
 LOOK_DOWN_DEG = (25.0, 35.0, 45.0, 55.0)
