@@ -202,13 +202,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Compare the direction finders on simulated sweeps.")
     parser.add_argument("--sweeps", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="", help="conditions whose name contains this")
     parser.add_argument(
         "--reliability", metavar="FILE", help="also draw the reliability plot into this file (SVG, PNG)"
     )
     arguments = parser.parse_args()
     print("| condition | bound | finder | RMS | bias | outliers | rejected | error/sigma | in 1 | in 2 |")
     print("|---|---|---|---|---|---|---|---|---|---|")
-    for condition in CONDITIONS:
+    for condition in (c for c in CONDITIONS if arguments.only in c.name):
         bound = cramer_rao_deg(replace(condition, echo_db=None))
         for name, s in compare(condition, arguments.sweeps, arguments.seed).items():
             print(
