@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -108,7 +108,7 @@ def run(
             raise PlannerError(f"--runs and --workers must be 1 or more, got {runs} and {workers}")
         summaries = _fly(study, cells, runs, results, workers, scheduler)
     except PlannerError as error:
-        stop(error)
+        _refuse(error, json_)
     except KeyboardInterrupt:
         remark(f"broken off; what was flown is in {results}, the same command goes on from there")
         raise typer.Exit(130) from None
@@ -137,15 +137,22 @@ def report(
         if markdown is not None:
             markdown.write_text(study.table.markdown(summaries) + "\n", encoding="utf-8")
     except PlannerError as error:
-        stop(error)
+        _refuse(error, json_)
     except OSError as error:
-        stop(f"{error.filename}: {error.strerror}")
+        _refuse(f"{error.filename}: {error.strerror}", json_)
     if json_:
         print_json({"cells": [s.json() for s in summaries], "figures": [str(path) for path in drawn]})
         return
     _print_table(study, summaries)
     for path in drawn:
         typer.echo(f"drew {path}", err=True)
+
+
+def _refuse(error: object, json_: bool) -> NoReturn:
+    """One line on stderr; for programs an object on stdout as well."""
+    if json_:
+        print_json({"error": " ".join(str(error).split())})
+    stop(error)
 
 
 class _Study:

@@ -62,8 +62,8 @@ def scenario(
     if action_grid is not None:
         problem = replace(problem, action_grid=action_grid, action_spacing=None)
     if measurement_time is not None:
-        if not measurement_time >= 0:
-            raise PlannerError(f"the measurement time must be 0 s or more, got {measurement_time}")
+        if not 0 <= measurement_time < np.inf:
+            raise PlannerError(f"the measurement time must be a number of seconds, 0 or more, got {measurement_time}")
         problem = replace(problem, measurement_time=measurement_time)
     return replace(made, problem=problem)
 

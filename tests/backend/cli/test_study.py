@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 import typer
 from typer.testing import CliRunner
@@ -58,7 +59,14 @@ def test_without_json_a_table_stands_on_stdout(tmp_path):
         (("run", "--budget", "0"), "budget"),
         (("run", "--runs", "0"), "--runs"),
         (("run", "--planner", "rollout", "--selection", "bfgs", "--budget", "8", "--runs", "1"), "40 rollouts"),
+        (("run", "--config", "quick"), "quick"),
+        (("run", "--seed", "-1"), "seed"),
+        (("run", "--workers", "0"), "--workers"),
+        (("run", "--measurement-time", "nan"), "measurement time"),
+        (("run", "--measurement-time", "inf"), "measurement time"),
+        (("run", "--planner", "rollout", "--selection", "uniform", "--sampling", "sobol"), "sobol"),
         (("report", "nowhere"), "no study results"),
+        (("report", ".", "--paths", "1"), "2 sample paths"),
     ],
 )
 def test_bad_values_end_with_one_clear_line(tmp_path, monkeypatch, arguments, word):
@@ -70,6 +78,32 @@ def test_bad_values_end_with_one_clear_line(tmp_path, monkeypatch, arguments, wo
     assert word in lines[0]
     assert result.stdout == ""
     assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("arguments", [("run", "--planner", "best"), ("run", "--budget", "0"), ("report", "nowhere")])
+def test_bad_values_are_an_object_for_programs(tmp_path, monkeypatch, arguments):
+    monkeypatch.chdir(tmp_path)
+    result = call(*arguments, "--json")
+    assert result.exit_code == 2
+    error = json.loads(result.stdout)["error"]
+    assert result.stderr == f"crossfix: {error}\n"
+    assert json.loads(result.stdout).keys() == {"error"}
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_of_processes_flies_the_same_missions(tmp_path):
+    from distributed import LocalCluster
+
+    asked = ("run", "--planner", "base", "--runs", "6", "--json")
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0"
+    ) as cluster:
+        there = call(*asked, "--scheduler", cluster.scheduler_address, "--results", tmp_path / "there")
+    here = call(*asked, "--workers", "1", "--results", tmp_path / "here")
+    assert there.exit_code == here.exit_code == 0
+    assert json.loads(there.stdout) == json.loads(here.stdout)
+    (one,), (other,) = ((tmp_path / where).glob("*.parquet") for where in ("there", "here"))
+    pd.testing.assert_frame_equal(pd.read_parquet(one), pd.read_parquet(other))
 
 
 @pytest.mark.parametrize("command", ["run", "report"])

@@ -1,3 +1,8 @@
+import signal
+import subprocess
+import sys
+import time
+
 import pandas as pd
 import pytest
 
@@ -18,6 +23,29 @@ def test_a_broken_off_study_goes_on_with_what_is_missing(tmp_path):
     assert sum(told) == 6
     pd.testing.assert_frame_equal(second.head(4), first)
     pd.testing.assert_frame_equal(run_cell(CELL, 6, tmp_path / "afresh"), second)
+
+
+@pytest.mark.slow
+def test_a_study_killed_half_way_ends_with_the_rows_of_one_that_was_not(tmp_path):
+    killed, runs = tmp_path / "killed", 3000
+    program = (
+        "import pathlib, sys\n"
+        "from planner.study import runner\n"
+        "from planner.study.cell import Cell\n"
+        "runner.WRITE_EVERY, runner.BLOCK_SECONDS = 0.0, 0.02\n"
+        f"runner.run_cell(Cell(planner='vander_hook'), {runs}, pathlib.Path(sys.argv[1]))\n"
+    )
+    study = subprocess.Popen([sys.executable, "-c", program, str(killed)])
+    file = killed / f"{CELL.name()}.parquet"
+    while not file.exists():
+        assert study.poll() is None
+        time.sleep(0.01)
+    study.kill()
+    assert study.wait() == -signal.SIGKILL
+    flown = len(pd.read_parquet(file))
+    assert 0 < flown < runs
+    whole = run_cell(CELL, flown + 5, killed)
+    pd.testing.assert_frame_equal(whole, run_cell(CELL, flown + 5, tmp_path / "afresh"))
 
 
 def test_fewer_runs_are_a_beginning_of_more(tmp_path):
@@ -44,6 +72,15 @@ def test_a_dask_cluster_changes_nothing(tmp_path):
     ) as cluster:
         on_dask = run_cell(CELL, 5, tmp_path / "dask", scheduler=cluster.scheduler_address)
     pd.testing.assert_frame_equal(on_dask, run_cell(CELL, 5, tmp_path / "here"))
+
+
+def test_a_scheduler_that_does_not_answer_is_named(tmp_path, monkeypatch):
+    def refuse(address, timeout):
+        raise OSError(f"timed out connecting to {address}")
+
+    monkeypatch.setattr("distributed.Client", refuse)
+    with pytest.raises(PlannerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        run_cell(CELL, 3, tmp_path, scheduler="tcp://127.0.0.1:9")
 
 
 def test_rollout_missions_repeat_themselves_with_their_seed():

@@ -30,6 +30,21 @@ def test_interval_covers_the_mean_in_95_of_100_samples():
     assert np.mean(inside) == pytest.approx(0.95, abs=0.02)
 
 
+def test_half_width_by_hand():
+    # 1, 2, 3, 4: variance with n - 1 is 5/3; 1.959964 sqrt(5/3) / sqrt(4) = 1.265151
+    assert half_width(np.array([1.0, 2.0, 3.0, 4.0])) == pytest.approx(1.265151, abs=1e-6)
+    assert half_width(np.full(10, 7.0)) == 0.0
+
+
+def test_the_joint_interval_adds_both_half_widths_in_quadrature():
+    cell = Cell(planner="base")  # the thesis: 74.31 +- 0.54
+    spread = np.tile([-10.0, 10.0], 200)
+    joint = math.hypot(half_width(spread), 0.54)
+    for side in (-1.0, 1.0):
+        assert summarize(cell, missions(74.31 + side * 0.999 * joint + spread)).within is True
+        assert summarize(cell, missions(74.31 + side * 1.001 * joint + spread)).within is False
+
+
 def test_within_means_inside_the_joint_interval():
     cell = Cell(planner="base")
     spread = np.tile([-10.0, 10.0], 200)  # half width 0.98
