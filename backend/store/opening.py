@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import fcntl
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
@@ -14,8 +13,9 @@ from sqlalchemy.exc import DBAPIError
 from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
-from backend.store.spool import Spool, SpoolTaken
+from backend.store.spool import Spool, SpoolTaken, claim
 
+CLAIM_PATIENCE_S = 3.0
 REMEDY = "Check CROSSFIX_DATABASE_URL and that the disk can be written."
 
 
@@ -48,8 +48,8 @@ def _claimed(url: str) -> Iterator[None]:
         raise DatabaseUnusable(f"The database {database} cannot be used: {error}. {REMEDY}") from error
     with lock:
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+            claim(lock.fileno(), CLAIM_PATIENCE_S)
+        except SpoolTaken:
             raise DatabaseUnusable(
                 f"Another server uses the database {database}. Stop it, or start this one with another --data-dir."
             ) from None
@@ -61,9 +61,11 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
     shown = url.split("@")[-1] if "@" in url else url
     try:
         await migrate(url)
-        spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes)
+        spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes, CLAIM_PATIENCE_S)
     except SpoolTaken as error:
-        raise DatabaseUnusable(f"{error}. Stop it, or start this one with another --data-dir.") from error
+        raise DatabaseUnusable(
+            f"Another server uses {settings.spool_path}. Stop it, or start this one with another --data-dir."
+        ) from error
     except (DBAPIError, OSError, ValueError) as error:
         cause = error.orig if isinstance(error, DBAPIError) and error.orig else error
         raise DatabaseUnusable(f"The database {shown} cannot be used: {cause}. {REMEDY}") from error

@@ -11,6 +11,7 @@ from __future__ import annotations
 import fcntl
 import os
 import struct
+import time
 import zlib
 from pathlib import Path
 
@@ -24,25 +25,35 @@ class SpoolFull(RuntimeError):
 
 
 class SpoolTaken(RuntimeError):
-    """Another process owns the file."""
+    """Another process owns the file, for instance a server that is running."""
+
+
+def claim(fd: int, patience_s: float) -> None:
+    """Lock a file for this process alone. A server that was just killed may hold it for a moment. Raises SpoolTaken."""
+    until = time.monotonic() + patience_s
+    while True:
+        try:
+            fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        except BlockingIOError:
+            if time.monotonic() >= until:
+                raise SpoolTaken from None
+            time.sleep(0.05)
 
 
 class Spool:
-    """One process owns the file, for as long as it lives. Raises SpoolTaken."""
+    """One process owns the file, for as long as it lives. Raises SpoolTaken after `patience_s`."""
 
-    def __init__(self, path: Path, reserve_bytes: int) -> None:
+    def __init__(self, path: Path, reserve_bytes: int, patience_s: float = 0.0) -> None:
         self.path = path
         path.parent.mkdir(parents=True, exist_ok=True)
         self._fd = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
         try:
-            fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            claim(self._fd, patience_s)
             self._reserve(reserve_bytes)
             magic, self._generation = HEADER.unpack(os.pread(self._fd, HEADER.size, 0))
             if magic != MAGIC:
                 raise ValueError(f"{path} is not a journal spool: move it away and start again")
-        except BlockingIOError:
-            os.close(self._fd)
-            raise SpoolTaken(f"{path} belongs to another server that is running") from None
         except BaseException:
             os.close(self._fd)
             raise

@@ -67,6 +67,18 @@ class Server:
     def kill(self) -> None:
         os.kill(self.pid, signal.SIGKILL)
 
+    async def gone(self) -> None:
+        """As a supervisor waits before it starts the next one."""
+        async with asyncio.timeout(10):
+            while not ended(self.pid):  # noqa: ASYNC110 (another process)
+                await asyncio.sleep(0.005)
+
+
+def ended(pid: int) -> bool:
+    with suppress(OSError):
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    return True
+
 
 class Servers:
     """Starts them one after the other, forked or whole."""
@@ -185,9 +197,12 @@ async def new_mission(shown: Console) -> None:
     await shown.draft(**LONG_SEARCH)
     await shown.ready()
     await shown.watch()
-    async with asyncio.timeout(60):
-        while not (await shown.order("start"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
-            await asyncio.sleep(0.5)
+    started = {"accepted": False}
+    until = time.monotonic() + 120
+    while not started["accepted"]:
+        assert time.monotonic() < until, f"the mission does not start: {started}"
+        started = await shown.order("start")
+        await asyncio.sleep(0.2)
 
 
 async def fly_until_killed(server: Server, shown: Console, folder: Path, chance: random.Random) -> None:
@@ -252,6 +267,7 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
                     found.missions += 1
                 known = len(shown.events) if before else 0
                 await fly_until_killed(server, shown, folder, chance)
+                await server.gone()
                 await asyncio.sleep(0.05)  # what was sent before the kill is read
                 before = list(shown.events)
                 found.kills += 1

@@ -20,6 +20,7 @@ from backend.events import HoldOrdered, MissionDrafted, MissionStarted
 from backend.mission.ports import TrackPoint
 from backend.settings import Settings
 from backend.spec import MissionSpec, Place, Polygon
+from backend.store import opening
 from backend.store.engine import migrate
 from backend.store.journal import SqlJournal
 from backend.store.opening import DatabaseUnusable, open_journal
@@ -307,7 +308,8 @@ async def test_migrating_again_changes_nothing(bench):
     assert await (await bench.open("other.spool")).read("m") == written
 
 
-async def test_a_second_server_on_the_same_database_or_data_is_refused(tmp_path):
+async def test_a_second_server_on_the_same_database_or_data_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(opening, "CLAIM_PATIENCE_S", 0.1)
     settings = Settings(data_dir=tmp_path / "one")
     beside = Settings(data_dir=tmp_path / "two", database_url=f"sqlite:///{tmp_path / 'one' / 'crossfix.sqlite'}")
     same_data = Settings(data_dir=tmp_path / "one", database_url=f"sqlite:///{tmp_path / 'other.sqlite'}")

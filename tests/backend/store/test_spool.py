@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import threading
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from backend.store.spool import HEADER, Spool, SpoolFull
+from backend.store.spool import HEADER, Spool, SpoolFull, SpoolTaken
 
 RESERVE = 64 * 1024
 
@@ -78,3 +79,11 @@ def test_a_foreign_file_is_not_overwritten(tmp_path):
     with pytest.raises(ValueError, match="not a journal spool"):
         Spool(tmp_path / "s", RESERVE)
     assert (tmp_path / "s").read_bytes().startswith(b"my thesis")
+
+
+def test_one_process_owns_it_and_the_next_waits_a_moment(tmp_path):
+    first = Spool(tmp_path / "s", RESERVE)
+    with pytest.raises(SpoolTaken):
+        Spool(tmp_path / "s", RESERVE)
+    threading.Timer(0.2, first.close).start()
+    Spool(tmp_path / "s", RESERVE, patience_s=20.0).close()
