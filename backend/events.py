@@ -99,6 +99,15 @@ class PreflightChecked(Fact):
     checks: list[CheckFact]
 
 
+class AntennaChecked(Fact):
+    """The antenna was turned before a known emitter. It stands in the checklist until the next one, or an edit."""
+
+    kind: Literal["antenna_checked"] = "antenna_checked"
+    check: CheckFact
+    emitter: Place
+    by: str
+
+
 class MissionStarted(Fact):
     """The vehicle's home at the start is the origin of the mission's local frame."""
 
@@ -222,8 +231,9 @@ class BearingExcluded(Fact):
 
 class BeliefUpdated(Fact):
     """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
-    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate). `contradicting`:
-    ids of the bearings that do not point at the estimate; a claim that is made all the same stands against them."""
+    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
+    `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
+    against them."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     bearings: int
@@ -349,6 +359,7 @@ Event = Annotated[
     MissionDrafted
     | MissionEdited
     | PreflightChecked
+    | AntennaChecked
     | MissionStarted
     | PhaseChanged
     | TookOff

@@ -9,10 +9,11 @@ from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
+from backend.events import CheckFact
 from backend.mission.errors import MissionNotFound
 from backend.spec import MissionSpec
 from backend.store.digest import MissionDigest
-from backend.wire.resources import Mission, MissionList, PreflightReply
+from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
 
 router = APIRouter(prefix="/api/missions", tags=["missions"], responses=PROBLEM_RESPONSES)
 
@@ -70,3 +71,14 @@ async def run_preflight(mission_id: MissionId, services: ServicesDep, principal:
     """Run the checklist and record it."""
     checked = await services.missions.preflight(mission_id)
     return PreflightReply(passed=checked.passed, checks=checked.checks)
+
+
+@router.post("/{mission_id}/antenna-check")
+async def check_antenna(
+    mission_id: MissionId, request: AntennaCheckRequest, services: ServicesDep, principal: PrincipalDep
+) -> CheckFact:
+    """Listen while the vehicle is turned once around by hand before a known emitter; the result joins the checklist.
+    409 while anything flies."""
+    emitter = request.place if request.place is not None else request.bearing_deg or 0.0
+    checked = await services.missions.check_antenna(mission_id, emitter, request.wait_s, principal.name)
+    return checked.check

@@ -42,9 +42,12 @@ def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[Localization | 
 
 
 async def checklist(
-    mission: MissionSpec, equipment: Equipment, listening: Listening | None
+    mission: MissionSpec, equipment: Equipment, listening: Listening | None, antenna: CheckFact | None = None
 ) -> tuple[tuple[CheckFact, ...], Localization | None]:
-    """All checks, and the task when the specification is sound. listening: that of a running mission, else None."""
+    """All checks, and the task when the specification is sound. listening: that of a running mission, else None.
+
+    antenna: what its check before a known emitter said, when there was one.
+    """
     checks = [_of(check) for check in await equipment.vehicle.preflight()]
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
     checks.append(sound)
@@ -55,6 +58,7 @@ async def checklist(
             checks.append(_fact("safety", True, "fence, battery and position allow the start", ""))
     checks.append(await _receiver(mission, equipment, listening))
     checks.append(_pattern(mission, equipment))
+    checks += [] if antenna is None else [antenna]
     return tuple(checks), task
 
 

@@ -11,8 +11,9 @@ from uuid import uuid4
 
 from backend import commands
 from backend.commands import CommandReply, CommandRequest
-from backend.events import Event, MissionDrafted, PreflightChecked, Recorded
+from backend.events import AntennaChecked, Event, MissionDrafted, PreflightChecked, Recorded
 from backend.mission import effects, inputs
+from backend.mission.antenna_check import check_by_hand
 from backend.mission.area import centre_of, corner_of
 from backend.mission.checklist import checklist, home_of
 from backend.mission.describe import doing, waits_for
@@ -137,7 +138,7 @@ class MissionService:
             runner = self._running(mission_id)
             state = runner.state if runner else (await self._load(mission_id))[0]
             listening = None if self._runner is None else self._runner.listening
-            checks, _ = await checklist(state.mission, self._equipment, listening)
+            checks, _ = await checklist(state.mission, self._equipment, listening, state.antenna)
             given = inputs.PreflightDone(checks)
             if runner:
                 runner.give(given)
@@ -145,6 +146,22 @@ class MissionService:
             else:
                 await self._record(mission_id, state, given)
         return PreflightChecked(passed=all(c.ok or not c.blocking for c in checks), checks=list(checks))
+
+    async def check_antenna(self, mission_id: str, emitter: Place | float, wait_s: float, by: str) -> AntennaChecked:
+        """Turn the vehicle by hand before an emitter at a known place or bearing; the result stays in the checklist.
+
+        Raises MissionNotFound, MissionConflict while anything flies, MissionInputError.
+        """
+        async with self._one_start:
+            if self._runner is not None:
+                raise MissionConflict("a mission is flying", "check the antenna when the vehicle is down")
+            state, _ = await self._load(mission_id)
+            if state.phase not in GROUND:
+                raise MissionConflict("the mission has started", "check the antenna of a draft")
+            checked = await check_by_hand(self._equipment, state.mission, emitter, wait_s, by)
+            async with self._lock(mission_id):
+                await self._append(mission_id, [checked])
+        return checked
 
     async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
         """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
@@ -220,7 +237,7 @@ class MissionService:
                 detail = f"another mission is still flying ({other.state.mission.name})"
                 objections = (Veto("one_mission", detail, "end it and let the vehicle land first"),)
             listening = None if other is None else other.listening
-            checks, task = await checklist(state.mission, self._equipment, listening)
+            checks, task = await checklist(state.mission, self._equipment, listening, state.antenna)
             home, home_amsl_m = home_of(self._equipment.vehicle.telemetry())
             facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, self._equipment.software)
             given = inputs.Commanded(str(request.command_id), by, request.command, objections, facts)

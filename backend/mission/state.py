@@ -13,10 +13,12 @@ from backend.events import (
     AlertAcknowledged,
     AlertCleared,
     AlertRaised,
+    AntennaChecked,
     AutomaticChanged,
     BearingExcluded,
     BearingMeasured,
     BeliefUpdated,
+    CheckFact,
     CommandAccepted,
     CommandRefused,
     ControlReleased,
@@ -87,6 +89,7 @@ class MissionState:
     open_alerts: tuple[str, ...] = ()
     alerts_raised: int = 0
     outcome: str | None = None
+    antenna: CheckFact | None = None
     answered: Mapping[str, Answer] = field(default_factory=dict)
 
     @property
@@ -118,7 +121,7 @@ def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
     """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
-            return replace(state, spec=spec, automatic=spec.flight.automatic, belief_current=False)
+            return replace(state, spec=spec, automatic=spec.flight.automatic, belief_current=False, antenna=None)
         case MissionStarted():
             # bearings from before the start (imported) are folded anew in the frame of the home
             current = state.belief_current and not state.measured
@@ -194,6 +197,8 @@ def _evolve_surroundings(state: MissionState, event: Event) -> MissionState:
             return replace(state, answered={**state.answered, command_id: Answer(True, "", "")})
         case CommandRefused(command_id=command_id, reason=reason, remedy=remedy):
             return replace(state, answered={**state.answered, command_id: Answer(False, reason, remedy)})
+        case AntennaChecked(check=check):
+            return replace(state, antenna=check)
         case AlertAcknowledged() | _:
             return state
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from backend.events import BeliefUpdated, CandidateFact, CheckFact, EstimateFact, Phase, PlanChosen, Recorded
 from backend.spec import Area, MissionSpec, Model, Place
@@ -88,6 +88,21 @@ class MissionList(Model):
 class PreflightReply(Model):
     passed: bool
     checks: list[CheckFact]
+
+
+class AntennaCheckRequest(Model):
+    """A known emitter, by its place or by its bearing (degrees clockwise from true north). `wait_s`: at most so long
+    is listened; the vehicle is turned once around by hand meanwhile."""
+
+    place: Place | None = None
+    bearing_deg: float | None = Field(default=None, ge=0, lt=360, allow_inf_nan=False)
+    wait_s: float = Field(default=60.0, ge=1, le=300, allow_inf_nan=False)
+
+    @model_validator(mode="after")
+    def one_of_both(self) -> AntennaCheckRequest:
+        if (self.place is None) == (self.bearing_deg is None):
+            raise ValueError("name the emitter's place or its bearing, one of both")
+        return self
 
 
 class EventPage(Model):

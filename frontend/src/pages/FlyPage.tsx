@@ -5,6 +5,7 @@ import { useEffect, useState } from "preact/hooks";
 import { mission, source } from "../app/store";
 import { t } from "../i18n";
 import { AlertBanner } from "../panels/AlertsButton";
+import { AntennaCheck } from "../panels/AntennaCheck";
 import { EstimatePanel } from "../panels/EstimatePanel";
 import { ImportRecording } from "../panels/ImportRecording";
 import { PlanPanel } from "../panels/PlanPanel";
@@ -58,6 +59,7 @@ export function FlyPage() {
           </>
         )}
         {!before && <PlanPanel />}
+        {before && missionId && <AntennaCheck missionId={missionId} />}
         <ImportRecording />
       </aside>
       <Timeline />

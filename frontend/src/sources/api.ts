@@ -1,6 +1,7 @@
 // REST, one function an endpoint. Every failure becomes a RequestFailed with a sentence to show.
 import type {
   AreaImport,
+  CheckFact,
   Command,
   CommandReply,
   CommandRequest,
@@ -25,6 +26,7 @@ import { decodeBeliefFrame, type BeliefFrame } from "../wire/beliefFrame";
 import { RequestFailed, unreachable } from "./problem";
 
 const TIMEOUT_MS = 20_000;
+const ANTENNA_S = 60;
 
 /** A random UUID also where the page is served without TLS (crypto.randomUUID needs a secure context). */
 export function newCommandId(): string {
@@ -50,15 +52,15 @@ export async function problemOf(response: Response): Promise<RequestFailed> {
   return new RequestFailed({ ...fallback, ...body, errors: Array.isArray(body.errors) ? body.errors : [] });
 }
 
-async function request(path: string, init: RequestInit = {}): Promise<Response> {
-  const timeout = AbortSignal.timeout(TIMEOUT_MS);
+async function request(path: string, init: RequestInit = {}, timeoutMs = TIMEOUT_MS): Promise<Response> {
+  const timeout = AbortSignal.timeout(timeoutMs);
   const signal = init.signal ? AbortSignal.any([init.signal, timeout]) : timeout;
   let response: Response;
   try {
     response = await fetch(`/api${path}`, { ...init, signal });
   } catch (error) {
     if (init.signal?.aborted) throw error;
-    throw unreachable(timeout.aborted ? "No answer within 20 seconds." : "The connection failed.");
+    throw unreachable(timeout.aborted ? `No answer within ${timeoutMs / 1000} seconds.` : "The connection failed.");
   }
   if (!response.ok) throw await problemOf(response);
   return response;
@@ -68,8 +70,8 @@ export async function requestEmpty(path: string, init: RequestInit): Promise<voi
   await request(path, init);
 }
 
-export async function json<T>(path: string, init?: RequestInit): Promise<T> {
-  return (await (await request(path, init)).json()) as T;
+export async function json<T>(path: string, init?: RequestInit, timeoutMs?: number): Promise<T> {
+  return (await (await request(path, init, timeoutMs)).json()) as T;
 }
 
 export const withBody = (method: string, body: unknown, signal?: AbortSignal): RequestInit => ({
@@ -103,6 +105,10 @@ export const sendCommand = (id: string, command: Command, commandId = newCommand
 
 export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
   json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place }, signal));
+
+/** The vehicle is turned by hand meanwhile: longer than other requests. */
+export const checkAntenna = (id: string, emitter: { place: Place } | { bearing_deg: number }) =>
+  json<CheckFact>(`${missionPath(id)}/antenna-check`, withBody("POST", { ...emitter, wait_s: ANTENNA_S }), (ANTENNA_S + 20) * 1000);
 
 export const importRecording = (id: string, form: FormData) =>
   json<RecordingImport>(`${missionPath(id)}/recordings`, { method: "POST", body: form });

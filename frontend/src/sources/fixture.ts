@@ -31,8 +31,8 @@ export const exampleSpec = (corners: LonLat[]): MissionSpec => ({
   name: "Wildlife tag at the meadow",
   area: { type: "Polygon", coordinates: [corners] },
   prior: { kind: "uniform" },
-  emitter: { frequency_hz: 868_300_000, kind: "carrier", label: "emitter" },
-  sensor: { sigma_deg: SIGMA, outlier_probability: 0.05, measurement_time_s: 30, turn_rate_deg_s: 30, minimum_quality: 0.7, maximum_retakes: 2 },
+  emitter: { frequency_hz: 868_300_000, kind: "carrier", label: "emitter", pulse_width_s: 0.02, pulse_period_s: 1.3, pulse_jitter_s: 0.03 },
+  sensor: { sigma_deg: SIGMA, outlier_probability: 0.05, measurement_time_s: 30, turn_rate_deg_s: 30, pulses_per_heading: 2, minimum_quality: 0.7, maximum_retakes: 2 },
   planner: {
     method: "rollout", base_policy: "fisher", selection: "sequential_halving", sampling: "crn", estimator: "map", budget: 1000,
     action_spacing_m: 15, standoff_m: 50, motion: { kind: "linear_constant", speed_m_s: 7, constant_s: 11.2 }, seed: 1,

@@ -178,6 +178,7 @@ function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): M
       };
     case "mission_ended":
       return { ...state, ended: { fact: event, seq, at } };
+    case "antenna_checked":
     case "recording_imported":
     case "took_off":
     case "place_reached":

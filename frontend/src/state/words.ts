@@ -143,6 +143,8 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
         number: event.place_number,
         quality: formatNumber(event.quality, 2),
       });
+    case "antenna_checked":
+      return t(event.check.ok ? "event.antenna_ok" : "event.antenna_wrong", { detail: told(event.check.detail) });
     case "recording_imported":
       return t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: told(event.by) });
     case "bearing_excluded":

@@ -168,6 +168,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions/{mission_id}/antenna-check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check Antenna
+         * @description Listen while the vehicle is turned once around by hand before a known emitter; the result joins the checklist.
+         *     409 while anything flies.
+         */
+        post: operations["check_antenna"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/recordings": {
         parameters: {
             query?: never;
@@ -617,6 +638,27 @@ export interface components {
             text: string;
             remedy: string;
         };
+        /**
+         * @description A known emitter, by its place or by its bearing (degrees clockwise from true north). `wait_s`: at most so long
+         *     is listened; the vehicle is turned once around by hand meanwhile.
+         */
+        AntennaCheckRequest: {
+            place?: components["schemas"]["Place"] | null;
+            bearing_deg?: number | null;
+            /** @default 60 */
+            wait_s: number;
+        };
+        /** @description The antenna was turned before a known emitter. It stands in the checklist until the next one, or an edit. */
+        AntennaChecked: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "antenna_checked";
+            check: components["schemas"]["CheckFact"];
+            emitter: components["schemas"]["Place"];
+            by: string;
+        };
         Area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         /** @description `notes`: what was changed or left out while reading, one sentence each. */
         AreaImport: {
@@ -676,8 +718,9 @@ export interface components {
         };
         /**
          * @description The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
-         *     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate). `contradicting`:
-         *     ids of the bearings that do not point at the estimate; a claim that is made all the same stands against them.
+         *     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
+         *     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
+         *     against them.
          */
         BeliefUpdated: {
             /**
@@ -843,7 +886,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         EventMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1590,7 +1633,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         };
         /**
          * @description What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
@@ -2291,6 +2334,42 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["PreflightReply"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check_antenna: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AntennaCheckRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CheckFact"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -307,13 +307,13 @@ class Stage:
         self.publisher = MemoryPublisher(self.journal)
         self.service = self.new_service()
 
-    def new_service(self) -> MissionService:
+    def new_service(self, pattern: AntennaPattern = PATTERN) -> MissionService:
         return MissionService(
             Equipment(
                 vehicle=self.vehicle,
                 receiver=self.receiver,
                 finder=self.finder,
-                pattern=PATTERN,
+                pattern=pattern,
                 journal=self.journal,
                 publisher=self.publisher,
                 clock=self.clock,
