@@ -7,6 +7,7 @@ import io
 import time
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
@@ -14,10 +15,10 @@ import mapbox_vector_tile
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
-from screen import Screen
+from screen import OpenScreen, Screen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -160,3 +161,22 @@ def test_vector_tiles_are_drawn_with_their_names_and_no_glyphs_are_fetched(
 
 def rgb(code: str) -> tuple[int, int, int]:
     return int(code[1:3], 16), int(code[3:5], 16), int(code[5:7], 16)
+
+
+def test_a_package_is_uploaded_chosen_and_removed_on_the_page(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    screen = open_screen(server, "#/maps")
+    broken, package = tmp_path / "notes.pmtiles", tmp_path / "meadow.pmtiles"
+    broken.write_text("buy milk")
+    package.write_bytes(archive(green_tile, (13,), vector=False))
+    screen.part("upload-maps").set_input_files(broken)
+    expect(screen.page.get_by_role("alert")).to_contain_text("What to do")
+    screen.part("upload-maps").set_input_files(package)
+    row = screen.part("map-package").filter(has_text="meadow")
+    row.get_by_role("radio").check()
+    chosen = screen.evaluate("localStorage.getItem('crossfix.basemap')")
+    assert chosen in [one["map_id"] for one in server.get("/api/maps")["maps"]]
+    row.get_by_role("button").click()
+    expect(row).to_have_count(0)
+    assert chosen not in [one["map_id"] for one in server.get("/api/maps")["maps"]]

@@ -70,6 +70,21 @@ def test_a_fence_and_its_holes_come_from_a_qgroundcontrol_plan(server: Server, e
     assert len(flight["no_fly"]) == 1
 
 
+def test_the_corners_of_an_area_with_a_hole_are_moved_and_the_hole_stays(
+    server: Server, editor: Screen, tmp_path: Path
+) -> None:
+    hole = [[7.2040, 50.6238], [7.2050, 50.6238], [7.2050, 50.6244], [7.2040, 50.6244], [7.2040, 50.6238]]
+    area = json.dumps({"type": "Polygon", "coordinates": [RING, hole]})
+    editor.part("import-file").set_input_files(write(tmp_path, "clearing.geojson", area))
+    expect(editor.part("area-size")).to_contain_text("8 corners")
+    editor.part("draw-corners").click()
+    editor.page.wait_for_timeout(500)
+    editor.part("draw-corners").click()
+    rings = saved(server, editor)["area"]["coordinates"]
+    assert [len(ring) for ring in rings] == [5, 5]
+    assert {tuple(c) for c in rings[1]} == {tuple(c) for c in hole}
+
+
 def test_a_file_that_is_no_area_is_named_with_its_reason(editor: Screen, tmp_path: Path) -> None:
     editor.part("import-file").set_input_files(write(tmp_path, "notes.geojson", "buy milk"))
     message = editor.part("area-message")

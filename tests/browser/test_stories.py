@@ -136,7 +136,9 @@ def test_the_next_place_is_dragged_and_its_cost_seen_before_it_is_confirmed(flig
     screen.page.mouse.up()
     expect(screen.part("proposal")).to_have_attribute("data-allowed", "true")
     expect(screen.part("proposal-cost")).to_contain_text("Localized in about")
-    expect(screen.part("proposal")).to_contain_text(re.compile("(longer than|shorter than|as long as) the planner's place"))
+    expect(screen.part("proposal")).to_contain_text(
+        re.compile("(longer than|shorter than|as long as) the planner's place")
+    )
     assert flight.kinds().count("plan_chosen") == before, "what is dragged is flown to only after the slide"
     screen.page.keyboard.press("Escape")
 
