@@ -44,10 +44,15 @@ class Component:
 
 @dataclass(slots=True)
 class SparseDirectionFinder:
-    """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices."""
+    """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices.
+
+    heading_sigma_deg: what the vehicle's heading is uncertain by, added in quadrature to the sweep's own sigma: no
+    sweep can show it, and it is the same all around.
+    """
 
     minimum_quality: float = MINIMUM_QUALITY
     penalty: float = PENALTY
+    heading_sigma_deg: float = 0.0
     _prepared: dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]] = field(default_factory=dict, repr=False)
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
@@ -87,7 +92,7 @@ class SparseDirectionFinder:
         refined: Refined,
         noise_db: float | None,
     ) -> BearingReading:
-        bearing, sigma = refined.bearing_deg, refined.sigma_deg
+        bearing, sigma = refined.bearing_deg, math.hypot(refined.sigma_deg, self.heading_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
         peaks = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
