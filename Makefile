@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench long fuzz load page-load codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
+.PHONY: run test check bench long fuzz load page-load sensor-faults codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
@@ -77,6 +77,9 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 	$(BIN)/python -m tests.benchmarks.page_frames --minutes 10
 	$(BIN)/python -m tests.benchmarks.page_bytes --minutes 5
 	$(BIN)/python -m tests.benchmarks.page_replay --minutes 60
+
+sensor-faults: setup-dev ## a thousand simulated missions for each fault of the sensor: an hour on one core
+	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
