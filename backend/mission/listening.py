@@ -64,6 +64,7 @@ class Listening:
                     self._quiet_s = 0.0
                     self._heard.set()
                     self._fault = None
+                    await asyncio.sleep(0)  # a receiver that catches up must not keep everybody else waiting
                 self._fault = "the receiver was closed"
             except HardwareError as error:
                 if self._fault is None:

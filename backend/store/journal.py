@@ -234,21 +234,24 @@ class SqlJournal:
 
         A database that is busy at this moment is waited for. Raises JournalUnavailable when it does not even read.
         """
-        patient_until = time.monotonic() + START_PATIENCE_S
+        try:
+            await self.drain()
+        except DatabaseAway as error:
+            self._lost(error)
+            for mission_id in {entry.mission_id for entry in self._pending if isinstance(entry, EventsEntry)}:
+                self._written[mission_id] = await self._patiently(lambda mission_id=mission_id: self._known(mission_id))
+
+    @staticmethod
+    async def _patiently(read: Callable[[], Coroutine[Any, Any, T]]) -> T:
+        """Raises JournalUnavailable when the database does not answer for START_PATIENCE_S."""
+        until = time.monotonic() + START_PATIENCE_S
         while True:
             try:
-                await self.drain()
-                return
-            except DatabaseAway as error:
-                self._lost(error)
-            try:
-                for entry in self._pending:
-                    if isinstance(entry, EventsEntry):
-                        self._written[entry.mission_id] = await self._known(entry.mission_id)
-                return
+                return await read()
             except JournalUnavailable:
-                if time.monotonic() > patient_until:
+                if time.monotonic() > until:
                     raise
+                await asyncio.sleep(RETRY_FIRST_S)
 
     async def run(self) -> None:
         """Watch the database, and drain the spool when it is back. Runs until cancelled."""
@@ -361,8 +364,9 @@ class SqlJournal:
         return await self._stored.missions()
 
     async def unfinished(self) -> list[str]:
-        """Missions that were started and have not ended, oldest start first."""
-        known = {digest.mission_id: digest for digest in await self._stored.unfinished()}
+        """Missions that were started and have not ended, oldest start first. Asked at a start: a busy database is
+        waited for."""
+        known = {digest.mission_id: digest for digest in await self._patiently(self._stored.unfinished)}
         known |= {mission_id: written.digest for mission_id, written in self._written.items() if written.digest}
         begun = [d for d in known.values() if d.started_at_us is not None and d.ended_at_us is None]
         return [d.mission_id for d in sorted(begun, key=lambda d: (d.started_at_us, d.mission_id))]

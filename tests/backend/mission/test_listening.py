@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 
 from doubles import HummingReceiver
 
 from backend.mission.listening import Listening
 from hardware.clock import ScaledClock
+from hardware.readings import PowerSample
 
 
 def made() -> tuple[Listening, HummingReceiver, ScaledClock]:
@@ -40,6 +41,22 @@ async def test_samples_of_an_interval_come_in_order() -> None:
     assert listening.state == "ok"
     await listening.stop()
     assert listening.state == "off"
+
+
+async def test_a_receiver_with_a_backlog_without_end_keeps_nobody_waiting() -> None:
+    listening, receiver, clock = made()
+
+    async def flood() -> AsyncIterator[PowerSample]:
+        while True:
+            yield PowerSample(clock.now(), 868.3e6, -60.0)
+
+    receiver.samples = flood  # type: ignore[method-assign]
+    listening.start()
+    async with asyncio.timeout(10):
+        for _ in range(50):
+            await asyncio.sleep(0)
+    assert listening.last is not None
+    await listening.stop()
 
 
 async def test_silence_is_counted_in_time_that_was_watched() -> None:
