@@ -547,7 +547,9 @@ def _fisher(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0, y0, h
     for k in range(n):
         if gain[k] > best_gain:
             qx, qy = _place(rules, fixed, k, left, bottom, step_x, step_y)
-            if corners == 0 or _clear(work.chain, corners, qx, qy, needed, np.hypot(qx - ex, qy - ey) + outside):
+            if corners == 0 or _clear(
+                work.chain, corners, qx, qy, needed, np.sqrt((qx - ex) ** 2 + (qy - ey) ** 2) + outside
+            ):
                 best, best_gain = k, gain[k]
     for k in range(best):
         if gain[k] >= best_gain * (1.0 - NEARLY):
