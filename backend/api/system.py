@@ -13,7 +13,7 @@ from backend.live.snapshot import telemetry_message
 from backend.spec import Place
 from backend.version import VERSION
 from backend.wire.messages import TelemetryMessage
-from backend.wire.resources import DatabaseHealth, Defaults, Health, VehicleHealth
+from backend.wire.resources import DatabaseHealth, Defaults, Health, Payload, PayloadList, VehicleHealth
 
 NO_VEHICLE = "No vehicle answers on the link. Check its power and the radio; the server keeps listening."
 
@@ -38,6 +38,37 @@ async def health(services: ServicesDep) -> Health:
         viewers=services.hub.viewers(),
         simulated=settings.simulated,
         time_factor=settings.time_factor,
+    )
+
+
+@router.get("/payloads")
+async def list_payloads(services: ServicesDep) -> PayloadList:
+    """Every payload that was heard since the server's start, the connected ones first."""
+    hub = services.payload
+    if hub is None:
+        return PayloadList(expected=False, payloads=[])
+    known = sorted(hub.agents.values(), key=lambda agent: (not agent.connected, agent.agent))
+    now_s = hub.now()
+    return PayloadList(
+        expected=True,
+        payloads=[
+            Payload(
+                name=agent.agent,
+                connected=agent.connected,
+                age_s=max(now_s - agent.heard_at_s, 0.0),
+                software=agent.software,
+                receiver=agent.receiver,
+                receiver_ok=agent.receiver_ok,
+                temperature_c=agent.temperature_c,
+                clock_offset_s=agent.clock_offset_s,
+                round_trip_s=agent.round_trip_s,
+                clipped_percent=agent.clipped_percent,
+                waiting=agent.waiting,
+                lost=agent.lost,
+                received=agent.received,
+            )
+            for agent in known
+        ],
     )
 
 

@@ -42,6 +42,32 @@ class Health(Model):
     time_factor: float
 
 
+class Payload(Model):
+    """A companion computer with a radio. `age_s`: since it was last heard. `clock_offset_s`: server minus payload; its
+    samples are corrected by it. `waiting`: samples on its disk that are still to come; `lost`: its disk was full."""
+
+    name: str
+    connected: bool
+    age_s: float
+    software: str
+    receiver: str
+    receiver_ok: bool
+    temperature_c: float | None
+    clock_offset_s: float | None
+    round_trip_s: float | None
+    clipped_percent: float
+    waiting: int
+    lost: int
+    received: int
+
+
+class PayloadList(Model):
+    """`expected` False: this server takes no payload (it was given no tokens)."""
+
+    expected: bool
+    payloads: list[Payload]
+
+
 class Defaults(Model):
     """A mission to start from. `home`: the vehicle's, None when it was never heard; the area is then around the
     configured fallback place."""

@@ -6,6 +6,7 @@ import "uplot/dist/uPlot.min.css";
 import { settings } from "../app/settings";
 import { live, nowMs, serverNowMs } from "../app/store";
 import { t, type MessageKey } from "../i18n";
+import { Payloads } from "./Payloads";
 import { ageS, freshness } from "../state/age";
 import { emptySeries, extend, type Series } from "../state/series";
 import { formatAge, formatBearing, formatClock, formatLength, formatSpeed } from "../units/quantities";
@@ -114,6 +115,7 @@ export function Instruments() {
   return (
     <>
       <Values />
+      <Payloads />
       <Chart label="instruments.chart.power" pick={(s) => s.powerDb} />
       <Chart label="instruments.chart.altitude" pick={(s) => s.altitudeM} />
       <Chart label="instruments.chart.battery" pick={(s) => s.batteryPercent} />

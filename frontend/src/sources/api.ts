@@ -12,6 +12,7 @@ import type {
   Mission,
   MissionList,
   MissionSpec,
+  PayloadList,
   Place,
   PreflightReply,
   Preview,
@@ -86,6 +87,7 @@ export type ExportFormat = "geojson" | "kml" | "csv" | "json";
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 
 export const health = () => json<Health>("/health");
+export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
 export const missions = () => json<MissionList>("/missions");
 export const mission = (id: string) => json<Mission>(missionPath(id));

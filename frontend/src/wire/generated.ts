@@ -24,6 +24,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/payloads": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Payloads
+         * @description Every payload that was heard since the server's start, the connected ones first.
+         */
+        get: operations["list_payloads"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/defaults": {
         parameters: {
             query?: never;
@@ -1437,6 +1457,30 @@ export interface components {
             kind: "override";
             place: components["schemas"]["Place"];
         };
+        /**
+         * @description A companion computer with a radio. `age_s`: since it was last heard. `clock_offset_s`: server minus payload; its
+         *     samples are corrected by it. `waiting`: samples on its disk that are still to come; `lost`: its disk was full.
+         */
+        Payload: {
+            name: string;
+            connected: boolean;
+            age_s: number;
+            software: string;
+            receiver: string;
+            receiver_ok: boolean;
+            temperature_c: number | null;
+            clock_offset_s: number | null;
+            round_trip_s: number | null;
+            clipped_percent: number;
+            waiting: number;
+            lost: number;
+            received: number;
+        };
+        /** @description `expected` False: this server takes no payload (it was given no tokens). */
+        PayloadList: {
+            expected: boolean;
+            payloads: components["schemas"]["Payload"][];
+        };
         Peak: {
             bearing_deg: number;
             weight: number;
@@ -2078,6 +2122,35 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_payloads: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PayloadList"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -51,4 +51,5 @@ export type WhatIf = Schemas["WhatIf"];
 export type WhatIfRequest = Schemas["WhatIfRequest"];
 export type AreaImport = Schemas["AreaImport"];
 export type RecordingImport = Schemas["RecordingImport"];
+export type PayloadList = Schemas["PayloadList"];
 export type Health = Schemas["Health"];

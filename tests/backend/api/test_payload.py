@@ -9,6 +9,8 @@ from dataclasses import replace
 import pytest
 import websockets
 
+from hardware.payload.session import PayloadSession
+
 TOKEN = "a token of sixteen letters or more"
 HELLO = {"type": "hello", "protocol": 1, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
 SAMPLE = [1.7e9, 868.3e6, -80.0, None, False]
@@ -64,3 +66,30 @@ async def test_what_is_not_understood_is_told_and_ends_the_talk(served, content)
         with pytest.raises(websockets.ConnectionClosed) as closed:
             await asyncio.wait_for(websocket.recv(), 5)
     assert closed.value.rcvd.code == 1008
+
+
+async def test_the_console_is_told_how_a_payload_is(client, services):
+    hub = services.payload
+    session = PayloadSession(hub)
+    hello = {"type": "hello", "protocol": 1, "agent": "pi", "stream": "s1", "software": "crossfix 1", "first_seq": 1}
+    status = {
+        "type": "status",
+        "receiver": "listening",
+        "receiver_ok": True,
+        "temperature_c": 51.5,
+        "clock_offset_s": 0.25,
+        "round_trip_s": 0.04,
+        "clipped_percent": 2.5,
+        "waiting": 7,
+        "lost": 0,
+    }
+    session.receive(json.dumps(hello))
+    session.receive(json.dumps(status))
+    told = (await client.get("/api/payloads")).json()
+    assert told["expected"]
+    (payload,) = told["payloads"]
+    assert payload == {"name": "pi", "connected": True, "age_s": 0.0, "software": "crossfix 1", "received": 0} | {
+        key: value for key, value in status.items() if key != "type"
+    }
+    session.close()
+    assert not (await client.get("/api/payloads")).json()["payloads"][0]["connected"]
