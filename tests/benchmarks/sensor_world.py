@@ -55,6 +55,12 @@ PLACES = (
 )
 
 
+COLUMNS = (
+    *("condition", "RMS", "least squares", "bias", "sigma (median)"),
+    *("error/sigma", "in 1", "in 2", "outliers", "rejected"),
+)
+
+
 def sweep_at(place: Place, rng: np.random.Generator) -> tuple[float, Sweep]:
     """(true bearing, sweep)."""
     frame = LocalFrame(HERE)
@@ -85,9 +91,8 @@ def main() -> None:
     arguments = parser.parse_args()
     pattern = load_pattern(SMALL_YAGI)
     finder, plain = SparseDirectionFinder(), LeastSquaresDirectionFinder()
-    columns = "condition|RMS|least squares|bias|sigma (median)|error/sigma|in 1|in 2|outliers|rejected".split("|")
-    print(f"| {' | '.join(columns)} |")
-    print("|---" * len(columns) + "|")
+    print(f"| {' | '.join(COLUMNS)} |")
+    print("|---" * len(COLUMNS) + "|")
     for place in PLACES:
         rng = np.random.default_rng(arguments.seed)
         taken = [sweep_at(place, rng) for _ in range(arguments.sweeps)]
