@@ -24,6 +24,9 @@ Draw = Callable[[pd.DataFrame, list[Summary], int], Figure | None]
 
 MOST_PANELS = 9
 
+APART = 1.015
+"""Factor between planners' error bars at the same budget, so that they can be told apart."""
+
 
 def _axes(count: int, width: float = 4.2, height: float = 3.6, columns: int = 3) -> tuple[Figure, list[Axes]]:
     columns = min(columns, count)
@@ -69,7 +72,7 @@ def time_by_target(results: pd.DataFrame, summaries: list[Summary], paths: int) 
 
 
 def times_violin(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
-    """Scenario 2: how the times are spread, one violin a planner, with mean (bar) and median (dash)."""
+    """Scenario 2: how the times are spread, one violin a planner, with mean (red) and median (dotted)."""
     chosen = [s for s in summaries if s.cell.scenario == "2" and s.runs >= 10]
     if not chosen:
         return None
@@ -79,12 +82,15 @@ def times_violin(results: pd.DataFrame, summaries: list[Summary], paths: int) ->
     for panel, config in zip(axes, configs, strict=True):
         here = sorted((s for s in chosen if s.cell.config == config), key=lambda s: -s.mean_s)
         times = [_of(results, s.cell)["time"].to_numpy(dtype=float) for s in here]
-        panel.violinplot(
+        drawn = panel.violinplot(
             times, orientation="horizontal", showmeans=True, showmedians=True, showextrema=False, widths=0.85
         )
+        drawn["cmeans"].set(color="tab:red", label="mean")
+        drawn["cmedians"].set(color="black", linestyle=":", label="median")
         panel.set_yticks(np.arange(1, len(here) + 1), [label(s.cell.fields()) for s in here], fontsize="small")
         panel.set_xlim(0, max(np.quantile(t, 0.995) for t in times))
         panel.set(title=config, xlabel="time until localization, s")
+    axes[-1].legend(fontsize="small")
     return figure
 
 
@@ -100,7 +106,7 @@ def first_actions(results: pd.DataFrame, summaries: list[Summary], paths: int) -
         places = _of(results, summary.cell)[["first_x", "first_y"]].dropna().to_numpy(dtype=float)
         distinct, counts = np.unique(places, axis=0, return_counts=True)
         panel.scatter(*distinct.T, s=8 + 200 * counts / counts.sum(), color="tab:red", alpha=0.6, linewidths=0)
-        panel.plot(*case.platform, marker="^", color="black")
+        panel.plot(*case.platform, marker="^", color="black", clip_on=False, zorder=3)
         panel.set(title=label(summary.cell.fields()), xlabel="x, m", ylabel="y, m", aspect="equal")
         panel.title.set_fontsize("small")
     return figure
@@ -120,10 +126,10 @@ def action_values(results: pd.DataFrame, summaries: list[Summary], paths: int) -
         x, y, z = (column.reshape(ny, nx) for column in (*values.places.T, values.values))
         levels = z.min() + np.array([0.5, 1, 2, 4, 8, 16, 32])
         lines = panel.contour(x, y, z, levels=levels, cmap="viridis", linewidths=1.2)
-        panel.clabel(lines, fmt="%.0f", fontsize="x-small")
+        panel.clabel(lines, levels[2:], fmt="%.0f", fontsize="x-small")  # the innermost have no room for theirs
         best = int(np.argmin(values.values))
         panel.plot(*values.places[best], marker="*", markersize=12, color="tab:red")
-        panel.plot(*case.platform, marker="^", color="black")
+        panel.plot(*case.platform, marker="^", color="black", clip_on=False, zorder=3)
         panel.set(title=f"{config}: least {values.values[best]:.1f} s", xlabel="x, m", ylabel="y, m", aspect="equal")
     return figure
 
@@ -221,15 +227,16 @@ def _by_budget(summaries: list[Summary], measure: Callable[[Summary], tuple[floa
     configs = sorted({config for config, _ in series}, key=list(MEASUREMENT_TIMES).index)
     figure, axes = _axes(len(configs), width=5.0)
     for panel, config in zip(axes, configs, strict=True):
-        for (own, words), found in series.items():
-            if own != config:
-                continue
+        here = {words: found for (own, words), found in series.items() if own == config}
+        for number, (words, found) in enumerate(here.items()):
             found.sort(key=lambda s: s.cell.budget)
             values = np.array([measure(s) for s in found])
-            panel.errorbar(
-                [s.cell.budget for s in found], values[:, 0], yerr=values[:, 1], marker="o", capsize=2, label=words
-            )
+            beside = APART**number * np.array([s.cell.budget for s in found])
+            panel.errorbar(beside, values[:, 0], yerr=values[:, 1], marker="o", markersize=4, capsize=2, label=words)
         panel.set(title=config, xlabel="rollouts a decision", ylabel=name, xscale="log")
+        budgets = sorted({s.cell.budget for found in here.values() for s in found})
+        panel.set_xticks(budgets, [str(budget) for budget in budgets], fontsize="small")
+        panel.minorticks_off()
         panel.legend(fontsize="x-small")
     return figure
 
