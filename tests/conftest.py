@@ -10,6 +10,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import AsyncIterator, Iterator
@@ -25,6 +26,8 @@ from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
+
+sys.path.insert(0, str(Path(__file__).parent))  # stepped_clock, under pytest's importlib mode
 
 
 class PostgresCluster:

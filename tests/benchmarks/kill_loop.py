@@ -33,6 +33,7 @@ from tests.conftest import PostgresCluster, postgres_programs, postgres_user
 from tests.system.console import Console, Event, console, simulated_vehicle
 
 HOLD_WITHIN_S = 5.0
+START_PATIENCE_S = 120.0
 ENDED = ("done", "aborted", "failed")
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 
@@ -104,7 +105,14 @@ class Servers:
             words = await process.stderr.readline()
             if not words:
                 raise RuntimeError("the process that forks servers is gone")
-        url = json.loads(await asyncio.wait_for(process.stdout.readline(), 60))["url"]
+        try:
+            url = json.loads(await asyncio.wait_for(process.stdout.readline(), START_PATIENCE_S))["url"]
+        except TimeoutError:
+            said = b""
+            with suppress(TimeoutError):
+                said = await asyncio.wait_for(process.stderr.read(4096), 1)
+            os.kill(int(words), signal.SIGKILL)
+            raise RuntimeError(f"no server answers after {START_PATIENCE_S:.0f} s; it said: {said.decode()}") from None
         return Server(url, int(words), began)
 
     async def whole(self) -> Server:
@@ -277,6 +285,9 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
                 found.bearings += sum(r["event"]["kind"] == "bearing_measured" for r in new)
             if sys.stderr.isatty() or found.kills % 20 == 0:
                 print(json.dumps(found.summary()), file=sys.stderr, flush=True)
+    except BaseException:
+        print(json.dumps(found.summary()), file=sys.stderr, flush=True)
+        raise
     finally:
         if server is not None:
             with suppress(ProcessLookupError):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from stepped_clock import SteppedClock
 
 from hardware.payload.messages import Hello, Samples
 from hardware.payload.receiver import PayloadReceiver
@@ -27,20 +28,6 @@ from hardware.sim.world import Emitter, World
 FREQUENCY_HZ = 868_300_000.0
 HOME = GeoPoint(50.6, 7.2)
 WORLD = World((Emitter(GeoPoint(50.601, 7.2), FREQUENCY_HZ),))
-
-
-class SteppedClock:
-    """Simulated time: sleeping advances it at once."""
-
-    def __init__(self) -> None:
-        self.time_s = 1_780_000_000.0
-
-    def now(self) -> float:
-        return self.time_s
-
-    async def sleep(self, seconds: float) -> None:
-        self.time_s += seconds
-        await asyncio.sleep(0)
 
 
 def hovering(clock: SteppedClock) -> Callable[[], Telemetry]:

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import numpy as np
 import pytest
+from stepped_clock import SteppedClock
 
 from hardware.direction_finding.sweep import assemble_sweep
 from hardware.ports import ReceiverError
 from hardware.readings import GeoPoint, Sweep
 from hardware.sdr.recorded import RecordedReceiver
-
-
-class SteppedClock:
-    def __init__(self) -> None:
-        self.time_s = 5000.0
-
-    def now(self) -> float:
-        return self.time_s
-
-    async def sleep(self, seconds: float) -> None:
-        self.time_s += seconds
-        await asyncio.sleep(0)
 
 
 def recorded(at_s: np.ndarray) -> Sweep:
@@ -32,7 +19,7 @@ def recorded(at_s: np.ndarray) -> Sweep:
 
 @pytest.mark.parametrize("at_s", [np.arange(30.0), np.full(30, 1.69e9), np.arange(30.0)[::-1]])
 async def test_playback_with_its_headings_is_the_same_sweep(at_s: np.ndarray) -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(5000.0)
     original = recorded(at_s)
     receiver = RecordedReceiver(original, clock, duration_s=12.0)
     await receiver.open(148.52e6)
@@ -46,6 +33,6 @@ async def test_playback_with_its_headings_is_the_same_sweep(at_s: np.ndarray) ->
 
 async def test_wrong_frequency_and_empty_sweep_are_refused() -> None:
     with pytest.raises(ReceiverError, match="was recorded at"):
-        await RecordedReceiver(recorded(np.arange(30.0)), SteppedClock()).open(868e6)
+        await RecordedReceiver(recorded(np.arange(30.0)), SteppedClock(5000.0)).open(868e6)
     with pytest.raises(ReceiverError, match="no sample"):
-        RecordedReceiver(recorded(np.empty(0)), SteppedClock())
+        RecordedReceiver(recorded(np.empty(0)), SteppedClock(5000.0))

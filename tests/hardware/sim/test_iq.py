@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import dataclasses
 import math
 
 import numpy as np
 import pytest
+from stepped_clock import SteppedClock
 
 from hardware.readings import GeoPoint, Telemetry
 from hardware.sdr.pulses import PulseSetting
@@ -19,18 +19,6 @@ from hardware.sim.world import Emitter, World
 
 FREQUENCY_HZ = 868_300_000.0
 STEADY = World((Emitter(GeoPoint(50.601, 7.2), FREQUENCY_HZ),), fading=Fading(math.inf))
-
-
-class SteppedClock:
-    def __init__(self) -> None:
-        self.time_s = 1000.0
-
-    def now(self) -> float:
-        return self.time_s
-
-    async def sleep(self, seconds: float) -> None:
-        self.time_s += seconds
-        await asyncio.sleep(0)
 
 
 def pose(clock: SteppedClock) -> Telemetry:
@@ -49,7 +37,7 @@ async def mean_power(receiver: IqReceiver | SimulatedReceiver, count: int = 30) 
 
 
 async def test_iq_and_power_agree_whatever_the_gain() -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(1000.0)
     direct = await mean_power(SimulatedReceiver(STEADY, lambda: pose(clock), clock))
     source = SimulatedIq(STEADY, lambda: pose(clock), clock, drift_hz_s=20.0)
     assert await mean_power(IqReceiver(source)) == pytest.approx(direct, abs=0.5)
@@ -58,7 +46,7 @@ async def test_iq_and_power_agree_whatever_the_gain() -> None:
 
 
 async def test_two_emitters_are_heard_at_once_by_frequency() -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(1000.0)
     other = dataclasses.replace(STEADY.emitters[0], frequency_hz=FREQUENCY_HZ + 8000.0, power_dbm=-20.0)
     world = dataclasses.replace(STEADY, emitters=(STEADY.emitters[0], other))
     receiver = IqReceiver(SimulatedIq(world, lambda: pose(clock), clock))
@@ -72,7 +60,7 @@ async def test_two_emitters_are_heard_at_once_by_frequency() -> None:
 
 
 async def test_pulsed_tag_is_heard_once_a_period() -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(1000.0)
     tag = dataclasses.replace(STEADY.emitters[0], pulse_period_s=1.0, pulse_width_s=0.02)
     world = dataclasses.replace(STEADY, emitters=(tag,))
     source = SimulatedIq(world, lambda: pose(clock), clock, sample_rate_hz=12_000.0)

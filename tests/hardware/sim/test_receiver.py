@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import asyncio
 import dataclasses
 
 import numpy as np
 import pytest
+from stepped_clock import SteppedClock
 
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -19,20 +19,6 @@ from hardware.sim.world import Emitter, World
 
 HOME = GeoPoint(50.6, 7.2)
 FREQUENCY_HZ = 868_300_000.0
-
-
-class SteppedClock:
-    """Simulated time: sleeping advances it at once."""
-
-    def __init__(self) -> None:
-        self.time_s = 1_000_000.0
-
-    def now(self) -> float:
-        return self.time_s
-
-    async def sleep(self, seconds: float) -> None:
-        self.time_s += seconds
-        await asyncio.sleep(0)
 
 
 class TurningVehicle:
@@ -73,7 +59,7 @@ async def listen(receiver: SimulatedReceiver, seconds: float) -> list[PowerSampl
 
 
 async def turn_once(world: World, rate_deg_s: float = 30.0, period_s: float = 0.05) -> Sweep:
-    clock = SteppedClock()
+    clock = SteppedClock(1_000_000.0)
     vehicle = TurningVehicle(clock, rate_deg_s, period_s)
     receiver = SimulatedReceiver(world, vehicle.telemetry, clock)
     heard = await listen(receiver, 360.0 / rate_deg_s)
@@ -105,7 +91,7 @@ async def test_same_seed_same_samples_other_seed_other_samples() -> None:
 
 
 async def test_samples_come_at_the_stated_rate_and_in_order() -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(world_with_emitter_at(0.0, 100.0), TurningVehicle(clock).telemetry, clock, 20.0)
     times = [sample.at_s for sample in await listen(receiver, 5.0)]
     assert len(times) == pytest.approx(100, abs=2)
@@ -113,7 +99,7 @@ async def test_samples_come_at_the_stated_rate_and_in_order() -> None:
 
 
 async def test_unplugged_receiver_raises_and_unopened_receiver_says_so() -> None:
-    clock = SteppedClock()
+    clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(world_with_emitter_at(0.0, 100.0), TurningVehicle(clock).telemetry, clock)
     with pytest.raises(ReceiverError, match="not open"):
         await anext(receiver.samples())
@@ -128,7 +114,7 @@ async def test_unplugged_receiver_raises_and_unopened_receiver_says_so() -> None
 
 async def test_without_an_emitter_in_band_only_noise_is_heard() -> None:
     world = world_with_emitter_at(0.0, 100.0)
-    clock = SteppedClock()
+    clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock)
     await receiver.open(FREQUENCY_HZ + 1e6)
     stream = receiver.samples()
@@ -139,7 +125,7 @@ async def test_without_an_emitter_in_band_only_noise_is_heard() -> None:
 async def test_a_tag_is_heard_once_a_pulse_and_only_in_its_own_rhythm() -> None:
     world = world_with_emitter_at(60.0, 150.0)
     tag = dataclasses.replace(world.emitters[0], pulse_period_s=1.3)
-    clock = SteppedClock()
+    clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(dataclasses.replace(world, emitters=(tag,)), TurningVehicle(clock).telemetry, clock)
     receiver.expect(Pulses(0.02, 1.3, 0.03))
     heard = await listen(receiver, 26.0)
