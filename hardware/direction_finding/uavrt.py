@@ -231,7 +231,7 @@ def _sweep(table: Table, rotation: _Rotation, tag: str | None, remarks: list[str
     others = {name: count for name, count in heard.items() if name != wanted}
     if others and tag is None:
         listed = ", ".join(f"{count} pulses of tag {name}" for name, count in sorted(others.items()))
-        remarks.append(f"{where}: tag {wanted} is used; left out: {listed} (choose with --tag)")
+        remarks.append(f"{where}: tag {wanted} is used; left out: {listed} (name another tag to use it)")
     pulses = [pulse for pulse in rotation.pulses if pulse.tag == wanted]
     offsets = Counter(pulse.antenna_offset_deg for pulse in pulses)
     if len(offsets) > 1:
