@@ -122,7 +122,7 @@ class Servers:
             stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.DEVNULL,
         )  # fmt: skip
         assert process.stdout is not None
-        url = json.loads(await asyncio.wait_for(process.stdout.readline(), 60))["url"]
+        url = json.loads(await asyncio.wait_for(process.stdout.readline(), START_PATIENCE_S))["url"]
         return Server(url, process.pid, began)
 
     async def close(self) -> None:
