@@ -40,7 +40,7 @@ class Settings(BaseSettings):
     the payload's when payloads may connect, else the simulated one."""
     antenna_pattern: Path | None = None
     """JSON pattern or turntable table of the antenna; None: the small Yagi that ships."""
-    heading_sigma_deg: float = Field(default=3.0, ge=0, le=45, allow_inf_nan=False)
+    heading_sigma_deg: float = Field(default=4.0, ge=0, le=45, allow_inf_nan=False)
     """What the vehicle's heading is uncertain by; stated with every bearing besides the sweep's own sigma."""
 
     vehicle_url: str | None = None
