@@ -5,7 +5,7 @@ only the columns that the widened wedge touches are gathered, into flat arrays w
 bearing; one long loop then needs neither atan2 nor exp (sin^2 of the error, a polynomial, four squarings) and takes
 the moments on the way; the heaviest cell is a maximum over the floats' integer view with the index in the low bits;
 the expected RMSE is only summed when its bounds do not decide. Doubling the grid costs nothing: the next gather reads
-each parent twice. Nothing is allocated inside a rollout.
+each parent twice. Nothing is allocated and no reference counted inside a rollout.
 
 One file, because numba's cache looks at the file of the compiled function only: a change in another would go unseen.
 """
