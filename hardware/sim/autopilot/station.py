@@ -183,8 +183,13 @@ class Station:
 
 
 def _as_command(message: Any) -> Command:
+    """Raises ValueError for infinities: NaN means "as it is", infinity means nothing."""
     number, values = message.command, (message.param1, message.param2, message.param3, message.param4)
-    if message.get_type() == "COMMAND_INT":
+    is_int = message.get_type() == "COMMAND_INT"
+    rest = (message.z,) if is_int else (message.param5, message.param6, message.param7)
+    if any(math.isinf(value) for value in (*values, *rest)):
+        raise ValueError("a parameter is infinite")
+    if is_int:
         given = message.x != 0x7FFFFFFF and message.y != 0x7FFFFFFF and (message.x, message.y) != (0, 0)
         lat, lon = (message.x / 1e7, message.y / 1e7) if given else (None, None)
         return Command(number, *values, lat, lon, message.z, message.frame, is_int=True)

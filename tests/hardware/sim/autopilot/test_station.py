@@ -192,3 +192,13 @@ def test_a_place_given_as_nan_is_no_place() -> None:
 
     assert ack.result == mavlink.MAV_RESULT_ACCEPTED
     assert ground.firmware.flight.demand.north == pytest.approx(ground.firmware.navigation.north, abs=0.5)
+
+
+@BOTH
+def test_an_infinite_place_is_denied(flavour: type[Firmware]) -> None:
+    ground = Ground(flavour)
+    nowhere = (-1.0, 1.0, 0.0, math.nan, math.inf, -math.inf, 20.0)
+
+    (ack,) = ground.command(mavlink.MAV_CMD_DO_REPOSITION, *nowhere)
+
+    assert ack.result == mavlink.MAV_RESULT_DENIED
