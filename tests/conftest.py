@@ -27,7 +27,7 @@ from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
 
-sys.path.insert(0, str(Path(__file__).parent))  # stepped_clock, under pytest's importlib mode
+sys.path.insert(0, str(Path(__file__).parent / "doubles"))  # not tests/ itself: it would hide the packages
 
 
 class PostgresCluster:
