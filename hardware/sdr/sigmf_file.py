@@ -113,10 +113,10 @@ def _opened(path: Path) -> sigmf.SigMFFile:
     if path.suffix.lower() in (META, DATA):
         meta, data = path.with_suffix(META), path.with_suffix(DATA)
         if not meta.is_file():
-            raise RecordingError(f"{path}: {meta.name} is missing; it tells rate, frequency and sample format")
+            raise RecordingError(f"{path}: its SigMF file {meta.name} is missing; it tells rate and sample format")
         _refuse_dataset_elsewhere(meta)
         if not data.is_file():
-            raise RecordingError(f"{path}: {data.name} is missing; it holds the samples")
+            raise RecordingError(f"{path}: its SigMF file {data.name} is missing; it holds the samples")
     elif not path.is_file():
         raise RecordingError(f"{path}: cannot be read (no such file); check the path")
     try:
