@@ -68,7 +68,7 @@ class SparseDirectionFinder:
         if noise_db is not None and np.nanmax(binned.power_db) < noise_db + HEARD_DB:
             return refused(binned, silent)
         solution = solve_sparse(bank, power, self.penalty, binned.filled)
-        parts = components(solution.r, curve.beam_deg / 4.0)
+        parts = components(solution.r, curve.beam_deg / 2.0)  # closer ones no antenna resolves
         if not parts:
             return refused(binned, "the sweep has no direction in it: the power looks the same all around")
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
