@@ -163,7 +163,8 @@ class SceneViews:
                     log.warning("the scene of view %s stays as it is: %s", view.view_id, error)
             try:
                 tick_s = LIVE_TICK_S if view.take is not None and view.take.live else TICK_S
-                await asyncio.wait_for(view.wake.wait(), tick_s * min(10, 1 + view.faults))
+                async with asyncio.timeout(tick_s * min(10, 1 + view.faults)):
+                    await view.wake.wait()
             except TimeoutError:
                 continue
 

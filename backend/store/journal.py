@@ -269,7 +269,8 @@ class SqlJournal:
             self._disk_free_bytes = shutil.disk_usage(self._spool.path).free
             self._wake.clear()
             try:
-                await asyncio.wait_for(self._wake.wait(), PROBE_S)
+                async with asyncio.timeout(PROBE_S):
+                    await self._wake.wait()
             except TimeoutError:
                 try:
                     await self._probe()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import time
 from collections import deque
@@ -227,10 +228,9 @@ class PayloadAgent:
             if room > 0:
                 batch = await asyncio.to_thread(self._spool.after, self._sent, min(self._settings.batch, room))
             if not batch:
-                try:
-                    await asyncio.wait_for(self._arrived.wait(), self._settings.flush_s)
-                except TimeoutError:
-                    continue
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(self._settings.flush_s):
+                        await self._arrived.wait()
                 continue
             run = _consecutive(batch)
             rows: list[Any] = [(s.at_s, s.frequency_hz, s.power_db, s.noise_floor_db, s.clipped) for _, s in run]

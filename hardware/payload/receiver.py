@@ -59,7 +59,8 @@ class PayloadReceiver:
         outage_s = 0.0
         while self._subscription is subscription:
             try:
-                sample = await asyncio.wait_for(subscription.get(), 0.25)
+                async with asyncio.timeout(0.25):
+                    sample = await subscription.get()
             except TimeoutError:
                 outage_s = 0.0 if self._hub.connected() else outage_s + 0.25
                 if outage_s >= self._gone_after_s:

@@ -88,7 +88,8 @@ class IqReceiver:
         blocks = aiter(self._source.blocks())
         while self._meters:
             try:
-                block = await asyncio.wait_for(anext(blocks), self._silent_after_s)
+                async with asyncio.timeout(self._silent_after_s):
+                    block = await anext(blocks)
             except StopAsyncIteration:
                 return
             except TimeoutError:
