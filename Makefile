@@ -61,7 +61,7 @@ system: setup-dev build ## whole missions over real sockets
 	$(BIN)/pytest -m "system and not browser" --durations 8
 
 stories: setup-dev build browser ## what a user does on the page, in Chromium; a process of its own: it keeps an event loop
-	$(BIN)/pytest -m browser --durations 8
+	$(BIN)/pytest -n 2 --dist loadfile -m browser --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables computed anew: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
