@@ -15,6 +15,9 @@ from planner.types import Estimate, Estimator, FloatArray, Ring
 TIE_BITS = 20
 """Weights are compared by their leading 64 - 20 bits (2e-10 relative): rounding must not decide between equal cells."""
 
+HEAVY_POINTS = 8
+"""So many of the heaviest points are tried as the geometric median."""
+
 MEDIAN_STEPS = 100
 
 
@@ -41,7 +44,7 @@ def most_likely(mass: FloatArray) -> int:
 def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: float) -> tuple[float, float]:
     """The point with the least mean distance, by Weiszfeld's iteration from the mean until a step < tolerance (m).
 
-    The iteration is slow where the median is a point with half of the mass: the heaviest point is tried besides.
+    The iteration is slow where the median is one of the heavy points: the heaviest are tried besides.
     """
     px, py = float(mass @ x), float(mass @ y)
     for _ in range(MEDIAN_STEPS):
@@ -52,9 +55,9 @@ def geometric_median(mass: FloatArray, x: FloatArray, y: FloatArray, tolerance: 
         px, py = qx, qy
         if moved < tolerance:
             break
-    heaviest = int(np.argmax(mass))
-    at_median, at_heaviest = (mass @ np.hypot(x - a, y - b) for a, b in ((px, py), (x[heaviest], y[heaviest])))
-    return (px, py) if at_median <= at_heaviest else (float(x[heaviest]), float(y[heaviest]))
+    heaviest = np.argsort(-mass, kind="stable")[:HEAVY_POINTS]
+    tried = [(px, py), *((float(x[k]), float(y[k])) for k in heaviest)]
+    return min(tried, key=lambda at: float(mass @ np.hypot(x - at[0], y - at[1])))
 
 
 def confidence_region(belief: GridBelief, share: float = 0.95) -> Ring:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from planner.belief.estimate import confidence_region, estimate, geometric_median, mass_within, most_likely
@@ -51,6 +51,7 @@ def test_doubling_does_not_move_the_mode_to_a_corner_of_its_parent():
     assert corner == pytest.approx(0.5)
 
 
+@example([1.0, 1.0, 0.03125], 0)
 @given(st.lists(st.floats(0.01, 1.0), min_size=3, max_size=30), st.integers(0, 1000))
 def test_nothing_beats_the_geometric_median(weights, seed):
     rng = np.random.default_rng(seed)
