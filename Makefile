@@ -55,7 +55,7 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	cd frontend && npm run --silent check
 
 unit: setup-dev ## tests without a vehicle or a browser
-	$(BIN)/pytest -n 2 -m "not system and not browser and not long"
+	$(BIN)/pytest -n 2 --hypothesis-profile ci -m "not system and not browser and not long"
 
 system: setup-dev build ## whole missions over real sockets
 	$(BIN)/pytest -m "system and not browser" --durations 8
