@@ -199,8 +199,14 @@ class LocalizationRule:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """localized, or the reasons (in the operator's words) why not yet. consistent: the wedges have a common point."""
+    """localized, or the reasons (in the operator's words) why not yet.
+
+    consistent: the wedges have a common point. estimate: what the belief says, None when the bearings are inconsistent.
+    against: indices of the bearings that do not point at the estimate.
+    """
 
     localized: bool
     consistent: bool
     reasons: tuple[str, ...]
+    estimate: Estimate | None = None
+    against: tuple[int, ...] = ()

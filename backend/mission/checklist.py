@@ -12,7 +12,6 @@ from backend.mission.localization import Localization, localization
 from backend.mission.safety import Situation, start_vetoes
 from backend.spec import MissionSpec, Place
 from hardware.readings import PreflightCheck, Telemetry
-from planner.types import PlannerError
 
 RECEIVER_WALL_S = 3.0
 
@@ -33,11 +32,8 @@ def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[Localization | 
         return None, _fact("area", False, "the vehicle's home is not known yet", "wait for a GPS fix")
     try:
         task = localization(mission, home, amsl)
-        task.belief(())
     except MissionInputError as error:
         return None, _fact("area", False, str(error), error.remedy)
-    except PlannerError as error:
-        return None, _fact("area", False, str(error), "change the area or the prior")
     return task, _fact("area", True, f"{task.limits.fence.area:.0f} m2 to fly in", "")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 
 import numpy as np
 from shapely import Polygon as ShapelyPolygon
@@ -16,15 +17,17 @@ from shapely import unary_union
 from backend import spec
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
 from backend.mission import area
+from backend.mission.errors import MissionInputError
 from backend.mission.safety import Limits
 from backend.spec import MissionSpec, Place
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import GeoPoint
-from planner.belief.estimate import confidence_region, estimate
-from planner.belief.grid import GridBelief, digest, fold
-from planner.belief.verdict import points_at, verdict
+from planner.belief.estimate import confidence_region
+from planner.belief.grid import GridBelief, digest, prior_belief, update
+from planner.belief.verdict import verdict
 from planner.types import (
     Bearing,
+    Estimate,
     FullMotion,
     GaussianPrior,
     InconsistentBearings,
@@ -33,6 +36,7 @@ from planner.types import (
     LocalizationRule,
     Motion,
     Peak,
+    PlannerError,
     Prior,
     Problem,
     Ring,
@@ -51,6 +55,7 @@ class Localization:
     mission: MissionSpec
     frame: LocalFrame
     problem: Problem
+    prior: GridBelief
     rule: LocalizationRule
     limits: Limits
 
@@ -72,7 +77,7 @@ class Localization:
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
         """None when the bearings have no common point and none may be an outlier."""
         try:
-            return fold(self.problem, bearings)
+            return reduce(update, bearings, self.prior)
         except InconsistentBearings:
             return None
 
@@ -81,7 +86,8 @@ class Localization:
         found = self.belief(bearings)
         if found is not None:
             return found
-        return fold(self.problem, [replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings])
+        doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)
+        return reduce(update, doubted, self.prior)
 
     def belief_fact(self, measured: Sequence[BearingMeasured]) -> tuple[BeliefUpdated, GridBelief]:
         """The fact to record, and the belief to show and to plan with."""
@@ -91,24 +97,16 @@ class Localization:
         shown = self.planning_belief(bearings) if folded is None else folded
         fact = BeliefUpdated(
             bearings=len(bearings),
-            estimate=None if folded is None else self.estimate_fact(folded),
+            estimate=None if folded is None or said.estimate is None else self._estimate_fact(folded, said.estimate),
             consistent=said.consistent,
             localized=said.localized,
             not_yet=list(said.reasons),
-            contradicting=[] if folded is None else self._contradicting(folded, measured, bearings),
+            contradicting=[measured[index].bearing_id for index in said.against],
             digest=digest(shown),
         )
         return fact, shown
 
-    def _contradicting(
-        self, belief: GridBelief, measured: Sequence[BearingMeasured], bearings: Sequence[Bearing]
-    ) -> list[str]:
-        spread = estimate(belief, self.problem.estimator)
-        pairs = zip(measured, bearings, strict=True)
-        return [fact.bearing_id for fact, bearing in pairs if not points_at(bearing, spread.x, spread.y)]
-
-    def estimate_fact(self, belief: GridBelief) -> EstimateFact:
-        spread = estimate(belief, self.problem.estimator)
+    def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:
         place = self.frame.to_geo(spread.x, spread.y)
         region = confidence_region(belief)
         variances, directions = np.linalg.eigh(spread.covariance)
@@ -180,7 +178,11 @@ def localization(mission: MissionSpec, home: Place, home_amsl_m: float) -> Local
         speed_m_s=flight.speed_m_s,
         measurement_time_s=sensor.measurement_time_s,
     )
-    return Localization(mission, frame, problem, rule, limits)
+    try:
+        prior = prior_belief(problem)
+    except PlannerError as error:
+        raise MissionInputError(str(error), "let the prior reach into the search area", "prior") from error
+    return Localization(mission, frame, problem, prior, rule, limits)
 
 
 def _motion(motion: spec.MotionSpec) -> Motion:

@@ -72,7 +72,7 @@ class MissionService:
             return
         try:
             task = localization(state.mission, state.home, state.home_amsl_m)
-        except (MissionInputError, PlannerError) as error:
+        except MissionInputError as error:
             await self._close_interrupted(mission_id, f"it can no longer be read: {error}")
             return
         runner = self._runner = Runner(mission_id, state, last_seq, task, self._equipment)
@@ -115,7 +115,7 @@ class MissionService:
 
     async def create(self, spec: MissionSpec, by: str) -> str:
         """Draft a mission. Raises MissionInputError when the specification makes no sense."""
-        self._check_spec(spec)
+        await asyncio.to_thread(self._check_spec, spec)
         mission_id = str(uuid4())
         await self._append(mission_id, [MissionDrafted(spec=spec)])
         log.info("mission %s drafted by %s", mission_id, by)
@@ -123,7 +123,7 @@ class MissionService:
 
     async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
         """Raises MissionNotFound, MissionConflict once it has started, MissionInputError."""
-        self._check_spec(spec)
+        await asyncio.to_thread(self._check_spec, spec)
         async with self._lock(mission_id):
             state, _ = await self._load(mission_id)
             if state.phase not in GROUND:

@@ -29,8 +29,9 @@ def estimate(belief: GridBelief, estimator: Estimator) -> Estimate:
     mass, x, y = _support(belief)
     px, py = _point(mass, x, y, estimator, belief)
     dx, dy = x - px, y - py
-    covariance = np.array([[mass @ dx**2, mass @ (dx * dy)], [mass @ (dx * dy), mass @ dy**2]])  # (3.34)
-    expected_rmse = float(mass @ np.hypot(dx, dy))  # (3.58)
+    xx, xy, yy = ((mass * product).sum() for product in (dx * dx, dx * dy, dy * dy))
+    covariance = np.array([[xx, xy], [xy, yy]])  # (3.34)
+    expected_rmse = float((mass * np.hypot(dx, dy)).sum())  # (3.58)
     cells = belief.density[belief.density > 0]
     return Estimate(px, py, covariance, expected_rmse, entropy=float(-(cells @ np.log(cells))))  # (3.59)
 

@@ -23,23 +23,23 @@ def verdict(
     consistent = belief is not None and wedges_meet(problem.area, bearings)
     if belief is None:
         return Verdict(False, False, (_INCONSISTENT,))
-    if not bearings:
-        return Verdict(False, consistent, ("not yet: no bearing taken",))
     spread = estimate(belief, problem.estimator)
-    supporting = [b for b in bearings if points_at(b, spread.x, spread.y)]
+    if not bearings:
+        return Verdict(False, consistent, ("not yet: no bearing taken",), spread)
+    against = tuple(i for i, b in enumerate(bearings) if not points_at(b, spread.x, spread.y))
+    supporting = [b for i, b in enumerate(bearings) if i not in against]
     reasons = [
         *_place_reasons(rule, bearings, supporting),
         *_angle_reasons(rule, supporting, spread.x, spread.y),
     ]
-    against = len(bearings) - len(supporting)
-    if against and len(supporting) < max(3, 2 * against):
-        share = f"{against} of {len(bearings)} bearings contradict"
+    if against and len(supporting) < max(3, 2 * len(against)):
+        share = f"{len(against)} of {len(bearings)} bearings contradict"
         reasons.append(f"not yet: {share} the estimate, another look is needed")
     elif not wedges_meet(problem.area, supporting):
         reasons.append(_INCONSISTENT)
     if not spread.expected_rmse < rule.threshold:
         reasons.append(f"not yet: expected error {spread.expected_rmse:.0f} m, wanted below {rule.threshold:.0f} m")
-    return Verdict(not reasons, consistent, tuple(reasons))
+    return Verdict(not reasons, consistent, tuple(reasons), spread, against)
 
 
 _INCONSISTENT = "not yet: the bearings contradict each other, at least one is an outlier"

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from backend.events import BearingMeasured, Peak
+from backend.mission.errors import MissionInputError
 from backend.mission.localization import Localization, localization
 from backend.spec import (
     FlightSpec,
@@ -124,6 +125,12 @@ def test_priors_become_the_planners() -> None:
     assert np.allclose(gaussian.covariance, np.diag([100.0, 1600.0]))
     ring = task(prior=RingPriorSpec(centre=_at(0, 0), inner_m=10.0, outer_m=100.0)).problem.prior
     assert ring == RingPrior(pytest.approx(0, abs=1e-6), pytest.approx(0, abs=1e-6), 10.0, 100.0)  # type: ignore[arg-type]
+
+
+def test_a_prior_that_misses_the_area_is_refused() -> None:
+    with pytest.raises(MissionInputError, match="no mass inside the target area") as refused:
+        task(prior=RingPriorSpec(centre=_at(5000, 0), inner_m=10.0, outer_m=100.0))
+    assert refused.value.field == "prior"
 
 
 def test_flight_area_and_zones_reach_the_planner_and_the_vetoes() -> None:
