@@ -219,7 +219,7 @@ def main() -> None:
                 flush=True,
             )
     if arguments.reliability:
-        classes = reliability(max(arguments.sweeps // 10, 20), arguments.seed)
+        classes = reliability(max(arguments.sweeps // 5, 20), arguments.seed)
         for stated, made, count in classes:
             print(f"stated {stated:.2f} deg: error {made:.2f} deg ({count} sweeps)", flush=True)
         plot_reliability(classes, arguments.reliability)

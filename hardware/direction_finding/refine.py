@@ -14,7 +14,9 @@ chapter 3), tempered for residuals that err alike:
 
 r: the residuals' correlation summed over neighbouring headings (Newey & West 1987); it weighs shape against shape. q:
 the same, but weighted by how much each bin turns the bearing, times how much larger the residuals are there (White
-1980); only correlation on the scale of the pattern's flanks makes a bearing uncertain.
+1980); only correlation on the scale of the pattern's flanks makes a bearing uncertain. Near the noise the wave and its
+fading are heard over an arc only: so short a record shows too little of its correlation (Kiefer & Vogelsang 2005), and
+q is raised by (1 + 40 / arc) / (1 + 40 / 360), arc = 360 mean s.
 
 The bearing is the mean of p within the likeliest kind; sigma its spread about it over all kinds. So an echo that cannot
 be told from the direct wave, or a view from above, widens sigma by as much as the sweep leaves it possible.
@@ -279,7 +281,9 @@ def _alike(heading_deg: NDArray[np.float64], look: _Look, weight: NDArray[np.flo
     rho = rho / max(float(rho[0]), 1e-12)
     correlated = float(np.einsum("i,ij,j", turn, rho[lag] * kernel, turn)) / steep
     uneven = float(turn**2 @ z**2) / steep * z.size / squares
-    return max(shape, 1.0), max(correlated, 1.0) * max(uneven, 1.0)
+    arc_deg = 360.0 * max(float(look.share.mean()), 1.0 / BINS)
+    short = (1.0 + CORRELATION_DEG / arc_deg) / (1.0 + CORRELATION_DEG / 360.0)
+    return max(shape, 1.0), max(correlated, 1.0) * max(uneven, 1.0) * short
 
 
 def _level_db(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
