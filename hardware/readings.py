@@ -95,11 +95,12 @@ class PowerSample:
 
 @dataclass(frozen=True, slots=True)
 class HeadingSample:
-    """The vehicle's nose and place at one moment."""
+    """The vehicle's nose and place at one moment. displaced_m: how far jumps have carried its reported position."""
 
     at_s: float
     heading_deg: float
     position: GeoPoint | None = None
+    displaced_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +108,8 @@ class Sweep:
     """Received power against the vehicle's heading over about one turn, as recorded (unbinned).
 
     at_s, heading_deg, power_db: (n,), one row a sample, in time order. `heading_deg` is the nose's; the antenna's
-    offset to it belongs to the antenna pattern.
+    offset to it belongs to the antenna pattern. drift_m: how far from `position` the vehicle may have been: it moved
+    while it turned, or its reported position had jumped.
     """
 
     at_s: NDArray[np.float64]

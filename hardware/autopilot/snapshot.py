@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from hardware.autopilot.boot_clock import BootClock
-from hardware.autopilot.ground import distance_m
+from hardware.autopilot.ground import north_east_m
 from hardware.readings import Controller, GeoPoint, HeadingSample, Telemetry
 
 Fields = dict[str, Any]
@@ -61,6 +61,8 @@ class Snapshot:
     satellites: int | None = None
     home: GeoPoint | None = None
     home_amsl_m: float | None = None
+    _displaced_m: tuple[float, float] = (0.0, 0.0)
+    """(north, east) the sum of all jumps of this flight: a jump back undoes one."""
     _boot_clock: BootClock = field(default_factory=BootClock)
     _headings: deque[HeadingSample] = field(default_factory=deque)
 
@@ -117,7 +119,7 @@ class Snapshot:
         self.attitude_heard_at_s = heard_at_s
         history = self._headings
         if not history or at > history[-1].at_s:
-            history.append(HeadingSample(at, self.heading_deg, self.position))
+            history.append(HeadingSample(at, self.heading_deg, self.position, math.hypot(*self._displaced_m)))
         while at - history[0].at_s > HISTORY_S:
             history.popleft()
 
@@ -126,18 +128,27 @@ class Snapshot:
         if lat == 0.0 and lon == 0.0:
             return  # the autopilot has no position yet
         place, at = GeoPoint(lat, lon), self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
-        self.jumped_m = self._jump(place, at)
+        self._jump(place, at)
         self.position, self.position_at_s = place, at
         self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
         self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
 
-    def _jump(self, place: GeoPoint, at_s: float) -> float | None:
-        """How far the position moved when no vehicle could have flown so far since the last one, else None."""
+    def _jump(self, place: GeoPoint, at_s: float) -> None:
+        """A position so far from the last one that no vehicle could have flown there is a jump."""
+        self.jumped_m = None
+        if not self.in_air:
+            self._displaced_m = (0.0, 0.0)
         if self.position is None or self.position_at_s is None:
-            return None
-        moved = distance_m(self.position, place)
-        possible = JUMP_M + (JUMP_M_S + (self.speed_m_s or 0.0)) * max(0.0, at_s - self.position_at_s)
-        return moved if moved > possible else None
+            return
+        north, east = north_east_m(self.position, place)
+        elapsed_s = max(0.0, at_s - self.position_at_s)
+        if math.hypot(north, east) <= JUMP_M + (JUMP_M_S + (self.speed_m_s or 0.0)) * elapsed_s:
+            return
+        self.jumped_m = math.hypot(north, east)
+        if self.in_air:
+            north_m_s, east_m_s, _ = self.velocity_ned or (0.0, 0.0, 0.0)
+            before = self._displaced_m
+            self._displaced_m = (before[0] + north - north_m_s * elapsed_s, before[1] + east - east_m_s * elapsed_s)
 
     def _battery(self, fields: Fields, heard_at_s: float) -> None:
         percent = fields["battery_remaining"]

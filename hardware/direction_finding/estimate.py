@@ -32,6 +32,9 @@ HEARD_DB = 3.0
 """Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
 MAXIMUM_SIGMA_DEG = 60.0
+EMITTER_AWAY_M = 100.0
+"""How far away an emitter is taken to be when a place that is not sure is made an angle: the planner's places lie 50 to
+150 m from where it looks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +49,8 @@ class Component:
 class SparseDirectionFinder:
     """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices.
 
-    heading_sigma_deg: what the vehicle's heading is uncertain by, added in quadrature to the sweep's own sigma: no
-    sweep can show it, and it is the same all around.
+    Added in quadrature to the sweep's own sigma, since no sweep can show it: heading_sigma_deg, what the vehicle's
+    heading is uncertain by, and atan(drift / 100 m), what the uncertain place makes of it.
     """
 
     minimum_quality: float = MINIMUM_QUALITY
@@ -74,7 +77,7 @@ class SparseDirectionFinder:
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
             return refused(binned, silent)
-        return self._reading(curve, binned, parts, refined, noise_db)
+        return self._reading(curve, binned, parts, refined, noise_db, sweep.drift_m)
 
     def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve, Alternatives]:
         key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes()
@@ -91,8 +94,11 @@ class SparseDirectionFinder:
         parts: list[Component],
         refined: Refined,
         noise_db: float | None,
+        drift_m: float,
     ) -> BearingReading:
-        bearing, sigma = refined.bearing_deg, math.hypot(refined.sigma_deg, self.heading_sigma_deg)
+        place_sigma_deg = math.degrees(math.atan2(drift_m, EMITTER_AWAY_M))
+        bearing = refined.bearing_deg
+        sigma = math.hypot(refined.sigma_deg, self.heading_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
         peaks = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))

@@ -85,7 +85,7 @@ def assemble_sweep(
 
 
 def _place_and_drift(track: list[HeadingSample], position: GeoPoint | None) -> tuple[GeoPoint, float]:
-    """(mean place, largest distance from it in metres) while turning."""
+    """(mean place, largest distance from it in metres) while turning; no nearer than jumps have displaced the place."""
     places = [h.position for h in track if h.position is not None]
     if not places:
         if position is None:
@@ -94,7 +94,7 @@ def _place_and_drift(track: list[HeadingSample], position: GeoPoint | None) -> t
     lat, lon = np.array([p.lat_deg for p in places]), np.array([p.lon_deg for p in places])
     mean = position or GeoPoint(float(lat.mean()), float(lon.mean()))
     east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, mean.lat_deg, mean.lon_deg, 0.0)
-    return mean, float(np.hypot(east, north).max())
+    return mean, max(float(np.hypot(east, north).max()), *(h.displaced_m for h in track))
 
 
 def turned_deg(heading_deg: NDArray[np.float64]) -> float:

@@ -105,6 +105,25 @@ def test_a_position_no_vehicle_could_have_flown_to_is_a_jump() -> None:
     assert snapshot.jumped_m is None  # 9 m after 8 s of silence
 
 
+def test_a_jump_in_flight_makes_the_place_unsure_until_it_jumps_back() -> None:
+    snapshot = Snapshot()
+
+    def displaced_m(boot_ms: int, north: int) -> float:
+        heard_at_s = T0 + boot_ms / 1e3
+        snapshot.fold("GLOBAL_POSITION_INT", HERE | {"time_boot_ms": boot_ms, "lat": HERE["lat"] + north}, heard_at_s)
+        snapshot.fold("ATTITUDE", attitude(boot_ms, 1.0), heard_at_s)
+        return snapshot.headings(0.0)[-1].displaced_m
+
+    snapshot.fold("EXTENDED_SYS_STATE", {"landed_state": 1}, T0)
+    displaced_m(1000, 0)
+    assert displaced_m(1100, 3000) == 0.0  # on the ground the position may still be settling
+    snapshot.fold("EXTENDED_SYS_STATE", {"landed_state": 2}, T0)
+    assert displaced_m(1200, 3050) == 0.0
+    assert displaced_m(1300, 5750) == pytest.approx(30.0, abs=0.5)
+    assert displaced_m(1400, 5780) == pytest.approx(30.0, abs=0.5)
+    assert displaced_m(1500, 3110) == pytest.approx(0.0, abs=1.0)
+
+
 def test_in_air_without_a_landed_state_is_judged_by_height() -> None:
     snapshot = Snapshot()
     snapshot.fold("GLOBAL_POSITION_INT", HERE, T0)

@@ -101,6 +101,14 @@ def test_uncertain_heading_adds_to_sigma() -> None:
     assert unsure.bearing_deg == sure.bearing_deg
 
 
+def test_unsure_place_adds_to_sigma() -> None:
+    sweep = simulate(Condition("clear"), beam(60.0), 90.0, np.random.default_rng(6))
+    sure = FINDER.estimate(sweep, beam(60.0))
+    unsure = FINDER.estimate(dataclasses.replace(sweep, drift_m=30.0), beam(60.0))
+    assert unsure.sigma_deg == pytest.approx(math.hypot(sure.sigma_deg, 16.7), rel=1e-3)
+    assert unsure.bearing_deg == sure.bearing_deg
+
+
 def test_wave_below_the_noise_is_not_believed() -> None:
     rng = np.random.default_rng(2)
     _, sweep = world_sweep(rng, 300.0, -52.0, 0)

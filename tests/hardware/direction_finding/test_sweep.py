@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -48,6 +50,13 @@ def test_samples_in_a_gap_of_the_headings_or_outside_them_are_left_out() -> None
     assert sweep.at_s.min() >= 0.0
     assert sweep.at_s.max() <= 10.0
     assert not ((sweep.at_s > 4.0) & (sweep.at_s < 6.9)).any()
+
+
+def test_place_that_had_jumped_is_as_unsure_as_the_jump_was_long() -> None:
+    track = [replace(h, displaced_m=30.0 if h.at_s < 1.0 else 0.0) for h in headings(np.arange(0.0, 10.0, 0.1), 30.0)]
+    heard = powers(np.arange(1.0, 9.0, 0.1))
+    assert assemble_sweep(heard, track, frequency_hz=868e6, altitude_amsl_m=0.0).drift_m == 30.0
+    assert assemble_sweep(heard, track[20:], frequency_hz=868e6, altitude_amsl_m=0.0).drift_m < 1.0
 
 
 def test_clock_offset_of_the_receiver_is_taken_out() -> None:
