@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from backend.events import (
+    BearingMeasured,
     BeliefUpdated,
     ControlTaken,
     HoldOrdered,
@@ -75,6 +76,8 @@ from backend.mission.step import (
 )
 
 LANDING_PATIENCE_S = 120.0
+UNSURE_PLACE_M = 5.0
+"""A vehicle that hovers stays within this; what it reports beyond is told."""
 
 
 def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionState, tuple[Effect, ...]]:
@@ -166,6 +169,7 @@ def _finished(step: Step, given: InTheAir | Planned | NothingToPlan | Arrived | 
             measure(step, "place reached")
         case SweepTaken(bearing=bearing) if state.phase == "measuring":
             step.record(bearing)
+            _doubt_place(step, bearing)
             go_on(step, "bearing taken")
         case SweepRefused(sweep=sweep) if state.phase == "measuring":
             step.record(sweep)
@@ -175,6 +179,14 @@ def _finished(step: Step, given: InTheAir | Planned | NothingToPlan | Arrived | 
                 measure(step, f"taken again: {sweep.reason}")
         case _:
             return
+
+
+def _doubt_place(step: Step, bearing: BearingMeasured) -> None:
+    if bearing.drift_m > UNSURE_PLACE_M:
+        text = f"the place of bearing {bearing.place_number} is unsure by {bearing.drift_m:.0f} m; it counts for less"
+        alert(step, "place", "caution", text, "its reported position jumped, or wind moved it: look at GPS and wind")
+    else:
+        clear_alerts(step, "place")
 
 
 def _belief(step: Step, given: BeliefReady) -> None:

@@ -33,7 +33,7 @@ from backend.mission.safety import Veto
 from backend.mission.state import MissionState, evolve
 
 Topic = Literal[
-    "vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety", "ground", "storage"
+    "vehicle", "receiver", "console", "payload", "pilot", "battery", "place", "failure", "safety", "ground", "storage"
 ]
 
 

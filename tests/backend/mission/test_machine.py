@@ -26,7 +26,7 @@ from missions import (
 )
 
 from backend import commands
-from backend.events import CommandRefused, MissionEnded, PlanChosen, SafetyVetoed
+from backend.events import AlertRaised, CommandRefused, MissionEnded, PlanChosen, SafetyVetoed
 from backend.mission import effects as asked
 from backend.mission import inputs
 from backend.mission.effects import Effect
@@ -337,6 +337,21 @@ def test_a_localized_mission_whose_vehicle_landed_in_hold_is_done() -> None:
     walk.give(belief_ready(walk.state, localized=True))
     walk.give(inputs.Landed())
     assert (walk.state.phase, walk.state.outcome) == ("done", "localized")
+
+
+def test_a_place_that_jumped_is_told_until_a_bearing_comes_from_a_sure_one() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1).model_copy(update={"drift_m": 30.0})))
+    told = [r.event for r in walk.recorded if isinstance(r.event, AlertRaised)]
+    assert [(alert.level, alert.text) for alert in told] == [
+        ("caution", "the place of bearing 1 is unsure by 30 m; it counts for less")
+    ]
+    walk.give(belief_ready(walk.state))
+    walk.give(inputs.Planned(plan(2)))
+    walk.give(inputs.Arrived(HOME, 0.3, 9.0))
+    assert walk.state.open_alerts
+    walk.give(inputs.SweepTaken(bearing(2)))
+    assert not walk.state.open_alerts
 
 
 def test_the_end_of_a_claim_against_a_bearing_says_so() -> None:
