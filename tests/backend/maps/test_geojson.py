@@ -18,6 +18,13 @@ def read(document: object):
     return read_geojson(json.dumps(document).encode())
 
 
+def read_or_refusal(document: object):
+    try:
+        return read(document)
+    except MapRefused as refused:
+        return refused
+
+
 def collection(*geometries: object) -> dict[str, object]:
     features = [
         {"type": "Feature", "geometry": each, "properties": {"name": f"n{i}"}} for i, each in enumerate(geometries)
@@ -124,12 +131,36 @@ JSON = st.recursive(
 )
 
 
+POSITION = st.lists(st.floats(-200, 200) | st.none(), max_size=3)
+GEOMETRY = st.fixed_dictionaries(
+    {"type": KINDS, "coordinates": st.recursive(POSITION, lambda inner: st.lists(inner, max_size=4), max_leaves=12)}
+)
+
+
 @settings(max_examples=200, deadline=None)
 @given(JSON)
-def test_any_json_is_read_or_refused(document: object) -> None:
-    try:
-        reading = read(document)
-    except MapRefused:
+def test_any_json_is_read_as_what_reads_the_same_again_or_refused_with_a_remedy(document: object) -> None:
+    reading = read_or_refusal(document)
+    if isinstance(reading, MapRefused):
+        assert str(reading).strip()
+        assert reading.remedy.strip()
         return
-    for feature in reading.features:
-        feature.model_dump_json()
+    again = read({"type": "FeatureCollection", "features": [feature.model_dump() for feature in reading.features]})
+    assert again.features == reading.features
+    assert again.notes == []
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(GEOMETRY | JSON, min_size=1, max_size=5))
+def test_any_feature_is_drawn_on_earth_or_named(geometries: list[object]) -> None:
+    document = collection(*geometries)
+    reading = read(document)
+    drawn = {feature.properties["name"] for feature in reading.features}
+    empty = {"type": "GeometryCollection"}
+    for number, geometry in enumerate(geometries):
+        named = any(f'"n{number}"' in note for note in reading.notes)
+        assert named or f"n{number}" in drawn or (isinstance(geometry, dict) and empty.items() <= geometry.items())
+    if reading.features:
+        west, south, east, north = reading.bounds()
+        assert -180 <= west <= east <= 180
+        assert -90 <= south <= north <= 90
