@@ -190,7 +190,10 @@ class SweepRejected(Fact):
 
 
 class BearingMeasured(Fact):
-    """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard."""
+    """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
+
+    measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
+    """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
     bearing_id: str
@@ -206,6 +209,7 @@ class BearingMeasured(Fact):
     drift_m: float
     binned_db: list[Known]
     fitted_db: list[Known]
+    measurement_time_s: Known = None
 
 
 class RecordingImported(Fact):

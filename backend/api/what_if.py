@@ -74,11 +74,11 @@ def _as_wanted(fact: BearingMeasured, wanted: WhatIfRequest) -> BearingMeasured:
 
 
 def _plan(task: Localization, measured: Sequence[BearingMeasured], platform: Place) -> tuple[PlanChosen | None, str]:
-    bearings = task.planner_bearings(measured)
+    belief = task.planning_belief(task.planner_bearings(measured))
     here = task.frame.to_enu(GeoPoint(platform.lat, platform.lon))
     number = max((fact.place_number for fact in measured), default=0) + 1
     try:
-        return next_place(task, task.planning_belief(bearings), bearings, here, number, (), threads=1), ""
+        return next_place(task, belief, measured, here, number, (), threads=1), ""
     except PlannerError as error:
         return None, str(error)
 

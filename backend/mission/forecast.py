@@ -52,9 +52,8 @@ def forecast(
     task: Localization, measured: Sequence[BearingMeasured], platform: Place, place: Place, situation: Situation | None
 ) -> Forecast:
     """situation None: the vehicle is not asked (before take-off)."""
-    bearings = task.planner_bearings(measured)
     start, end = (task.frame.to_enu(GeoPoint(p.lat, p.lon)) for p in (platform, place))
-    cost = cost_of(task, task.planning_belief(bearings), bearings, start, end)
+    cost = cost_of(task, task.planning_belief(task.planner_bearings(measured)), measured, start, end)
     altitude, point = task.limits.home_amsl_m + task.mission.flight.altitude_relative_m, GeoPoint(place.lat, place.lon)
     if situation is None:
         vetoes = standing_vetoes(task.limits, point, altitude)

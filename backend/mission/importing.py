@@ -103,7 +103,7 @@ def import_facts(
         number += 1
         kept.append(KeptSweep(sweep_id, number, sweep))
         reading = finder.estimate(sweep, mounted(pattern, recorded, upload.offset_deg))
-        fact = sweep_fact(mission, sweep_id, sweep, reading, number, attempt=1)
+        fact = sweep_fact(mission, sweep_id, sweep, reading, number, attempt=1, measurement_time_s=None)
         facts += [SweepStarted(place_number=number, attempt=1), fact]
         state = evolve(state, fact, began_s or 0.0)
         if isinstance(fact, BearingMeasured):

@@ -41,8 +41,8 @@ async def measure(
     equipment: Equipment, mission: MissionSpec, mission_id: str, listening: Listening, place_number: int, attempt: int
 ) -> Measured:
     """Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all."""
-    began_s = equipment.clock.now()
-    progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, began_s))
+    ordered_s = equipment.clock.now()
+    progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, ordered_s))
     try:
         began_s, ended_s = await turn_and_listen(equipment, mission, listening)
         await equipment.clock.sleep(LATE_SAMPLES_S)
@@ -75,13 +75,21 @@ async def measure(
         fact = _rejected(sweep_id, place_number, attempt, place, 0.0, str(error), nothing, nothing)
         return Measured(sweep_id, None, fact)
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
-    return Measured(sweep_id, sweep, sweep_fact(mission, sweep_id, sweep, reading, place_number, attempt))
+    taken_s = equipment.clock.now() - ordered_s
+    fact = sweep_fact(mission, sweep_id, sweep, reading, place_number, attempt, taken_s)
+    return Measured(sweep_id, sweep, fact)
 
 
 def sweep_fact(
-    mission: MissionSpec, sweep_id: str, sweep: Sweep, reading: BearingReading, place_number: int, attempt: int
+    mission: MissionSpec,
+    sweep_id: str,
+    sweep: Sweep,
+    reading: BearingReading,
+    place_number: int,
+    attempt: int,
+    measurement_time_s: float | None,
 ) -> BearingMeasured | SweepRejected:
-    """What is recorded of a sweep: its bearing, or why it has none."""
+    """What is recorded of a sweep: its bearing, or why it has none. measurement_time_s None: nobody waited for it."""
     place = Place(lat=sweep.position.lat_deg, lon=sweep.position.lon_deg)
     binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
     wanted = mission.sensor.minimum_quality
@@ -114,6 +122,7 @@ def sweep_fact(
         drift_m=sweep.drift_m,
         binned_db=binned,
         fitted_db=fitted,
+        measurement_time_s=measurement_time_s,
     )
 
 

@@ -9,10 +9,11 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from statistics import fmean, geometric_mean
 
 import numpy as np
 
-from backend.events import CandidateFact, PlanChosen
+from backend.events import BearingMeasured, CandidateFact, PlanChosen
 from backend.mission.localization import Localization
 from backend.spec import Place
 from hardware.readings import GeoPoint
@@ -21,7 +22,7 @@ from planner.plan import expected_time_from, plan
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
 from planner.travel import travel_path
-from planner.types import Bearing, Decision, PlannerError, Problem, Ring
+from planner.types import Decision, PlannerError, Problem, Ring
 
 COST_ROLLOUTS = 200
 
@@ -29,7 +30,7 @@ COST_ROLLOUTS = 200
 def next_place(
     task: Localization,
     belief: GridBelief,
-    bearings: Sequence[Bearing],
+    measured: Sequence[BearingMeasured],
     platform: tuple[float, float],
     place_number: int,
     avoid: Sequence[Place],
@@ -38,7 +39,7 @@ def next_place(
     """The planner's choice as a fact. Raises PlannerError when no place is allowed or reachable."""
     began = time.perf_counter()
     without = [task.frame.to_enu(GeoPoint(p.lat, p.lon)) for p in avoid]
-    decision = decide(task, belief, bearings, platform, without, threads)
+    decision = decide(task, belief, measured, platform, without, threads)
     plan_ms = 1e3 * (time.perf_counter() - began)
     times = decision.times
     chosen = next((c for c in decision.candidates if (c.x, c.y) == (decision.x, decision.y)), None)
@@ -59,7 +60,7 @@ def next_place(
 def decide(
     task: Localization,
     belief: GridBelief,
-    bearings: Sequence[Bearing],
+    measured: Sequence[BearingMeasured],
     platform: tuple[float, float],
     without: Sequence[tuple[float, float]] = (),
     threads: int = 1,
@@ -69,9 +70,9 @@ def decide(
     if wanted.method == "base_policy":
         return base_policy_decision(task, belief, platform, without)
     return plan(
-        foreseen(task.problem, bearings),
+        foreseen(task.problem, measured),
         belief,
-        bearings,
+        task.planner_bearings(measured),
         platform,
         selection=wanted.selection,
         sampling=wanted.sampling,
@@ -83,14 +84,15 @@ def decide(
     )
 
 
-def foreseen(problem: Problem, bearings: Sequence[Bearing]) -> Problem:
-    """The problem with the sensor as this mission found it, for the bearings to come.
+def foreseen(problem: Problem, measured: Sequence[BearingMeasured]) -> Problem:
+    """The problem with the sensor as this mission found it, for the bearings to come; the specification counts as one.
 
-    sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): the specification counts as one bearing. A geometric mean, since
-    sigma is a scale: one bad sweep in a good signal does not undo the others.
+    sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): a geometric mean, since sigma is a scale: one bad sweep in a
+    good signal does not undo the others. The measurement time is the arithmetic mean, since missions add it up.
     """
-    logarithms = [math.log(problem.sigma), *(math.log(bearing.sigma) for bearing in bearings if bearing.sigma > 0.0)]
-    return replace(problem, sigma=math.exp(sum(logarithms) / len(logarithms)))
+    sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
+    times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
+    return replace(problem, sigma=geometric_mean(sigmas), measurement_time=fmean(times))
 
 
 def base_policy_decision(
@@ -145,7 +147,7 @@ class Cost:
 def cost_of(
     task: Localization,
     belief: GridBelief,
-    bearings: Sequence[Bearing],
+    measured: Sequence[BearingMeasured],
     platform: tuple[float, float],
     place: tuple[float, float],
     rollouts: int = COST_ROLLOUTS,
@@ -153,9 +155,9 @@ def cost_of(
     """Time until localized when the next bearing is taken at `place` (m ENU)."""
     try:
         found = expected_time_from(
-            foreseen(task.problem, bearings),
+            foreseen(task.problem, measured),
             belief,
-            bearings,
+            task.planner_bearings(measured),
             place,
             platform_xy=platform,
             base_policy=task.mission.planner.base_policy,

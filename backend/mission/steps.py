@@ -128,9 +128,8 @@ class Steps:
         platform: tuple[float, float],
         effect: effects.PlanNext,
     ) -> PlanChosen:
-        bearings = self.task.planner_bearings(measured)
         threads = self.equipment.threads
-        return next_place(self.task, belief, bearings, platform, effect.place_number, effect.avoid, threads)
+        return next_place(self.task, belief, measured, platform, effect.place_number, effect.avoid, threads)
 
     def _choice_vetoes(self, choice: PlanChosen) -> tuple[Veto, ...]:
         altitude = self.task.limits.home_amsl_m + self.task.mission.flight.altitude_relative_m

@@ -20,7 +20,7 @@ from shapely import Point, Polygon
 
 from backend.api.suggestion import HEIGHT_M, WIDTH_M, suggested_mission
 from backend.mission.localization import Localization, localization
-from backend.mission.planning import decide
+from backend.mission.planning import base_policy_decision
 from backend.settings import Settings
 from backend.spec import Place
 from backend.wiring import walls
@@ -49,7 +49,8 @@ OVERDRIVEN = FrontEnd(clip_dbm=-95.0)
 class Fault:
     """outliers: share of sweeps whose wave comes from anywhere but the emitter. heading_deg: what the compass is wrong
     by. nan: share of power samples that are no number. clipped: share of sweeps taken with too much gain. jumps: share
-    of places reported `jump_m` beside the true one. multipath: the demo's walls stand around."""
+    of places reported `jump_m` beside the true one. seen: the position steps there, as the vehicle link notices; else it
+    creeps. multipath: the demo's walls stand around."""
 
     name: str
     outliers: float = 0.0
@@ -58,6 +59,7 @@ class Fault:
     clipped: float = 0.0
     jumps: float = 0.0
     jump_m: float = 30.0
+    seen: bool = True
     multipath: bool = False
 
 
@@ -67,6 +69,7 @@ FAULTS = (
     Fault("heading 5 degrees off", heading_deg=5.0),
     Fault("10 % NaN, 20 % of sweeps overdriven", nan=0.1, clipped=0.2),
     Fault("20 % of places 30 m off (GPS jump)", jumps=0.2),
+    Fault("20 % of places 30 m off, unnoticed", jumps=0.2, seen=False),
     Fault("walls that reflect", multipath=True),
 )
 
@@ -138,9 +141,11 @@ def measure(
     sensor = task.mission.sensor
     for attempt in range(1 + sensor.maximum_retakes):
         sweep, wrong = sky.sweep(*place)
+        x, y, jumped = sky.reported(*place)
+        if jumped and sky.fault.seen:
+            sweep = dataclasses.replace(sweep, drift_m=sky.fault.jump_m)
         reading = finder.estimate(sweep, pattern)
         if reading.accepted and reading.quality >= sensor.minimum_quality:
-            x, y, jumped = sky.reported(*place)
             bearing = as_bearing(reading, x, y, sensor.outlier_probability)
             direction = math.atan2(sky.truth[1] - place[1], sky.truth[0] - place[0])
             off_deg = abs(math.degrees(math.remainder(bearing.angle - direction, 2.0 * math.pi)))
@@ -167,7 +172,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
     position, without = (0.0, 0.0), list[tuple[float, float]]()
     belief = task.planning_belief(bearings)
     for _ in range(MOST_PLACES):
-        decision = decide(task, belief, bearings, position, without)
+        decision = base_policy_decision(task, belief, position, without)
         position = (decision.x, decision.y)
         bearing, wrong, refused = measure(task, sky, pattern, finder, position)
         rejected += refused

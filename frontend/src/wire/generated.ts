@@ -715,7 +715,11 @@ export interface components {
             by: string;
             reason: string;
         };
-        /** @description binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard. */
+        /**
+         * @description binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
+         *
+         *     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
+         */
         BearingMeasured: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -735,6 +739,7 @@ export interface components {
             drift_m: number;
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
+            measurement_time_s: number | null;
         };
         /**
          * @description The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be

@@ -10,7 +10,6 @@ from backend.mission.localization import Localization, localization
 from backend.mission.planning import cost_of, foreseen, next_place, way_to
 from backend.spec import FlightSpec, MissionSpec, Place, PlannerSpec, Polygon
 from hardware.readings import GeoPoint
-from planner.types import Bearing
 
 
 def task(**more: object) -> Localization:
@@ -33,8 +32,7 @@ def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None
     made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
     seen = [towards(0.0, -20.0, (200.0, 80.0))]
     belief = made.planning_belief(made.planner_bearings(seen))
-    bearings = made.planner_bearings(seen)
-    first, again = (next_place(made, belief, bearings, (0.0, -20.0), 2, (), 1) for _ in range(2))
+    first, again = (next_place(made, belief, seen, (0.0, -20.0), 2, (), 1) for _ in range(2))
     assert first.place == again.place
     assert first.place_number == 2
     assert first.reason
@@ -53,11 +51,10 @@ def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None
 def test_a_refused_place_is_not_chosen_again(method: str) -> None:
     made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
     seen = [towards(0.0, -20.0, (200.0, 80.0))]
-    bearings = made.planner_bearings(seen)
-    belief = made.planning_belief(bearings)
+    belief = made.planning_belief(made.planner_bearings(seen))
     refused: list[Place] = []
     for _ in range(3):
-        choice = next_place(made, belief, bearings, (0.0, -20.0), 2, refused, 1).place
+        choice = next_place(made, belief, seen, (0.0, -20.0), 2, refused, 1).place
         assert choice not in refused
         refused.append(choice)
 
@@ -103,19 +100,28 @@ def test_before_the_first_bearing_the_sensor_is_as_specified() -> None:
 
 def test_bearings_to_come_are_expected_as_good_as_those_that_came() -> None:
     problem = task().problem
-    bearings = [Bearing(0.0, 0.0, 1.0, math.radians(sigma)) for sigma in (1.0, 1.0, 4.0)]
+    seen = [towards(0.0, -20.0, (200.0, 80.0), sigma=sigma) for sigma in (1.0, 1.0, 4.0)]
 
     expected = (math.degrees(problem.sigma) * 1.0 * 1.0 * 4.0) ** 0.25
 
-    assert math.degrees(foreseen(problem, bearings).sigma) == pytest.approx(expected)
+    assert math.degrees(foreseen(problem, seen).sigma) == pytest.approx(expected)
+
+
+def test_measurements_to_come_are_expected_to_take_as_long_as_those_that_were_flown() -> None:
+    problem = task().problem
+    imported = towards(0.0, -20.0, (200.0, 80.0))
+    flown = imported.model_copy(update={"measurement_time_s": 12.0})
+
+    assert foreseen(problem, [imported]).measurement_time == problem.measurement_time
+    assert foreseen(problem, [imported, flown, flown]).measurement_time == (problem.measurement_time + 24.0) / 3.0
 
 
 def test_a_sharper_sensor_than_specified_shortens_the_forecast() -> None:
     made = task()
-    said = [made.planner_bearings([towards(0.0, -20.0, (200.0, 80.0), sigma=sigma)]) for sigma in (1.0, 7.0)]
-    belief = made.planning_belief(said[1])
+    said = [[towards(0.0, -20.0, (200.0, 80.0), sigma=sigma)] for sigma in (1.0, 7.0)]
+    belief = made.planning_belief(made.planner_bearings(said[1]))
 
-    sharp, blunt = (cost_of(made, belief, bearings, (0.0, -20.0), (150.0, -30.0)).mean_s for bearings in said)
+    sharp, blunt = (cost_of(made, belief, seen, (0.0, -20.0), (150.0, -30.0)).mean_s for seen in said)
 
     assert sharp is not None
     assert blunt is not None
