@@ -1,4 +1,4 @@
-"""A whole rollout in readable numpy: the specification of compiled.py, and its oracle in the tests.
+"""A whole rollout in readable numpy: the specification of `compiled`, and its oracle in the tests.
 
 A rollout takes a first action, then follows the base policy until the expected RMSE of its own belief falls below the
 threshold (4.11) or the horizon is reached. Each step: measure with the sample path's noise, clip the possible

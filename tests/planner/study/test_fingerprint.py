@@ -1,20 +1,21 @@
-import planner.study.fingerprint as module
+from planner.sources import PLANNER
+from planner.study.fingerprint import DECIDING, fingerprint
 
 
-def test_changes_with_a_file_that_decides_and_with_no_other(tmp_path, monkeypatch):
-    (tmp_path / "policy").mkdir()
-    (tmp_path / "study").mkdir()
-    deciding, drawing = tmp_path / "policy" / "entropy.py", tmp_path / "study" / "figures.py"
-    deciding.write_text("1")
-    drawing.write_text("1")
-    monkeypatch.setattr(module, "PLANNER", tmp_path)
-    first = module.fingerprint.__wrapped__()
-    drawing.write_text("2")
-    assert module.fingerprint.__wrapped__() == first
-    deciding.write_text("2")
-    assert module.fingerprint.__wrapped__() != first
+def test_every_file_that_decides_is_in_it_and_no_drawing():
+    deciding = {path for pattern in DECIDING for path in PLANNER.glob(pattern)}
+    named = (
+        "plan.py",
+        "belief/grid.py",
+        "kernels/compiled/rollout.py",
+        "policy/ellipse_table.json",
+        "study/mission.py",
+    )
+    assert all(PLANNER / name in deciding for name in named)
+    assert PLANNER / "study/figures.py" not in deciding
 
 
-def test_is_the_same_all_along():
-    assert module.fingerprint() == module.fingerprint.__wrapped__()
-    assert len(module.fingerprint()) == 12
+def test_is_twelve_hex_digits_and_the_same_all_along():
+    assert fingerprint() == fingerprint.__wrapped__()
+    assert len(fingerprint()) == 12
+    assert int(fingerprint(), 16) > 0

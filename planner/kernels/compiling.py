@@ -1,0 +1,48 @@
+"""How the kernels are compiled: numba's flags, a cache that sees every change, and a start without linear algebra."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import Any
+
+from numba import njit
+
+from planner.sources import digest
+
+_FLAGS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+_FASTMATH = {"reassoc", "contract", "arcp", "nsz"}
+# numba's types leave out _nrt and forceinline.
+
+entry = njit(fastmath=_FASTMATH, cache=True, **_FLAGS)
+"""For what Python calls; nothing else is kept on disk, since the machine code of all it calls is part of its own."""
+allocating = njit(fastmath=_FASTMATH, **_FLAGS)
+"""For what makes arrays."""
+jit = njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS)  # pyright: ignore[reportCallIssue]
+"""Counts no references to arrays: numba's atomic counters took a sixth of the time, and threads fought for them."""
+inlined = njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS)  # pyright: ignore[reportCallIssue]
+"""For functions that take `rules` or `work`: these are passed by value, some hundred words a call."""
+
+COMPILED_IN = ("kernels/**/*.py", "belief/estimate.py", "belief/grid.py", "observation.py")
+"""Code or constants of these files are in the machine code."""
+SOURCES = int(digest(COMPILED_IN)[:15], 16)
+"""For entry points to close over: numba's cache looks at their own file only, and at the values they close over."""
+
+
+def _load_numba_without_blas() -> None:
+    """Before its first call numba imports all of scipy.linalg, a quarter of a start, to see whether there is a BLAS.
+
+    An empty module answers here, for that moment only: what does need BLAS imports it when it is compiled and when it
+    is called (docs/decisions/0015).
+    """
+    blas = "scipy.linalg.cython_blas"
+    if blas in sys.modules or "numba.np.arraymath" in sys.modules:
+        return
+    sys.modules[blas] = ModuleType(blas)
+    try:
+        import numba.np.arraymath  # noqa: F401
+    finally:
+        del sys.modules[blas]
+
+
+_load_numba_without_blas()

@@ -1,0 +1,63 @@
+import ast
+import importlib.util
+import subprocess
+import sys
+
+from planner.kernels.compiling import COMPILED_IN
+from planner.sources import PLANNER
+
+ENTRY_POINT = """
+from planner.kernels.compiling import entry
+
+def entry_point(sources):
+    @entry
+    def successor(number):
+        _ = sources
+        return number + 1
+    return successor
+"""
+
+FRESH_PROCESS = """
+import sys
+from planner.plan import warm_up
+warm_up()
+assert "scipy.linalg" not in sys.modules, "a first plan imports scipy.linalg"
+
+import numba
+import numpy as np
+identity = np.eye(2)
+assert (numba.njit(lambda a: a @ a)(identity) == identity).all()
+assert hasattr(sys.modules["scipy.linalg.cython_blas"], "__pyx_capi__"), "the stand-in for BLAS is still there"
+"""
+
+
+def test_machine_code_is_kept_for_the_same_sources_only(tmp_path):
+    path = tmp_path / "kernel.py"
+    path.write_text(ENTRY_POINT)
+    spec = importlib.util.spec_from_file_location("kernel", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    hits = []
+    for sources in (1, 1, 2):
+        successor = module.entry_point(sources)
+        assert successor(1) == 2
+        hits.append(sum(successor.stats.cache_hits.values()))
+    assert hits == [0, 1, 0]
+
+
+def test_all_that_is_compiled_in_is_among_the_sources():
+    sources = {path for pattern in COMPILED_IN for path in PLANNER.glob(pattern)}
+    imported = {
+        node.module.replace(".", "/") + ".py"
+        for path in PLANNER.glob("kernels/compiled/*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("planner.")
+    }
+    types_only = {"planner/types.py"}
+    assert imported - types_only <= {path.relative_to(PLANNER.parent).as_posix() for path in sources}
+    assert "planner/belief/grid.py" in imported
+
+
+def test_a_first_plan_does_without_linear_algebra_and_leaves_it_usable():
+    done = subprocess.run([sys.executable, "-c", FRESH_PROCESS], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
