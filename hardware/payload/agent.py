@@ -8,7 +8,7 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -135,8 +135,6 @@ class PayloadAgent:
                         await self._retune.wait()
                         return
                     self._clipped.append(sample.clipped)
-                    if not sample.detected:
-                        continue  # a pulse that did not come is nothing to send
                     if sendable(sample):
                         heard.append(sample)
                     else:
@@ -146,7 +144,7 @@ class PayloadAgent:
                     await self._flush(batch)
         finally:
             if pending is not None and not pending.cancel() and pending.exception() is None:
-                heard += [sample for sample in (pending.result(),) if sample.detected and sendable(sample)]
+                heard += [sample for sample in (pending.result(),) if sendable(sample)]
             if heard:
                 await self._flush(heard)
 
@@ -233,7 +231,7 @@ class PayloadAgent:
                         await self._arrived.wait()
                 continue
             run = _consecutive(batch)
-            rows: list[Any] = [(s.at_s, s.frequency_hz, s.power_db, s.noise_floor_db, s.clipped) for _, s in run]
+            rows: list[Any] = [astuple(sample) for _, sample in run]
             await self._send(
                 link,
                 Samples(
@@ -308,7 +306,7 @@ class PayloadAgent:
 def sendable(sample: PowerSample) -> bool:
     """Whether the wire takes it: a sample it does not take would block all that follow."""
     try:
-        row: Any = (sample.at_s, sample.frequency_hz, sample.power_db, sample.noise_floor_db, sample.clipped)
+        row: Any = astuple(sample)
         Samples(first_seq=1, oldest_seq=1, clock_offset_s=None, samples=[row])
     except ValidationError:
         return False

@@ -1,4 +1,4 @@
-"""What the payload agent and the server say to each other: JSON text, one object a message. Protocol 1.
+"""What the payload agent and the server say to each other: JSON text, one object a message.
 
 agent:  hello, samples, status, ping          server: welcome, ack, resend, tune, pong, refused
 Every power sample has a sequence number that is never reused within a stream (the life of one spool file). The server
@@ -11,7 +11,7 @@ from typing import Annotated, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-PROTOCOL = 1
+PROTOCOL = 2
 MAXIMUM_MESSAGE_BYTES = 256 * 1024
 MAXIMUM_BATCH = 1000
 M = TypeVar("M")
@@ -30,8 +30,8 @@ Seq = Annotated[int, Field(ge=1, le=2**62)]
 Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[\w.\-]+$")]
 Hertz = Annotated[float, Field(gt=0, le=1e12)]
 Decibel = Annotated[float, Field(ge=-400, le=400)]
-WireSample = tuple[Seconds, Hertz, Decibel, Decibel | None, bool]
-"""at_s by the agent's clock, frequency_hz, power_db, noise_floor_db, clipped."""
+WireSample = tuple[Seconds, Hertz, Decibel, Decibel | None, bool, bool]
+"""at_s by the agent's clock, frequency_hz, power_db, noise_floor_db, clipped, detected."""
 
 
 class Hello(Message):

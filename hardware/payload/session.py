@@ -171,8 +171,8 @@ class PayloadHub:
         fresh = batch.samples[received + 1 - batch.first_seq :]
         offset = batch.clock_offset_s or 0.0
         offset = offset if abs(offset) > CLOCK_OFFSET_LIMIT_S else 0.0
-        for at_s, frequency_hz, power_db, noise_db, clipped in fresh:
-            sample = PowerSample(at_s + offset, frequency_hz, power_db, noise_db, clipped)
+        for at_s, frequency_hz, power_db, noise_db, clipped, detected in fresh:
+            sample = PowerSample(at_s + offset, frequency_hz, power_db, noise_db, clipped, detected)
             for subscription in self._subscriptions:
                 subscription.put(sample)
         self._received[stream] = received + len(fresh)

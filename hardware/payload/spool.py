@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 import threading
 from collections.abc import Sequence
+from dataclasses import astuple
 from pathlib import Path
 from uuid import uuid4
 
@@ -35,9 +36,13 @@ class Spool:
             self._db.executescript(
                 "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;"
                 "CREATE TABLE IF NOT EXISTS sample (seq INTEGER PRIMARY KEY AUTOINCREMENT, at_s REAL NOT NULL,"
-                " frequency_hz REAL NOT NULL, power_db REAL NOT NULL, noise_db REAL, clipped INTEGER NOT NULL);"
+                " frequency_hz REAL NOT NULL, power_db REAL NOT NULL, noise_db REAL, clipped INTEGER NOT NULL,"
+                " detected INTEGER NOT NULL DEFAULT 1);"
                 "CREATE TABLE IF NOT EXISTS note (key TEXT PRIMARY KEY, value TEXT NOT NULL);"
             )
+            columns = [row[1] for row in self._db.execute("PRAGMA table_info(sample)")]
+            if "detected" not in columns:  # a spool from before missed pulses were sent
+                self._db.execute("ALTER TABLE sample ADD COLUMN detected INTEGER NOT NULL DEFAULT 1")
             self._db.execute("INSERT OR IGNORE INTO note VALUES ('stream', ?)", (uuid4().hex,))
         except (sqlite3.Error, OSError) as error:
             raise SpoolError(
@@ -66,12 +71,14 @@ class Spool:
 
     def append(self, samples: Sequence[PowerSample]) -> None:
         """Durable when it returns. Raises SpoolError (disk full)."""
-        rows = [(s.at_s, s.frequency_hz, s.power_db, s.noise_floor_db, int(s.clipped)) for s in samples]
+        rows = [astuple(sample) for sample in samples]
         with self._lock:
             try:
                 self._db.execute("BEGIN IMMEDIATE")
                 self._db.executemany(
-                    "INSERT INTO sample (at_s, frequency_hz, power_db, noise_db, clipped) VALUES (?, ?, ?, ?, ?)", rows
+                    "INSERT INTO sample (at_s, frequency_hz, power_db, noise_db, clipped, detected)"
+                    " VALUES (?, ?, ?, ?, ?, ?)",
+                    rows,
                 )
                 surplus = self._count() - self._capacity
                 if surplus > 0:
@@ -91,11 +98,11 @@ class Spool:
         """Up to `limit` samples with larger numbers than `seq`, in order."""
         with self._lock:
             rows = self._db.execute(
-                "SELECT seq, at_s, frequency_hz, power_db, noise_db, clipped FROM sample WHERE seq > ?"
+                "SELECT seq, at_s, frequency_hz, power_db, noise_db, clipped, detected FROM sample WHERE seq > ?"
                 " ORDER BY seq LIMIT ?",
                 (seq, limit),
             ).fetchall()
-        return [(row[0], PowerSample(row[1], row[2], row[3], row[4], bool(row[5]))) for row in rows]
+        return [(row[0], PowerSample(*row[1:5], bool(row[5]), bool(row[6]))) for row in rows]
 
     def forget(self, seq: int) -> None:
         """Everything up to `seq` has been received."""

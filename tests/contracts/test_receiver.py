@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from stepped_clock import SteppedClock
 
-from hardware.payload.messages import Hello, Samples
+from hardware.payload.messages import PROTOCOL, Hello, Samples
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub, PayloadSession
 from hardware.ports import Receiver, ReceiverError
@@ -68,13 +68,15 @@ class LoopbackPayload:
 
     async def open(self, frequency_hz: float) -> None:
         if self.task is None:
-            self.session.receive(Hello(protocol=1, agent="pi", stream="s", software="", first_seq=1).model_dump_json())
+            self.session.receive(
+                Hello(protocol=PROTOCOL, agent="pi", stream="s", software="", first_seq=1).model_dump_json()
+            )
             self.task = asyncio.create_task(self._send())
         await self.receiver.open(frequency_hz)
 
     async def _send(self) -> None:
         while True:
-            rows = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False) for k in range(self.next, self.next + 5)]
+            rows = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False, True) for k in range(self.next, self.next + 5)]
             message = Samples(first_seq=self.next, oldest_seq=1, clock_offset_s=None, samples=rows)
             self.session.receive(message.model_dump_json())
             self.next += 5

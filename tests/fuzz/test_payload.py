@@ -16,8 +16,8 @@ import pytest
 from hardware.payload.session import PayloadHub, PayloadSession
 
 MESSAGES = int(os.environ.get("CROSSFIX_FUZZ_MESSAGES", "2000"))
-HELLO = {"type": "hello", "protocol": 1, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
-SAMPLE = [1.7e9, 8e8, -80.0, None, False]
+HELLO = {"type": "hello", "protocol": 2, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
+SAMPLE = [1.7e9, 8e8, -80.0, None, False, True]
 SAMPLES = {"type": "samples", "first_seq": 1, "oldest_seq": 1, "clock_offset_s": None, "samples": [SAMPLE] * 3}
 STATUS = {
     "type": "status",

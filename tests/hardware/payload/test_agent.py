@@ -231,7 +231,7 @@ class TagReceiver(CountingReceiver):
             yield replace(sample, detected=self.made % 3 == 0)
 
 
-async def test_a_tag_is_passed_on_to_the_payload_which_sends_only_pulses_it_heard(tmp_path: Path) -> None:
+async def test_a_tag_is_passed_on_to_the_payload_which_says_what_it_heard_and_missed(tmp_path: Path) -> None:
     radio, pulses = TagReceiver(), Pulses(0.02, 1.3, 0.03)
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         receiver = PayloadReceiver(server.hub)
@@ -239,8 +239,9 @@ async def test_a_tag_is_passed_on_to_the_payload_which_sends_only_pulses_it_hear
         await receiver.open(150e6)
         await until(lambda: radio.expected == pulses)
         stream = aiter(receiver.samples())
-        got = numbers([await asyncio.wait_for(anext(stream), 10) for _ in range(10)])
-    assert all(number % 3 == 0 for number in got)
+        got = [await asyncio.wait_for(anext(stream), 10) for _ in range(10)]
+    assert [sample.detected for sample in got] == [number % 3 == 0 for number in numbers(got)]
+    assert {sample.detected for sample in got} == {True, False}
 
 
 async def test_a_payload_that_finds_no_pulses_says_so(tmp_path: Path) -> None:

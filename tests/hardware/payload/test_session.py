@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES
+from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES, PROTOCOL
 from hardware.payload.session import PayloadHub, PayloadSession, Subscription
 from hardware.readings import Pulses
 
@@ -19,7 +19,7 @@ def hub() -> PayloadHub:
     return PayloadHub((TOKEN,), now=lambda: 5000.0)
 
 
-def hello(first_seq: int = 1, agent: str = "pi", stream: str = "s1", protocol: int = 1) -> str:
+def hello(first_seq: int = 1, agent: str = "pi", stream: str = "s1", protocol: int = PROTOCOL) -> str:
     return json.dumps(
         {
             "type": "hello",
@@ -33,7 +33,7 @@ def hello(first_seq: int = 1, agent: str = "pi", stream: str = "s1", protocol: i
 
 
 def batch(first: int, count: int, oldest: int = 1, offset: float | None = None) -> str:
-    rows = [[float(k), 868e6, -60.0, None, False] for k in range(first, first + count)]
+    rows = [[float(k), 868e6, -60.0, None, False, k % 2 == 0] for k in range(first, first + count)]
     return json.dumps(
         {"type": "samples", "first_seq": first, "oldest_seq": oldest, "clock_offset_s": offset, "samples": rows}
     )

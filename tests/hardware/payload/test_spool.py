@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from hardware.readings import PowerSample
 
 
 def sample(k: int) -> PowerSample:
-    return PowerSample(float(k), 868e6, -60.0 - k, -120.0 if k % 2 else None, k % 3 == 0)
+    return PowerSample(float(k), 868e6, -60.0 - k, -120.0 if k % 2 else None, k % 3 == 0, k % 4 > 0)
 
 
 def test_reopening_keeps_everything_and_numbers_go_on(tmp_path: Path) -> None:
@@ -31,6 +32,19 @@ def test_reopening_keeps_everything_and_numbers_go_on(tmp_path: Path) -> None:
     again.append([sample(9)])
     assert again.after(0, 10) == [(6, sample(9))]
     again.close()
+
+
+def test_a_spool_of_an_older_agent_is_read_on(tmp_path: Path) -> None:
+    with sqlite3.connect(tmp_path / "samples.sqlite") as older:
+        older.execute(
+            "CREATE TABLE sample (seq INTEGER PRIMARY KEY AUTOINCREMENT, at_s REAL NOT NULL,"
+            " frequency_hz REAL NOT NULL, power_db REAL NOT NULL, noise_db REAL, clipped INTEGER NOT NULL)"
+        )
+        older.execute("INSERT INTO sample VALUES (7, 1.0, 868e6, -61.0, -120.0, 0)")
+    spool = Spool(tmp_path / "samples.sqlite")
+    spool.append([sample(4)])
+    assert spool.after(0, 10) == [(7, PowerSample(1.0, 868e6, -61.0, -120.0)), (8, sample(4))]
+    spool.close()
 
 
 def test_a_full_spool_drops_the_oldest_and_counts_them(tmp_path: Path) -> None:
