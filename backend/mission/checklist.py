@@ -68,10 +68,13 @@ async def _receiver(mission: MissionSpec, equipment: Equipment, listening: Liste
     trial.start()
     try:
         heard = await trial.first_sample(RECEIVER_WALL_S + (0.0 if pulses is None else 2.0 * pulses.period_s))
-        detail = f"delivers samples at {frequency / 1e6:.4f} MHz" if heard else trial.trouble or "delivers no samples"
-        # a tag may be out of range where the vehicle stands
+        if heard:
+            return _fact("receiver", True, f"delivers samples at {frequency / 1e6:.4f} MHz", "")
+        if pulses is not None and trial.last is not None:
+            unheard = f"works, but hears no pulse of the tag at {frequency / 1e6:.4f} MHz"
+            return _fact("receiver", False, unheard, "bring the tag near, or know that it is out of range here", False)
         blocking = pulses is None or trial.state == "lost"
-        return _fact("receiver", heard, detail, "" if heard else remedy, blocking)
+        return _fact("receiver", False, trial.trouble or "delivers no samples", remedy, blocking)
     finally:
         await trial.stop()
 

@@ -62,7 +62,8 @@ class Listening:
                     self._samples.append(sample)
                     self._heard_at_s = self._clock.now()
                     self._quiet_s = 0.0
-                    self._heard.set()
+                    if sample.detected:
+                        self._heard.set()
                     self._fault = None
                     await asyncio.sleep(0)  # a receiver that catches up must not keep everybody else waiting
                 self._fault = "the receiver was closed"
@@ -121,7 +122,7 @@ class Listening:
         return found[::-1]
 
     async def first_sample(self, wall_s: float) -> bool:
-        """Whether anything is heard within so many seconds of the wall."""
+        """Whether a carrier's sample or a tag's pulse is heard within so many seconds of the wall."""
         try:
             async with asyncio.timeout(wall_s):
                 await self._heard.wait()
