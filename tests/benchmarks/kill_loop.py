@@ -296,11 +296,8 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
 
 
 @asynccontextmanager
-async def database_url(kind: str) -> AsyncIterator[str | None]:
-    """None: SQLite in the data directory. A PostgreSQL cluster of its own otherwise."""
-    if kind == "sqlite":
-        yield None
-        return
+async def postgres_cluster() -> AsyncIterator[PostgresCluster]:
+    """A cluster of its own, running."""
     programs, user = postgres_programs(), postgres_user()
     if programs is None:
         raise SystemExit("no PostgreSQL programs (initdb, postgres) on this machine")
@@ -310,9 +307,19 @@ async def database_url(kind: str) -> AsyncIterator[str | None]:
         await asyncio.to_thread(cluster.create)
         await asyncio.to_thread(cluster.start)
         try:
-            yield await asyncio.to_thread(cluster.new_database)
+            yield cluster
         finally:
             cluster.stop()
+
+
+@asynccontextmanager
+async def database_url(kind: str) -> AsyncIterator[str | None]:
+    """None: SQLite in the data directory."""
+    if kind == "sqlite":
+        yield None
+        return
+    async with postgres_cluster() as cluster:
+        yield await asyncio.to_thread(cluster.new_database)
 
 
 def warm_up() -> None:
