@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { t } from "../i18n";
 import { source } from "../app/store";
-import { RequestFailed, unreachable } from "../sources/problem";
+import { localProblem, RequestFailed, unreachable } from "../sources/problem";
 import type { Command, CommandReply, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
@@ -21,13 +21,8 @@ export const asProblem = (error: unknown): Problem =>
     : unreachable(error instanceof Error ? error.message : String(error)).problem;
 
 export const refusal = (reply: CommandReply): Problem => ({
-  type: "about:blank",
-  title: t("problem.refused"),
-  status: 200,
-  detail: reply.reason,
+  ...localProblem(t("problem.refused"), reply.reason, 200),
   remedy: reply.remedy,
-  errors: [],
-  incident: null,
 });
 
 /** True when the server accepted it; otherwise the reason stands at `desk`. */

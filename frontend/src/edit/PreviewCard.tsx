@@ -1,7 +1,7 @@
 import { settings } from "../app/settings";
 import { live, vehicle } from "../app/store";
 import { t, told } from "../i18n";
-import { ProblemText } from "../panels/ProblemNote";
+import { ProblemBox } from "../panels/ProblemNote";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration } from "../units/quantities";
 import { coveredShare, plannedBudget } from "../state/budget";
@@ -55,13 +55,7 @@ export function PreviewCard() {
           {t(state?.running ? "preview.running" : "preview.run")}
         </button>
       </h2>
-      {state?.problem && (
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={state.problem} />
-          </div>
-        </div>
-      )}
+      {state?.problem && <ProblemBox problem={state.problem} />}
       {found && (
         <>
           {found.expected_time_s !== null && (

@@ -1,5 +1,5 @@
 // The map of the editor: areas are drawn and their corners moved with Terra Draw; files may be dropped on it.
-import { effect } from "@preact/signals";
+import { computed, effect } from "@preact/signals";
 import type { GeoJSONSource, Map as GlMap } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
 import { TerraDraw, TerraDrawPolygonMode, TerraDrawRectangleMode, TerraDrawSelectMode, type GeoJSONStoreFeatures } from "terra-draw";
@@ -100,6 +100,10 @@ function bindTools(draw: TerraDraw): () => void {
 }
 
 const FALLBACK_START: LonLat = [7.1, 50.73];
+
+/** To the metre, so that the map is not drawn again with every telemetry value. */
+const parked = computed(() => vehicle.value.at?.map((degrees) => degrees.toFixed(5)).join() ?? null);
+
 let framed: string | null = null;
 
 export function EditMap({ onFile }: { onFile: (file: File) => void }) {
@@ -123,7 +127,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
           put("plan", now?.hasArea ? shown : collection(shown.features.filter((f) => f.properties?.["what"] !== "area")));
         }),
         effect(() => {
-          const at = vehicle.value.at;
+          const at = parked.value?.split(",").map(Number);
           put("home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: at } }] : []));
         }),
         effect(() => {

@@ -14,9 +14,9 @@ import { PreviewCard } from "../edit/PreviewCard";
 import { clearPreview } from "../edit/preview";
 import { presetNames, withPreset, type PresetName } from "../edit/presets";
 import { t } from "../i18n";
-import { ProblemText } from "../panels/ProblemNote";
+import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
-import { RequestFailed } from "../sources/problem";
+import { localProblem, RequestFailed } from "../sources/problem";
 import type { MissionSpec, Problem } from "../wire";
 
 type EditRoute = Extract<Route, { page: "new" | "edit" }>;
@@ -167,6 +167,7 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
 
 export function EditPage({ route }: { route: EditRoute }) {
   const key = keyOf(route);
+  const from = route.page === "new" ? route.from : null;
   const [problem, setProblem] = useState<Problem | null>(null);
   const [failed, setFailed] = useState<RequestFailed | null>(null);
   const [told, setTold] = useState<readonly string[]>([]);
@@ -182,7 +183,7 @@ export function EditPage({ route }: { route: EditRoute }) {
   };
   useEffect(() => {
     clearPreview();
-    const kept = route.page === "new" && route.from !== null ? null : storedDraft(key);
+    const kept = from === null ? storedDraft(key) : null;
     setRestored(kept !== null);
     if (kept) update(kept);
     else {
@@ -194,7 +195,7 @@ export function EditPage({ route }: { route: EditRoute }) {
       clearPreview();
       stopCoverage();
     };
-  }, [key]);
+  }, [key, from]);
 
   const onFile = (file: File) => {
     importFile(file, what.peek()).then(
@@ -210,7 +211,7 @@ export function EditPage({ route }: { route: EditRoute }) {
     setProblem(null);
     const local = !now.hasArea ? t("edit.noArea") : Object.keys(now.text).length > 0 ? t("edit.invalid") : null;
     if (local) {
-      setProblem({ type: "about:blank", title: t("edit.titleNew"), status: 0, detail: local, remedy: "", errors: [], incident: null });
+      setProblem(localProblem(t("edit.titleNew"), local));
       return;
     }
     setSaving(true);
@@ -264,13 +265,7 @@ export function EditPage({ route }: { route: EditRoute }) {
           )}
         </div>
         <div class="panel edit-foot">
-          {problem && (
-            <div class="problem" role="alert" data-testid="edit-problem">
-              <div>
-                <ProblemText problem={problem} />
-              </div>
-            </div>
-          )}
+          {problem && <ProblemBox problem={problem} testId="edit-problem" />}
           <div class="start-row">
             <a class="button" href={route.page === "edit" ? missionAddress(route.missionId) : "#/"}>
               {t("edit.cancel")}

@@ -4,7 +4,7 @@ import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { basemap, chooseBasemap } from "../map/basemap";
 import { overlayIds, showOverlay } from "../map/overlays";
-import { ProblemText } from "../panels/ProblemNote";
+import { ProblemBox } from "../panels/ProblemNote";
 import * as maps from "../sources/mapsApi";
 import { upload } from "../sources/upload";
 import type { Problem } from "../wire";
@@ -124,13 +124,7 @@ export function MapsPage() {
         <Upload target="maps" accept=".pmtiles" label={t("maps.upload")} onDone={read} onProblem={setProblem} />
       </div>
       <p>{t("maps.explain")}</p>
-      {problem && (
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={problem} />
-          </div>
-        </div>
-      )}
+      {problem && <ProblemBox problem={problem} />}
       {packages && <Packages list={packages} onChange={read} />}
       {packages?.unusable.map((line) => (
         <p class="refused" key={line}>

@@ -4,7 +4,7 @@ import { go, missionAddress } from "../app/route";
 import { change, settings } from "../app/settings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
-import { ProblemText } from "../panels/ProblemNote";
+import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { NotARecording, readRecording, replays } from "../sources/replay";
 import { inFlight, isOver } from "../state/mission";
@@ -131,13 +131,7 @@ export function MissionsPage() {
         </div>
       )}
       {broken && <p class="refused" role="alert">{broken}</p>}
-      {problem && (
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={problem} />
-          </div>
-        </div>
-      )}
+      {problem && <ProblemBox problem={problem} />}
       {!list && !problem && <p class="muted">{t("missions.loading")}</p>}
       {list?.length === 0 && <p class="card">{t("missions.empty")}</p>}
       {shown && shown.length > 0 && (

@@ -4,10 +4,11 @@ import { source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import * as api from "../sources/api";
+import { localProblem } from "../sources/problem";
 import { parsePlace } from "../units/coordinates";
 import type { Place, Problem } from "../wire";
 import { runPreflight } from "./PreflightPanel";
-import { ProblemText } from "./ProblemNote";
+import { ProblemBox } from "./ProblemNote";
 
 const listening = signal(false);
 const problem = signal<Problem | null>(null);
@@ -25,7 +26,7 @@ export function knownEmitter(text: string): { place: Place } | { bearing_deg: nu
 async function listen(missionId: string, text: string): Promise<void> {
   const emitter = knownEmitter(text);
   if (!emitter) {
-    problem.value = { type: "about:blank", title: t("antenna.title"), status: 0, detail: t("antenna.bad"), remedy: "", errors: [], incident: null };
+    problem.value = localProblem(t("antenna.title"), t("antenna.bad"));
     return;
   }
   problem.value = null;
@@ -62,13 +63,7 @@ export function AntennaCheck({ missionId }: { missionId: string }) {
             {t(listening.value ? "antenna.listening" : "antenna.listen")}
           </button>
         </form>
-        {problem.value && (
-          <div class="problem" role="alert">
-            <div>
-              <ProblemText problem={problem.value} />
-            </div>
-          </div>
-        )}
+        {problem.value && <ProblemBox problem={problem.value} testId="antenna-problem" />}
       </details>
     </section>
   );

@@ -1,22 +1,37 @@
 import { describe, expect, it } from "vitest";
 import { recordingForm } from "./ImportRecording";
 
-const file = new File(["heading_deg,power_db"], "turn.csv");
+function typed(fields: Record<string, string>, names = ["turn.csv"]): FormData {
+  const given = new FormData();
+  for (const name of names) given.append("files", new File(["heading_deg,power_db"], name));
+  for (const [name, value] of Object.entries(fields)) given.append(name, value);
+  return given;
+}
 
 describe("recordingForm", () => {
-  it("carries files, place and time", () => {
-    const form = recordingForm([file], "50.6 7.2", "2026-05-01T10:00:30");
+  it("carries files, and what they do not tell in the server's units", () => {
+    const all = { place: "50.6 7.2", at: "2026-05-01T10:00:30", tag: " lynx 4 ", offset_deg: "-3,5", frequency_hz: "148.5", pulse_width_s: "20", pulse_period_s: "1.3" };
+    const form = recordingForm(typed(all));
     expect(form).toBeInstanceOf(FormData);
-    const entries = Object.fromEntries((form as FormData).entries());
-    expect(entries).toMatchObject({ lat: "50.6", lon: "7.2", at_utc: "2026-05-01T10:00:30Z" });
+    expect(Object.fromEntries((form as FormData).entries())).toMatchObject({
+      lat: "50.6",
+      lon: "7.2",
+      at_utc: "2026-05-01T10:00:30Z",
+      tag: "lynx 4",
+      offset_deg: "-3.5",
+      frequency_hz: "148500000",
+      pulse_width_s: "0.02",
+      pulse_period_s: "1.3",
+    });
   });
 
   it("leaves out what the file tells itself", () => {
-    expect([...(recordingForm([file], " ", "") as FormData).keys()]).toEqual(["files"]);
+    expect([...(recordingForm(typed({ place: " ", at: "", tag: " " })) as FormData).keys()]).toEqual(["files"]);
   });
 
   it("says what is missing or cannot be read", () => {
-    expect(recordingForm([], "", "")).toMatch(/file/i);
-    expect(recordingForm([file], "behind the barn", "")).toMatch(/place/i);
+    expect(recordingForm(typed({}, []))).toMatch(/file/i);
+    expect(recordingForm(typed({ place: "behind the barn" }))).toMatch(/place/i);
+    expect(recordingForm(typed({ pulse_width_s: "short" }))).toMatch(/pulse width/i);
   });
 });

@@ -2,40 +2,56 @@
 import { signal } from "@preact/signals";
 import { mission, source } from "../app/store";
 import { asProblem } from "../commands/send";
-import { t } from "../i18n";
+import { t, told, type MessageKey } from "../i18n";
 import * as api from "../sources/api";
+import { localProblem } from "../sources/problem";
 import { inFlight } from "../state/mission";
 import { parsePlace } from "../units/coordinates";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { Problem, RecordingImport } from "../wire";
-import { ProblemText } from "./ProblemNote";
+import { ProblemBox } from "./ProblemNote";
 
 type Outcome = { missionId: string } & ({ found: RecordingImport } | { problem: Problem } | { busy: true });
 
 const outcome = signal<Outcome | null>(null);
 
+/** What the file may not tell: fields of the form, and the factor from what is typed to what the server wants. */
+const NUMBERS = [
+  { name: "offset_deg", scale: 1, label: "recording.offset" },
+  { name: "frequency_hz", scale: 1e6, label: "recording.frequency" },
+  { name: "pulse_width_s", scale: 1e-3, label: "recording.pulseWidth" },
+  { name: "pulse_period_s", scale: 1, label: "recording.pulsePeriod" },
+] as const satisfies { name: string; scale: number; label: MessageKey }[];
+
 /** The form's fields as the server wants them; a sentence when one cannot be read. */
-export function recordingForm(files: readonly File[], place: string, at: string): FormData | string {
+export function recordingForm(given: FormData): FormData | string {
+  const files = given.getAll("files").filter((entry): entry is File => entry instanceof File && entry.size > 0);
   if (files.length === 0) return t("recording.noFile");
+  const text = (name: string) => String(given.get(name) ?? "").trim();
   const form = new FormData();
   for (const file of files) form.append("files", file, file.name);
-  if (place.trim()) {
-    const read = parsePlace(place);
+  if (text("place")) {
+    const read = parsePlace(text("place"));
     if (!read) return t("recording.badPlace");
     form.append("lat", String(read.lat));
     form.append("lon", String(read.lon));
   }
   // the input has no time zone: UTC is what its label says
-  if (at) form.append("at_utc", `${at}Z`);
+  if (text("at")) form.append("at_utc", `${text("at")}Z`);
+  if (text("tag")) form.append("tag", text("tag"));
+  for (const { name, scale, label } of NUMBERS) {
+    if (!text(name)) continue;
+    const value = Number(text(name).replace(",", "."));
+    if (Number.isNaN(value)) return t("recording.badNumber", { field: t(label) });
+    form.append(name, String(value * scale));
+  }
   return form;
 }
 
 async function submit(missionId: string, element: HTMLFormElement): Promise<void> {
-  const given = new FormData(element);
-  const files = given.getAll("files").filter((entry): entry is File => entry instanceof File && entry.size > 0);
-  const form = recordingForm(files, String(given.get("place") ?? ""), String(given.get("at") ?? ""));
+  const form = recordingForm(new FormData(element));
   if (typeof form === "string") {
-    outcome.value = { missionId, problem: { type: "about:blank", title: t("recording.title"), status: 0, detail: form, remedy: "", errors: [], incident: null } };
+    outcome.value = { missionId, problem: localProblem(t("recording.title"), form) };
     return;
   }
   outcome.value = { missionId, busy: true };
@@ -57,7 +73,7 @@ function Found({ found }: { found: RecordingImport }) {
             <strong>{t("sweep.place", { number: sweep.place_number })}</strong>{" "}
             {sweep.bearing_deg !== null && sweep.sigma_deg !== null
               ? t("sweep.bearing", { bearing: formatBearing(sweep.bearing_deg), sigma: formatNumber(sweep.sigma_deg, 1) })
-              : t("sweep.rejected", { reason: sweep.reason })}
+              : t("sweep.rejected", { reason: told(sweep.reason) })}
             , {t("sweep.quality", { quality: formatNumber(sweep.quality, 2) })}
           </li>
         ))}
@@ -67,7 +83,7 @@ function Found({ found }: { found: RecordingImport }) {
           <p>{t("recording.remarks", { count: found.remarks.length })}</p>
           <ul class="remarks" data-testid="recording-remarks">
             {found.remarks.map((remark) => (
-              <li key={remark}>{remark}</li>
+              <li key={remark}>{told(remark)}</li>
             ))}
           </ul>
         </>
@@ -105,18 +121,25 @@ export function ImportRecording() {
             {t("recording.at")}
             <input type="datetime-local" name="at" step={1} data-testid="recording-at" />
           </label>
+          <details class="more">
+            <summary>{t("recording.more")}</summary>
+            <label>
+              {t("recording.tag")}
+              <input name="tag" maxLength={80} data-testid="recording-tag" />
+            </label>
+            {NUMBERS.map(({ name, label }) => (
+              <label key={name}>
+                {t(label)}
+                <input name={name} inputMode="decimal" data-testid={`recording-${name}`} />
+              </label>
+            ))}
+          </details>
           <button class="primary" disabled={busy} data-testid="recording-send">
             {t(busy ? "recording.busy" : "recording.send")}
           </button>
         </form>
         {now && "found" in now && <Found found={now.found} />}
-        {now && "problem" in now && (
-          <div class="problem" role="alert" data-testid="recording-problem">
-            <div>
-              <ProblemText problem={now.problem} />
-            </div>
-          </div>
-        )}
+        {now && "problem" in now && <ProblemBox problem={now.problem} testId="recording-problem" />}
       </details>
     </section>
   );

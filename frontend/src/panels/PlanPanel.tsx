@@ -11,7 +11,7 @@ import { highlighted } from "../app/highlight";
 import { formatPlace } from "../units/coordinates";
 import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
 import type { CandidateFact, PlanChosen } from "../wire";
-import { ProblemNote, ProblemText } from "./ProblemNote";
+import { ProblemNote, ProblemBox } from "./ProblemNote";
 import { WhatIfPanel } from "./WhatIfPanel";
 
 const SHOWN = 12;
@@ -102,13 +102,7 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
         )}
       </div>
       {!result && !problem && <p class="muted">{t("proposal.asking")}</p>}
-      {problem && (
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={problem} />
-          </div>
-        </div>
-      )}
+      {problem && <ProblemBox problem={problem} />}
       {result && !result.allowed && (
         <p class="refused" role="alert">
           {t("proposal.notAllowed", { reason: told(result.reason) })}

@@ -18,17 +18,28 @@ export function ProblemText({ problem }: { problem: Problem }) {
   );
 }
 
-export function ProblemNote({ desk }: { desk: Desk }) {
-  const problem = problems.value[desk];
-  if (!problem) return null;
+interface Boxed {
+  problem: Problem;
+  testId?: string;
+  onDismiss?: () => void;
+}
+
+export function ProblemBox({ problem, testId, onDismiss }: Boxed) {
   return (
-    <div class="problem" role="alert" data-testid={`problem-${desk}`}>
+    <div class="problem" role="alert" data-testid={testId}>
       <div>
         <ProblemText problem={problem} />
       </div>
-      <button class="icon" aria-label={t("problem.dismiss")} onClick={() => report(desk, null)}>
-        ✕
-      </button>
+      {onDismiss && (
+        <button class="icon" aria-label={t("problem.dismiss")} onClick={onDismiss}>
+          ✕
+        </button>
+      )}
     </div>
   );
+}
+
+export function ProblemNote({ desk }: { desk: Desk }) {
+  const problem = problems.value[desk];
+  return problem ? <ProblemBox problem={problem} testId={`problem-${desk}`} onDismiss={() => report(desk, null)} /> : null;
 }

@@ -6,7 +6,7 @@ import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { showScene } from "../sources/sceneApi";
 import type { Problem } from "../wire";
-import { ProblemText } from "./ProblemNote";
+import { ProblemBox } from "./ProblemNote";
 
 /** One view a tab. */
 const VIEW_ID = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, "0")).join("");
@@ -15,7 +15,7 @@ const VIEW_ID = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.
 const REST_MS = 60;
 
 export function Scene() {
-  const [url, setUrl] = useState<string | null>(null);
+  const [shown, setShown] = useState<{ url: string; language: string } | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const id = mission.value.missionId;
   const seq = cursor.value;
@@ -25,7 +25,7 @@ export function Scene() {
     const timer = setTimeout(() => {
       showScene(VIEW_ID, { mission_id: id, seq, theme, hidden: [], belief_height_m: null, language }).then(
         (view) => {
-          setUrl(view.url);
+          setShown({ url: view.url, language });
           setProblem(null);
         },
         (error: unknown) => setProblem(asProblem(error)),
@@ -36,14 +36,11 @@ export function Scene() {
   if (problem) {
     return (
       <div class="center">
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={problem} />
-          </div>
-        </div>
+        <ProblemBox problem={problem} />
       </div>
     );
   }
-  if (!url) return <p class="center muted">{t("scene.loading")}</p>;
-  return <iframe key={language} class="scene" src={url} title={t("scene.title")} data-testid="scene" />;
+  if (!shown) return <p class="center muted">{t("scene.loading")}</p>;
+  // a window's panel speaks the language it was opened in: another language opens it anew, once the server knows it
+  return <iframe key={shown.language} class="scene" src={shown.url} title={t("scene.title")} data-testid="scene" />;
 }

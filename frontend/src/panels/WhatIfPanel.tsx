@@ -9,7 +9,7 @@ import * as api from "../sources/api";
 import { formatLength } from "../units/quantities";
 import type { Problem, WhatIf, WhatIfRequest } from "../wire";
 import { decodeBeliefFrame } from "../wire/beliefFrame";
-import { ProblemText } from "./ProblemNote";
+import { ProblemBox } from "./ProblemNote";
 
 const PLANNERS = {
   flown: {},
@@ -111,13 +111,7 @@ export function WhatIfPanel() {
           </button>
         )}
       </div>
-      {problem && (
-        <div class="problem" role="alert">
-          <div>
-            <ProblemText problem={problem} />
-          </div>
-        </div>
-      )}
+      {problem && <ProblemBox problem={problem} />}
       {shown && <Steps answer={shown.answer} />}
       {shown?.answer.plan === null && <p class="muted">{t("whatIf.noPlan", { reason: shown.answer.no_plan })}</p>}
     </details>

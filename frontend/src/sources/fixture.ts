@@ -184,7 +184,7 @@ export class FixtureSource implements Source {
     const peaks = this.place === 1 ? [{ bearing_deg: (bearing + 118) % 360, weight: 0.31 }] : [];
     this.emit({
       kind: "bearing_measured", bearing_id: `bearing-${this.place}`, sweep_id: sweepId, place_number: this.place, place: at, altitude_amsl_m: 102,
-      bearing_deg: bearing, sigma_deg: SIGMA, quality: 0.86 + 0.1 * this.rand(), peaks, snr_db: 17.2, drift_m: 0.7, binned_db: binned, fitted_db: fitted,
+      bearing_deg: bearing, sigma_deg: SIGMA, quality: 0.86 + 0.1 * this.rand(), peaks, snr_db: 17.2, drift_m: 0.7, binned_db: binned, fitted_db: fitted, measurement_time_s: 30,
     }); // prettier-ignore
     this.belief_.update(this.at, bearing, SIGMA);
     const estimate = this.belief_.estimate();

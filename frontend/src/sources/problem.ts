@@ -12,14 +12,18 @@ export class RequestFailed extends Error {
   }
 }
 
+/** Found by the page itself, before it asks the server. */
+export const localProblem = (title: string, detail: string, status = 0): Problem => ({
+  type: "about:blank",
+  title,
+  status,
+  detail,
+  remedy: "",
+  errors: [],
+  incident: null,
+});
+
 export function unreachable(detail: string): RequestFailed {
-  return new RequestFailed({
-    type: "about:blank",
-    title: "The server does not answer",
-    status: 0,
-    detail,
-    remedy: "Check that the server runs and that this device is in its network; nothing you typed is lost.",
-    errors: [],
-    incident: null,
-  });
+  const remedy = "Check that the server runs and that this device is in its network; nothing you typed is lost.";
+  return new RequestFailed({ ...localProblem("The server does not answer", detail), remedy });
 }

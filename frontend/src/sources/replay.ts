@@ -1,7 +1,7 @@
 // A recording: a mission's journal as exported (JSON), shown through the same interface as a live one.
 import { t } from "../i18n";
 import type { CommandReply, ExpectedTime, PreflightReply, Recorded, Track } from "../wire";
-import { RequestFailed } from "./problem";
+import { localProblem, RequestFailed } from "./problem";
 import * as api from "./api";
 import type { Source, SourceMessage } from "./source";
 
@@ -39,7 +39,7 @@ export function readRecording(text: string): ReplaySource {
 }
 
 function refuse(): never {
-  throw new RequestFailed({ type: "about:blank", title: t("problem.refused"), status: 409, detail: t("problem.recording"), remedy: "", errors: [], incident: null });
+  throw new RequestFailed(localProblem(t("problem.refused"), t("problem.recording"), 409));
 }
 
 export class ReplaySource implements Source {

@@ -17,6 +17,7 @@ const bearing: EventOf<"bearing_measured"> = {
   drift_m: 0.3,
   binned_db: Array.from({ length: 180 }, (_, i) => -60 - Math.abs(i - 22) / 4),
   fitted_db: Array.from({ length: 180 }, () => -60),
+  measurement_time_s: 30,
 };
 
 const plan: EventOf<"plan_chosen"> = {
