@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.observation import wrap
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, PlannerError
 
 
@@ -24,7 +25,7 @@ def flight_time(motion: Motion, distance: FloatArray | float, turn: FloatArray |
 
 def turn_between(heading: float, direction: FloatArray | float) -> FloatArray:
     """Smallest turn in rad, [0, pi], from one direction to another."""
-    return np.abs((np.asarray(direction) - heading + np.pi) % (2 * np.pi) - np.pi)
+    return np.abs(wrap(np.asarray(direction) - heading))
 
 
 def fit_motion(distances: FloatArray, turns: FloatArray, times: FloatArray) -> tuple[Motion, dict[str, float]]:

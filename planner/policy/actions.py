@@ -55,10 +55,16 @@ def lattice(problem: Problem) -> FloatArray:
 
 
 def belief_grid(problem: Problem, belief: GridBelief) -> FloatArray:
-    """(X Y, 2) m: cell centres of the tripled belief rectangle cut with the flight area's; west to east first."""
+    """(X Y, 2) m: cell centres of the action rectangle; west to east first."""
     nx, ny = problem.action_grid
     if nx < 1 or ny < 1:
         raise PlannerError(f"the action grid needs at least one cell each way, got {nx} x {ny}")
+    left, bottom, right, top = action_rectangle(problem, belief)
+    return _product(centres(left, (right - left) / nx, nx), centres(bottom, (top - bottom) / ny, ny))
+
+
+def action_rectangle(problem: Problem, belief: GridBelief) -> tuple[float, float, float, float]:
+    """(x_min, y_min, x_max, y_max), m: the belief rectangle tripled, cut with the flight area's if they meet."""
     x_min, y_min, x_max, y_max = belief.bounds
     width, height = x_max - x_min, y_max - y_min
     window = flight_window(problem)
@@ -66,7 +72,7 @@ def belief_grid(problem: Problem, belief: GridBelief) -> FloatArray:
     bottom, top = max(y_min - height, window[1]), min(y_max + height, window[3])
     if left >= right or bottom >= top:
         left, bottom, right, top = window
-    return _product(centres(left, (right - left) / nx, nx), centres(bottom, (top - bottom) / ny, ny))
+    return float(left), float(bottom), float(right), float(top)
 
 
 def flight_window(problem: Problem) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from planner.belief.grid import GridBelief
-from planner.policy.actions import flight_window
+from planner.policy.actions import action_rectangle
 from planner.policy.allowed import nearest_allowed
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
@@ -75,7 +75,7 @@ class ContinuousRollout:
             return np.minimum(costs, NO_WAY)
 
         base = (ellipse if self.base_policy == "ellipse" else fisher)(problem, belief, platform, rng)
-        result = self._select(sample, _rectangle(problem, belief), (base.x, base.y), budget)
+        result = self._select(sample, Rectangle(*action_rectangle(problem, belief)), (base.x, base.y), budget)
         wanted = result.places[result.best]
         x, y = nearest_allowed(problem, belief, wanted)
         return Decision(
@@ -97,17 +97,6 @@ class ContinuousRollout:
                 return sgd(sample, rectangle, start, budget, paths=self.paths)
             case "bfgs":
                 return bfgs(sample, rectangle, start, budget, paths=self.paths)
-
-
-def _rectangle(problem: Problem, belief: GridBelief) -> Rectangle:
-    x_min, y_min, x_max, y_max = belief.bounds
-    width, height = x_max - x_min, y_max - y_min
-    window = flight_window(problem)
-    left, right = max(x_min - width, window[0]), min(x_max + width, window[2])
-    bottom, top = max(y_min - height, window[1]), min(y_max + height, window[3])
-    if left >= right or bottom >= top:
-        left, bottom, right, top = window
-    return Rectangle(float(left), float(bottom), float(right), float(top))
 
 
 def _candidates(result: PlacesResult) -> tuple[Candidate, ...]:

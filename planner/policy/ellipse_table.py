@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from planner.observation import gaussian_likelihood
 from planner.types import FloatArray
 
 TABLE = Path(__file__).with_name("ellipse_table.json")
@@ -28,8 +29,7 @@ def expected_rmse_after(r: float, s1: float, sigma: float) -> float:
     prior = np.exp(-0.5 * ((x / s1) ** 2 + y**2))
     direction = np.arctan2(y + r, x)
     centres = np.arange(-180, 180)[:, None] * BIN
-    error = (centres - direction + np.pi) % (2 * np.pi) - np.pi
-    joint = prior * np.exp(-0.5 * (error / sigma) ** 2)
+    joint = prior * gaussian_likelihood(centres - direction, sigma)
     evidence = joint.sum(axis=1)
     joint, heard = joint[evidence > 1e-9 * evidence.max()], evidence.sum()
     mode = joint.argmax(axis=1)

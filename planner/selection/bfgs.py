@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 from scipy.optimize import minimize
 
@@ -42,8 +44,6 @@ def bfgs(
         values = notebook.visit(rectangle.clip(place + stencil), 0, paths)
         return float(values[0]), np.array([values[1] - values[2], values[3] - values[4]]) / difference
 
-    try:
+    with suppress(_BudgetSpent):
         minimize(value_and_gradient, rectangle.clip(np.array(start, dtype=np.float64)), jac=True, method="BFGS")
-    except _BudgetSpent:
-        return notebook.result()
     return notebook.result()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,28 +17,12 @@ STEPS = 20
 def moving_course(ratio: float = 0.5) -> Course:
     """The target crosses at half the platform's speed."""
     still = stationary_course(ratio, STEPS)
-    return Course(
-        starts=still.starts,
-        step=still.step,
-        steps=STEPS,
-        target=still.target,
-        sigma=still.sigma,
-        velocity=np.array([0.0, 0.5 * still.step]),
-        closest=still.closest,
-    )
+    return replace(still, velocity=np.array([0.0, 0.5 * still.step]))
 
 
 def two_platform_course(ratio: float = 0.5) -> Course:
     """Both start at the same place."""
-    still = stationary_course(ratio, STEPS)
-    return Course(
-        starts=np.zeros((2, 2)),
-        step=still.step,
-        steps=STEPS,
-        target=still.target,
-        sigma=still.sigma,
-        closest=still.closest,
-    )
+    return replace(stationary_course(ratio, STEPS), starts=np.zeros((2, 2)))
 
 
 def draw_courses() -> Figure:
