@@ -102,7 +102,7 @@ class Spool:
                 " ORDER BY seq LIMIT ?",
                 (seq, limit),
             ).fetchall()
-        return [(row[0], PowerSample(*row[1:5], bool(row[5]), bool(row[6]))) for row in rows]
+        return [(row[0], PowerSample(row[1], row[2], row[3], row[4], bool(row[5]), bool(row[6]))) for row in rows]
 
     def forget(self, seq: int) -> None:
         """Everything up to `seq` has been received."""

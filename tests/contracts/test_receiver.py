@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from stepped_clock import SteppedClock
 
-from hardware.payload.messages import PROTOCOL, Hello, Samples
+from hardware.payload.messages import PROTOCOL, Hello, Samples, WireSample
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub, PayloadSession
 from hardware.ports import Receiver, ReceiverError
@@ -76,7 +76,8 @@ class LoopbackPayload:
 
     async def _send(self) -> None:
         while True:
-            rows = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False, True) for k in range(self.next, self.next + 5)]
+            numbers = range(self.next, self.next + 5)
+            rows: list[WireSample] = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False, True) for k in numbers]
             message = Samples(first_seq=self.next, oldest_seq=1, clock_offset_s=None, samples=rows)
             self.session.receive(message.model_dump_json())
             self.next += 5

@@ -164,12 +164,16 @@ class FlatVehicle:
 
 
 class HummingReceiver:
-    """One level all the time: the directions come from `PointingFinder`. `mute` and `gone` are its faults."""
+    """One level all the time: the directions come from `PointingFinder`.
+
+    `mute` and `gone` are its faults; while `unheard`, no pulse that is due is heard.
+    """
 
     def __init__(self, clock: ScaledClock) -> None:
         self.clock = clock
         self.mute = False
         self.gone = False
+        self.unheard = False
 
     async def open(self, frequency_hz: float) -> None:
         if self.gone:
@@ -184,7 +188,7 @@ class HummingReceiver:
             if self.gone:
                 raise ReceiverError("the receiver was unplugged")
             if not self.mute:
-                yield PowerSample(self.clock.now(), 868.3e6, -60.0)
+                yield PowerSample(self.clock.now(), 868.3e6, -60.0, detected=not self.unheard)
 
 
 class PointingFinder:

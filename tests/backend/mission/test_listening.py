@@ -93,3 +93,15 @@ async def test_a_mute_receiver_gives_no_first_sample() -> None:
     listening.start()
     assert not await listening.first_sample(0.1)
     await listening.stop()
+
+
+async def test_a_receiver_that_hears_no_pulse_of_the_tag_is_well_and_has_heard_nothing() -> None:
+    listening, receiver, _ = made()
+    receiver.unheard = True
+    listening.start()
+    await until(lambda: listening.last is not None)
+    assert not await listening.first_sample(0.05)
+    assert listening.state == "ok"
+    receiver.unheard = False
+    assert await listening.first_sample(5.0)
+    await listening.stop()
