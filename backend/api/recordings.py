@@ -7,6 +7,7 @@ import hashlib
 import shutil
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -25,7 +26,7 @@ from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
-from hardware.sdr.sigmf_file import ARCHIVE, DATA, META
+from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, is_sigmf
 from hardware.sdr.spectrum import SpectrumError
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
@@ -51,7 +52,9 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-    wrongly. offset_deg: the antenna's front, clockwise of the nose. The rest is for IQ."""
+    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name.
+    offset_deg: the antenna's front, clockwise of the nose. frequency_hz, pulse_width_s, pulse_period_s: what to look
+    for in IQ."""
 
     files: list[UploadFile]
     lat: Annotated[Finite, Field(ge=-90, le=90)] | None = None
@@ -88,6 +91,10 @@ async def _read(form: RecordingForm) -> Upload:
     """Raises MissionInputError."""
     if (form.lat is None) != (form.lon is None):
         raise MissionInputError("a place needs both latitude and longitude", "give lat and lon, or neither", "lat")
+    if (form.pulse_width_s is None) != (form.pulse_period_s is None):
+        raise MissionInputError(
+            "a pulsed tag needs both its pulse width and its period", "give both, or neither", "pulse_period_s"
+        )
     place = None if form.lat is None or form.lon is None else Place(lat=form.lat, lon=form.lon)
     with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
         names = await asyncio.to_thread(_stored, form.files, Path(folder))
@@ -142,10 +149,12 @@ def _parsed(names: dict[Path, str], form: RecordingForm) -> Recording:
     recording = next(iter(names))
     headings = next((path for path in names if path.name == "headings.csv"), None)
     width, period = form.pulse_width_s, form.pulse_period_s
-    if (width is None) != (period is None):
-        raise RecordingError("a pulsed tag needs both its pulse width and its period")
     pulses = None if width is None or period is None else PulseSetting(width, period)
-    return read_sweeps(recording, form.tag, IqReading(headings, form.frequency_hz, pulses))
+    read = read_sweeps(recording, form.tag, IqReading(headings, form.frequency_hz, pulses))
+    if is_sigmf(recording) or (form.frequency_hz is None and pulses is None):
+        return read
+    unused = f"{recording.name}: frequency and pulses are looked for in IQ only; these powers are taken as they are"
+    return replace(read, remarks=(*read.remarks, unused))
 
 
 def _renamed(text: str, names: dict[Path, str]) -> str:

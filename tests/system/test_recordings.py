@@ -96,7 +96,9 @@ async def test_imported_bearings_are_flown_with_and_a_flying_mission_takes_none(
     place, mission_id = frame.to_geo(-120.0, 20.0), operator.mission_id
     file = plain(tmp_path / "turn.csv", 30.0, 1)
     words = {"lat": place.lat_deg, "lon": place.lon_deg}
-    assert (await sent(operator, mission_id, file, **words)).status_code == 201
+    imported = await sent(operator, mission_id, file, **words, frequency_hz=868.3e6)
+    assert imported.status_code == 201
+    assert "looked for in IQ only" in imported.json()["remarks"][-2]
     assert (await operator.order("start"))["accepted"]
     await operator.until_event("plan_chosen")
     beliefs = operator.of("belief_updated")
@@ -155,6 +157,8 @@ async def test_what_cannot_be_imported_leaves_nothing_behind(operator: Console, 
         ((good,), {"lat": 50.6}, "both latitude and longitude"),
         ((good,), {"lat": 95, "lon": 7}, "lat"),
         ((good,), place | {"at_utc": "yesterday"}, "at_utc"),
+        ((good,), place | {"pulse_width_s": 0.02}, "pulse_period_s"),
+        ((good,), place | {"offset_deg": "left"}, "offset_deg"),
         ((good, text), place, "are two recordings"),
         ((), place, "files"),
     ):

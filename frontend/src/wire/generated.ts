@@ -1686,7 +1686,9 @@ export interface components {
         };
         /**
          * @description What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-         *     wrongly. offset_deg: the antenna's front, clockwise of the nose. The rest is for IQ.
+         *     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name.
+         *     offset_deg: the antenna's front, clockwise of the nose. frequency_hz, pulse_width_s, pulse_period_s: what to look
+         *     for in IQ.
          */
         RecordingForm: {
             files: string[];
