@@ -61,7 +61,10 @@ def _entry_point(sources: int):
     def rollouts(start: Start, rules: Rules, actions: Actions, paths: Paths, tasks: Tasks, out: Outcomes) -> None:
         """Run every task and fill `out`; see reference.rollouts."""
         _ = sources
-        _run(start, rules, actions, paths, tasks, out)
+        work = _workspace(start, rules)
+        _copy_start(start, work)
+        for t in range(len(tasks.action)):
+            _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], work, out, t)
 
     return rollouts
 
@@ -69,19 +72,17 @@ def _entry_point(sources: int):
 rollouts = _entry_point(SOURCES)
 
 
-@allocating
-def _run(start, rules, actions, paths, tasks, out):
-    work = _workspace(start, rules)
-    work.hull[_FIRST, : len(start.hull)] = start.hull
-    work.low[_FIRST, : len(start.low)], work.high[_FIRST, : len(start.low)] = start.low, start.high
+@inlined
+def _copy_start(start, work):
+    """The belief that every rollout starts with. Element by element: slices cost seconds of compiling."""
+    for v in range(len(start.hull)):
+        work.hull[_FIRST, v, 0], work.hull[_FIRST, v, 1] = start.hull[v, 0], start.hull[v, 1]
     filled = 0
     for j in range(start.density.shape[0]):
-        work.offset[_FIRST, j] = filled
+        work.low[_FIRST, j], work.high[_FIRST, j], work.offset[_FIRST, j] = start.low[j], start.high[j], filled
         for i in range(start.low[j], start.high[j]):
             work.weight[_FIRST, filled] = start.density[j, i]
             filled += 1
-    for t in range(len(tasks.action)):
-        _rollout(start, rules, actions, paths, tasks.action[t], tasks.path[t], work, out, t)
 
 
 @allocating
