@@ -50,14 +50,10 @@ def serving(data_dir: Path, speedup: float = SPEEDUP) -> Iterator[Server]:
     arguments = ["--data-dir", str(data_dir), "--speedup", str(speedup), "--seed", "3"]
     process = started([*arguments, "--port", "0"])
     made = Server(url_of(process), data_dir, arguments, process)
-    yield made
-    made.stop()
-
-
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
-    with serving(tmp_path) as made:
+    try:
         yield made
+    finally:
+        made.stop()
 
 
 @pytest.fixture
@@ -68,8 +64,8 @@ def unhurried_server(tmp_path: Path) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="module")
-def quiet_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """One for a whole module, for tests that fly nothing."""
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """One for a whole module: a test that flies leaves the vehicle where the next one wants it."""
     with serving(tmp_path_factory.mktemp("served")) as made:
         yield made
 

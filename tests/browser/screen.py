@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
 expect.set_options(timeout=60_000)
-
-HOLD_S = 1.9
-"""Longer than the 1.5 s that the space bar must be held."""
 
 
 class Screen:
@@ -39,10 +37,11 @@ class Screen:
         return self.part("state-words").get_attribute("data-phase")
 
     def slide(self, name: str) -> None:
-        """Hold the space bar on the slider."""
+        """Hold the space bar on the slider until it has confirmed."""
         self.part(name).focus()
         self.page.keyboard.down(" ")
-        self.page.wait_for_timeout(HOLD_S * 1000)
+        full = f"[data-testid={name}]:not([aria-valuenow='100'])"
+        expect(self.page.locator(full)).to_have_count(0)
         self.page.keyboard.up(" ")
 
     def drag_slider(self, name: str, share: float) -> None:
@@ -59,6 +58,15 @@ class Screen:
     def map_ready(self, name: str = "map") -> None:
         expect(self.part(name)).to_have_attribute("data-ready", "true")
 
+    def hold(self) -> None:
+        self.page.keyboard.press("Alt+Shift+H")
+        self.expect_phase("hold")
+
+    def resume(self) -> None:
+        self.part("resume").click()
+        self.slide("resume-slider")
+        self.expect_phase("planning", "flying", "measuring")
+
     def map_point(self, right: float, down: float, name: str = "map") -> tuple[float, float]:
         """Pixels of a place on the map, by shares of its width and height."""
         box = self.part(name).bounding_box()
@@ -71,9 +79,7 @@ class Screen:
         for right, down in [*corners, corners[0]]:
             x, y = self.map_point(right, down, "edit-map")
             self.page.mouse.move(x, y)
-            self.page.wait_for_timeout(120)
             self.page.mouse.click(x, y)
-            self.page.wait_for_timeout(120)
 
     def checked(self) -> None:
         """Check until everything passes: on a busy machine a value may be too old at the first try."""
@@ -100,11 +106,14 @@ class Screen:
 
     def expect_belief(self, bearings: int) -> None:
         """The belief after so many bearings is painted on the map."""
-        for _ in range(300):
-            if self.evaluate("window.crossfixBeliefPainted?.bearings") == bearings:
-                return
+        until = time.monotonic() + 60
+        while self.evaluate("window.crossfixBeliefPainted?.bearings") != bearings:
+            assert time.monotonic() < until, f"the belief after {bearings} bearings was not painted"
             self.page.wait_for_timeout(100)
-        raise AssertionError(f"the belief after {bearings} bearings was not painted within 30 s")
+
+    def row(self, kind: str) -> Locator:
+        """The timeline's rows of this kind of event."""
+        return self.page.locator(f"[data-testid=event-row][data-kind={kind}]")
 
     def evaluate(self, script: str) -> Any:
         return self.page.evaluate(script)

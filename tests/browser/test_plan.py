@@ -1,21 +1,17 @@
-"""Planning: files, typed corners, refusals in plain words, nothing typed is lost."""
+"""Before the flight: files, typed corners, recordings, the antenna; refusals in plain words, nothing typed is lost."""
 
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from screen import Screen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
-
-
-@pytest.fixture
-def server(quiet_server: Server) -> Server:
-    return quiet_server
 
 
 RING = [[7.2030, 50.6234], [7.2060, 50.6234], [7.2060, 50.6250], [7.2030, 50.6250], [7.2030, 50.6234]]
@@ -77,9 +73,9 @@ def test_the_corners_of_an_area_with_a_hole_are_moved_and_the_hole_stays(
     area = json.dumps({"type": "Polygon", "coordinates": [RING, hole]})
     editor.part("import-file").set_input_files(write(tmp_path, "clearing.geojson", area))
     expect(editor.part("area-size")).to_contain_text("8 corners")
-    editor.part("draw-corners").click()
-    editor.page.wait_for_timeout(500)
-    editor.part("draw-corners").click()
+    for pressed in ("true", "false"):
+        editor.part("draw-corners").click()
+        expect(editor.part("draw-corners")).to_have_attribute("aria-pressed", pressed)
     rings = saved(server, editor)["area"]["coordinates"]
     assert [len(ring) for ring in rings] == [5, 5]
     assert {tuple(c) for c in rings[1]} == {tuple(c) for c in hole}
@@ -152,3 +148,49 @@ def test_a_mission_is_used_again_and_edited(server: Server, editor: Screen) -> N
     saved(server, editor)
     names = [m["name"] for m in server.get("/api/missions")["missions"]]
     assert names.count("First, corrected") == 2
+
+
+@pytest.fixture
+def draft(server: Server, screen: Screen) -> Screen:
+    screen.open(server.draft())
+    expect(screen.part("preflight")).to_have_attribute("data-passed", "true")
+    return screen
+
+
+def test_a_recorded_rotation_is_imported_and_what_was_not_understood_is_named(
+    server: Server, draft: Screen, tmp_path: Path
+) -> None:
+    rows = [f"{heading},{-60 + 9 * math.cos(math.radians(heading - 70)):.2f}" for heading in range(0, 360, 3)]
+    rotation = write(tmp_path, "hilltop.csv", "\n".join(["heading_deg,power_db", *rows, "north,loud"]))
+    draft.part("recording").locator("summary").first.click()
+    draft.part("recording-send").click()
+    expect(draft.part("recording-problem")).to_contain_text("Choose a file first")
+    draft.part("recording-files").set_input_files(rotation)
+    draft.part("recording-place").fill("50.6240, 7.2040")
+    draft.part("recording-at").fill("2026-05-01T10:00:30")
+    draft.part("recording").locator("summary").last.click()
+    draft.part("recording-tag").fill("lynx 4")
+    draft.part("recording-offset_deg").fill("90")
+    draft.part("recording-send").click()
+    found = draft.part("recording-found")
+    expect(found).to_contain_text("±")
+    expect(draft.part("recording-remarks")).to_contain_text("north")
+    (bearing,) = [e["bearing_deg"] for e in server.events(draft.mission_id) if e["kind"] == "bearing_measured"]
+    assert abs(bearing - 160) < 5, "the antenna looked 90 degrees to the right of the nose"
+    expect(draft.part("sweep-bearing")).to_have_attribute("data-value", str(bearing))
+
+
+def test_an_antenna_that_was_not_turned_refuses_the_start(draft: Screen) -> None:
+    def at_once(route: Route) -> None:
+        route.continue_(post_data=json.dumps(route.request.post_data_json | {"wait_s": 1}))
+
+    draft.page.route("**/antenna-check", at_once)
+    draft.part("antenna").locator("summary").click()
+    draft.part("antenna-emitter").fill("behind the barn")
+    draft.part("antenna-listen").click()
+    expect(draft.part("antenna-problem")).to_contain_text("Write a bearing like 120")
+    draft.part("antenna-emitter").fill("120")
+    draft.part("antenna-listen").click()
+    expect(draft.part("preflight")).to_have_attribute("data-passed", "false")
+    expect(draft.part("check").filter(has_text="around the circle")).to_have_attribute("data-ok", "false")
+    expect(draft.part("start")).to_be_disabled()

@@ -28,6 +28,7 @@ class SceneTab:
         self.server = server
         self.context = browser.new_context(viewport={"width": 900, "height": 600})
         self.page: Page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE_S * 1000)
         self.asked: list[str] = []
         self.faults: list[str] = []
         self.page.on("request", lambda request: self.asked.append(request.url))

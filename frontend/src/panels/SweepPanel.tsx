@@ -101,7 +101,7 @@ export function SweepPanel() {
   const [picked, setPicked] = useState<number | null>(null);
   const state = mission.value;
   const sweeps = sweepsOf(state);
-  const running = cursor.value === null ? live.value.sweep?.value : undefined;
+  const running = cursor.value === null && state.phase === "measuring" ? live.value.sweep?.value : undefined;
   const sweep = sweeps.find((s) => s.seq === picked) ?? sweeps[0];
   const showRunning = running && running.mission_id === state.missionId && picked === null;
   return (
