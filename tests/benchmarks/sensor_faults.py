@@ -49,8 +49,8 @@ OVERDRIVEN = FrontEnd(clip_dbm=-95.0)
 class Fault:
     """outliers: share of sweeps whose wave comes from anywhere but the emitter. heading_deg: what the compass is wrong
     by. nan: share of power samples that are no number. clipped: share of sweeps taken with too much gain. jumps: share
-    of places reported `jump_m` beside the true one. seen: the position steps there, as the vehicle link notices; else it
-    creeps. multipath: the demo's walls stand around."""
+    of places reported `jump_m` beside the true one. seen: the position steps there, which the vehicle link notices;
+    else it creeps. multipath: the demo's walls stand around."""
 
     name: str
     outliers: float = 0.0
