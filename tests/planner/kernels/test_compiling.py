@@ -1,5 +1,5 @@
 import ast
-import importlib.util
+import importlib
 import subprocess
 import sys
 
@@ -34,12 +34,10 @@ assert hasattr(sys.modules["scipy.linalg.cython_blas"], "__pyx_capi__"), "the st
 """
 
 
-def test_machine_code_is_kept_for_the_same_sources_only(tmp_path):
-    path = tmp_path / "kernel.py"
-    path.write_text(ENTRY_POINT)
-    spec = importlib.util.spec_from_file_location("kernel", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+def test_machine_code_is_kept_for_the_same_sources_only(tmp_path, monkeypatch):
+    (tmp_path / "kernel_under_test.py").write_text(ENTRY_POINT)
+    monkeypatch.syspath_prepend(tmp_path)
+    module = importlib.import_module("kernel_under_test")
     hits = []
     for sources in (1, 1, 2):
         successor = module.entry_point(sources)
