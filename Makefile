@@ -54,7 +54,8 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
-unit: setup-dev ## tests without a vehicle or a browser
+unit: setup-dev ## tests without a vehicle or a browser; the kernel is compiled once before, not by each worker in a test
+	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 	$(BIN)/pytest -n 2 --hypothesis-profile ci -m "not system and not browser and not long"
 
 system: setup-dev build ## whole missions over real sockets

@@ -1819,7 +1819,7 @@ export interface components {
         SensorSpec: {
             /** @default 7 */
             sigma_deg: number;
-            /** @default 0.05 */
+            /** @default 0.1 */
             outlier_probability: number;
             /** @default 30 */
             measurement_time_s: number;
@@ -1836,7 +1836,7 @@ export interface components {
         SensorSpecInput: {
             /** @default 7 */
             sigma_deg: number;
-            /** @default 0.05 */
+            /** @default 0.1 */
             outlier_probability: number;
             /** @default 30 */
             measurement_time_s: number;
