@@ -25,6 +25,9 @@ it("puts the values of a sentence into its translation, sentences within sentenc
     "nicht gefunden nach 20 Orten (noch nicht: keine Peilung genommen; noch nicht: 2 von 5 Peilungen widersprechen der Schätzung, es braucht noch einen Blick)",
   );
   expect(toldName("safety: no_fly")).toBe("Sicherheit: Flugverbot");
+  expect(told("a.csv: no usable pulse of tag 3 in any rotation; first remark: a.csv:2: a pulse needs 19 columns, this row has 7; line left out")).toBe(
+    "a.csv: kein brauchbarer Puls der Kennung 3 in irgendeiner Drehung; erste Bemerkung: a.csv:2: ein Puls braucht 19 Spalten, diese Zeile hat 7; Zeile ausgelassen",
+  );
 });
 
 it("shows a sentence that it does not know as it came", () => {

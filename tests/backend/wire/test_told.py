@@ -16,7 +16,9 @@ CATALOGUE: dict[str, str] = json.loads((ROOT / "frontend/src/i18n/told.json").re
 
 ROOMS = [
     "planner/belief/verdict.py",
+    "backend/api/recordings.py",
     "backend/mission/checklist.py",
+    "backend/mission/importing.py",
     "backend/mission/listening.py",
     "backend/mission/machine.py",
     "backend/mission/measuring.py",
@@ -27,9 +29,12 @@ ROOMS = [
     "hardware/autopilot/preflight.py",
     "hardware/autopilot/px4.py",
     "hardware/direction_finding/estimate.py",
+    "hardware/direction_finding/recordings.py",
+    "hardware/direction_finding/table_file.py",
+    "hardware/direction_finding/uavrt.py",
 ]
 
-PIECES = {"the target area", "could not be read", "= {}", "{}: {}", "{}, {}", "{} %", "{}{}"}
+PIECES = {"the target area", "could not be read", "= {}", "{}, {}", "{} %", "{}{}"}
 """Of which sentences are put together, or that have no words."""
 
 NAMES_OF_MODES = {"POSCTL SLOW", "PRECISION LAND", "RTK float", "RTK fixed"}
