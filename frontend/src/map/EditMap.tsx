@@ -10,14 +10,15 @@ import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
 import { draft } from "../edit/draft";
 import { preview } from "../edit/preview";
 import { t } from "../i18n";
-import { boundsOf, lonLat } from "../state/geometry";
+import { boundsOf } from "../state/geometry";
 import { emptyMission } from "../state/mission";
 import { ringsApart, ringsTogether, type Rings } from "../state/areas";
+import type { MissionSpec } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { createMap, fit } from "./createMap";
 import { areaPoints, candidateFeatures, collection, flightPoints, planFeatures } from "./features";
-import { missionLayers, SOURCES } from "./layers";
+import { addSources, missionLayers } from "./layers";
 import { palettes, type Palette } from "./palette";
 
 type Hex = `#${string}`;
@@ -106,6 +107,15 @@ const parked = computed(() => vehicle.value.at?.map((degrees) => degrees.toFixed
 
 let framed: string | null = null;
 
+/** False as soon as the operator moves the map himself: then it stays where he put it. */
+let framing = true;
+
+function frameDraft(map: GlMap, spec: MissionSpec): void {
+  const at = vehicle.peek().at;
+  const bounds = boundsOf([...areaPoints(spec.area), ...flightPoints(spec), ...(at ? [at] : [])]);
+  if (bounds) fit(map, bounds, false);
+}
+
 export function EditMap({ onFile }: { onFile: (file: File) => void }) {
   const box = useRef<HTMLDivElement>(null);
   const theme = settings.value.theme;
@@ -117,7 +127,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
     map.doubleClickZoom.disable();
     const stops: (() => void)[] = [];
     map.on("load", () => {
-      for (const name of SOURCES) map.addSource(name, { type: "geojson", data: collection([]) });
+      addSources(map);
       for (const layer of missionLayers(colours)) map.addLayer(layer);
       const put = (name: string, data: GeoJSON.FeatureCollection) => map.getSource<GeoJSONSource>(name)?.setData(data);
       stops.push(
@@ -173,11 +183,17 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
         const now = draft.value;
         if (!now || framed === now.key) return;
         framed = now.key;
-        const at = vehicle.peek().at;
-        const bounds = boundsOf([...areaPoints(now.spec.area), ...flightPoints(now.spec), ...(at ? [lonLat({ lon: at[0], lat: at[1] })] : [])]);
-        if (bounds) fit(map, bounds, false);
+        framing = true;
+        frameDraft(map, now.spec);
       }),
     );
+    map.on("movestart", (event) => {
+      if ("originalEvent" in event && event.originalEvent) framing = false;
+    });
+    map.on("resize", () => {
+      const now = draft.peek();
+      if (framing && now) frameDraft(map, now.spec);
+    });
     return () => {
       stops.toReversed().forEach((stop) => stop());
       map.remove();

@@ -16,9 +16,9 @@ import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { beliefPixels, imageCorners } from "./beliefImage";
 import { createMap, fit, gridStepM } from "./createMap";
-import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, flightPoints, pathFeatures, planFeatures, roseFeatures, type Features } from "./features";
+import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, flightPoints, pathFeatures, planFeatures, type Features } from "./features";
 import { hover, watchHover } from "./hover";
-import { missionLayers, SOURCES, SWITCHES, type SourceName, type Switch } from "./layers";
+import { addSources, missionLayers, SWITCHES, type SourceName, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
 import { palettes } from "./palette";
 
@@ -99,19 +99,8 @@ function bind(map: GlMap): () => void {
   let nextShown = false;
   const stops = [
     effect(() => put(map, "plan", planFeatures(spec.value))),
-    effect(() => {
-      const { lines, wedges, places } = bearingFeatures({ spec: spec.value, bearings: bearings.value });
-      put(map, "bearings", lines);
-      put(map, "wedges", wedges);
-      put(map, "places", places);
-      put(map, "roses", roseFeatures({ spec: spec.value, bearings: bearings.value }));
-    }),
-    effect(() => {
-      const { c95, circle, place } = estimateFeatures({ belief: estimated.value });
-      put(map, "c95", c95);
-      put(map, "circle", circle);
-      put(map, "estimate", place);
-    }),
+    effect(() => put(map, "bearings", bearingFeatures({ spec: spec.value, bearings: bearings.value }))),
+    effect(() => put(map, "estimate", estimateFeatures({ belief: estimated.value }))),
     effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value, ended: ended.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => put(map, "overlays", shownOverlays.value)),
@@ -267,7 +256,7 @@ export function FlyMap() {
       frameAll(created, false);
     });
     created.on("load", () => {
-      for (const name of SOURCES) created.addSource(name, { type: "geojson", data: collection([]) });
+      addSources(created);
       for (const layer of missionLayers(palettes[theme])) created.addLayer(layer);
       addBelief(created);
       unbind = bind(created);

@@ -96,5 +96,6 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
 }
 
 export function fit(map: GlMap, box: [number, number, number, number], animate: boolean): void {
-  map.fitBounds(box, { padding: 48, maxZoom: 18.5, duration: animate ? 400 : 0 });
+  const padding = Math.min(48, 0.06 * map.getContainer().clientHeight);
+  map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }

@@ -59,65 +59,65 @@ export function planFeatures(spec: MissionSpec | null): Features {
 /** Measurement places so near to each other that their numbers would cover one another. */
 const ONE_PLACE_M = 3;
 
-function placeFeatures(mission: Measured): GeoJSON.Feature[] {
+function placeFeatures({ bearings }: Measured): GeoJSON.Feature[] {
   const places: { at: LonLat; numbers: number[] }[] = [];
-  for (const { fact } of mission.bearings) {
+  for (const { fact } of bearings) {
     const at = lonLat(fact.place);
     const near = places.find((p) => distanceM(p.at, at) < ONE_PLACE_M);
     if (!near) places.push({ at, numbers: [fact.place_number] });
     else if (!near.numbers.includes(fact.place_number)) near.numbers.push(fact.place_number);
   }
-  return places.map(({ at, numbers }) => point(at, { label: numbers.join(",") }));
+  return places.map(({ at, numbers }) => point(at, { what: "place", label: numbers.join(",") }));
 }
 
 /** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
-export function bearingFeatures(mission: Measured): { lines: Features; wedges: Features; places: Features } {
-  const reach = reachM(mission.spec);
-  const used = mission.bearings.filter((b) => !b.excluded);
-  const lines: GeoJSON.Feature[] = [];
-  const wedges: GeoJSON.Feature[] = [];
-  used.forEach(({ fact }, i) => {
+function directionFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
+  const reach = reachM(spec);
+  const used = bearings.filter((b) => !b.excluded);
+  const counted = used.flatMap(({ fact }, i) => {
     const at = lonLat(fact.place);
-    const properties = { quality: fact.quality, age: used.length - 1 - i };
-    lines.push(line([at, destination(at, fact.bearing_deg, reach)], { ...properties, what: "main" }));
-    wedges.push(polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, reach), properties));
-    for (const peak of fact.peaks) {
-      lines.push(line([at, destination(at, peak.bearing_deg, reach)], { ...properties, what: "peak", weight: peak.weight }));
-    }
+    const shared = { quality: fact.quality, age: used.length - 1 - i };
+    return [
+      polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, reach), { ...shared, what: "wedge" }),
+      line([at, destination(at, fact.bearing_deg, reach)], { ...shared, what: "main" }),
+      ...fact.peaks.map((peak) => line([at, destination(at, peak.bearing_deg, reach)], { ...shared, what: "peak", weight: peak.weight })),
+    ];
   });
-  for (const { fact } of mission.bearings.filter((b) => b.excluded)) {
+  const leftOut = bearings.filter((b) => b.excluded).map(({ fact }) => {
     const at = lonLat(fact.place);
-    lines.push(line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" }));
-  }
-  return { lines: collection(lines), wedges: collection(wedges), places: collection(placeFeatures(mission)) };
+    return line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" });
+  });
+  return [...counted, ...leftOut];
 }
 
 /** Received power around each measurement place as a rose; the newest strong, older ones fainter. */
-export function roseFeatures(mission: Measured): Features {
-  const size = reachM(mission.spec) / 9;
-  const used = mission.bearings;
-  return collection(
-    used.flatMap(({ fact, excluded }, i) => {
-      const scale = polarScale(fact.binned_db);
-      if (!scale) return [];
-      const width = 360 / fact.binned_db.length;
-      const ring = fact.binned_db.flatMap((db, bin) =>
-        db === null ? [] : [destination(lonLat(fact.place), (bin + 0.5) * width, size * radius(db, scale))],
-      );
-      return [polygon([...ring, ring[0]!], { age: used.length - 1 - i, excluded })];
-    }),
-  );
+function roseFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
+  const size = reachM(spec) / 9;
+  return bearings.flatMap(({ fact, excluded }, i) => {
+    const scale = polarScale(fact.binned_db);
+    if (!scale) return [];
+    const width = 360 / fact.binned_db.length;
+    const ring = fact.binned_db.flatMap((db, bin) =>
+      db === null ? [] : [destination(lonLat(fact.place), (bin + 0.5) * width, size * radius(db, scale))],
+    );
+    return [polygon([...ring, ring[0]!], { what: "rose", age: bearings.length - 1 - i, excluded })];
+  });
 }
 
-export function estimateFeatures(mission: Pick<MissionState, "belief">): { c95: Features; circle: Features; place: Features } {
+/** Everything that the sweeps say, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
+export const bearingFeatures = (mission: Measured): Features =>
+  collection([...directionFeatures(mission), ...roseFeatures(mission), ...placeFeatures(mission)]);
+
+/** The region, the expected error as a circle, the estimate. */
+export function estimateFeatures(mission: Pick<MissionState, "belief">): Features {
   const estimate = mission.belief?.fact.estimate;
-  if (!estimate) return { c95: collection([]), circle: collection([]), place: collection([]) };
+  if (!estimate) return collection([]);
   const at = lonLat(estimate);
-  return {
-    c95: collection([feature(estimate.c95 as GeoJSON.Geometry)]),
-    circle: collection([polygon(circle(at, estimate.expected_rmse_m))]),
-    place: collection([point(at)]),
-  };
+  return collection([
+    feature(estimate.c95 as GeoJSON.Geometry, { what: "c95" }),
+    polygon(circle(at, estimate.expected_rmse_m), { what: "circle" }),
+    point(at, { what: "estimate" }),
+  ]);
 }
 
 export function candidateFeatures(mission: Pick<MissionState, "plan" | "ended">, lit: number | null): Features {

@@ -21,9 +21,9 @@ describe("reduceLive", () => {
     expect(after.events).toBe(before.events);
   });
 
-  it("draws the path in steps of a metre, only in the air", () => {
+  it("draws the path in steps of three metres, only in the air", () => {
     const step = 1 / 111_320;
-    const state = run(telemetry(50, 7), telemetry(50 + 0.3 * step, 7), telemetry(50 + 2 * step, 7), telemetry(51, 7, { in_air: false }));
+    const state = run(telemetry(50, 7), telemetry(50 + 2 * step, 7), telemetry(50 + 4 * step, 7), telemetry(51, 7, { in_air: false }));
     expect(state.path).toHaveLength(2);
   });
 

@@ -40,7 +40,8 @@ export const emptyLive: LiveState = {
   unreadable: 0,
 };
 
-const PATH_STEP_M = 1.0;
+/** The vehicle on the map covers what is shorter; each step draws the whole map again. */
+const PATH_STEP_M = 3.0;
 
 function extendPath(path: readonly LonLat[], telemetry: TelemetryMessage): readonly LonLat[] {
   if (telemetry.lon === null || telemetry.lat === null || telemetry.in_air === false) return path;
