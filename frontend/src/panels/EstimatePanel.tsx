@@ -48,9 +48,7 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
 }
 
 function TimeLeft() {
-  const { plan, ended, belief } = mission.value;
-  if (!plan || ended || belief?.fact.localized) return null;
-  const left = remainingTime(plan, shownTimeMs.value);
+  const left = remainingTime(mission.value, shownTimeMs.value);
   if (!left) return null;
   return (
     <div data-testid="time-left" data-seconds={left.meanS}>
@@ -68,11 +66,11 @@ function TimeLeft() {
 /** The charge when it will be localized, against the way home and the reserve. Only of now: a review has no battery. */
 function BatteryThen() {
   const { telemetry, status } = live.value;
-  const { plan, ended, belief, spec, home } = mission.value;
+  const { spec, home } = mission.value;
   const battery = telemetry?.value.battery_percent ?? null;
   const toReturn = status?.value.battery_to_return_percent ?? null;
   const at = vehicle.value.at;
-  const left = plan && !ended && !belief?.fact.localized ? remainingTime(plan, shownTimeMs.value) : null;
+  const left = remainingTime(mission.value, shownTimeMs.value);
   if (battery === null || toReturn === null || !spec || !home || !at || !left || reviewTimeMs.value !== null) return null;
   const budget = flightBudget(battery, toReturn, distanceM(at, lonLat(home)), spec);
   const worstS = left.worstS ?? left.meanS;

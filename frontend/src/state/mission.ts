@@ -58,6 +58,8 @@ export interface MissionState {
   home: Place | null;
   startedAt: string | null;
   plan: At<PlanChosen> | null;
+  /** How long the search stood still since the plan; without the phase that lasts. */
+  pausedMs: number;
   /** The place on the way or being measured, by its number; null before the first plan. */
   placeNumber: number | null;
   attempt: number;
@@ -84,6 +86,7 @@ export const emptyMission: MissionState = {
   home: null,
   startedAt: null,
   plan: null,
+  pausedMs: 0,
   placeNumber: null,
   attempt: 1,
   bearings: [],
@@ -96,6 +99,13 @@ export const emptyMission: MissionState = {
   lost: {},
   ended: null,
 };
+
+/** Until now since the plan: the expected time runs only while the search goes on. */
+export function pausedMs({ plan, phase, phaseSince, pausedMs: before }: MissionState, nowMs: number): number {
+  const still = phase === "hold" || phase === "manual" || phase === "waiting";
+  if (!plan || !phaseSince || !still) return before;
+  return before + Math.max(0, nowMs - Math.max(Date.parse(phaseSince), Date.parse(plan.at)));
+}
 
 function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): MissionState {
   switch (event.kind) {
@@ -113,9 +123,9 @@ function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): M
     case "mission_started":
       return { ...state, home: event.home, startedAt: at };
     case "phase_changed":
-      return { ...state, phase: event.after, phaseReason: event.reason, phaseSince: at };
+      return { ...state, pausedMs: pausedMs(state, Date.parse(at)), phase: event.after, phaseReason: event.reason, phaseSince: at };
     case "plan_chosen":
-      return { ...state, plan: { fact: event, seq, at }, placeNumber: event.place_number, attempt: 1 };
+      return { ...state, plan: { fact: event, seq, at }, pausedMs: 0, placeNumber: event.place_number, attempt: 1 };
     case "plan_vetoed":
       return { ...state, plan: null };
     case "flight_started":

@@ -1,6 +1,5 @@
-// "Localized in about ...": the plan's expectation, counted down since it was made.
-import type { PlanChosen } from "../wire";
-import type { At } from "./mission";
+// "Localized in about ...": the plan's expectation, counted down while the search goes on.
+import { pausedMs, type MissionState } from "./mission";
 
 export interface TimeLeft {
   meanS: number;
@@ -8,9 +7,13 @@ export interface TimeLeft {
   worstS: number | null;
 }
 
-export function remainingTime(plan: At<PlanChosen>, timeMs: number): TimeLeft | null {
+/** Null without a plan, once it goes home, and when the planner gave no time. */
+export function remainingTime(mission: MissionState, timeMs: number): TimeLeft | null {
+  const { plan, ended, belief, phase } = mission;
+  const goesOn = !ended && !belief?.fact.localized && phase !== "returning" && phase !== "landing";
+  if (!plan || !goesOn) return null;
   const { expected_time_s: mean, time_90_s: worst } = plan.fact;
   if (mean === null) return null;
-  const elapsed = Math.max(0, (timeMs - Date.parse(plan.at)) / 1000);
+  const elapsed = Math.max(0, (timeMs - Date.parse(plan.at) - pausedMs(mission, timeMs)) / 1000);
   return { meanS: Math.max(0, mean - elapsed), worstS: worst === null ? null : Math.max(0, worst - elapsed) };
 }
