@@ -104,6 +104,8 @@ FLIGHT_CRITICAL = (
     "alerts",
     "start",
     "start-slider",
+    "resume-slider",
+    "override-slider",
 )
 
 
@@ -124,6 +126,9 @@ class Legible:
                 for v in result["violations"]
                 if v["impact"] in ("serious", "critical")
             ] == [], f"{name}, {theme}"
+        self.targets(name)
+
+    def targets(self, name: str) -> None:
         for control in FLIGHT_CRITICAL:
             for part in self.screen.part(control).filter(visible=True).all():
                 box = part.bounding_box()
@@ -163,7 +168,12 @@ def test_the_flight_and_its_sheets_are_legible(server: Server, open_screen: Open
     legible = Legible(screen)
     legible.check("flying")
     screen.hold()
-    expect(screen.part("resume")).to_be_visible()
+    screen.part("resume").click()
+    expect(screen.part("resume-slider")).to_be_visible()
+    legible.targets("resume")
+    screen.page.mouse.click(*screen.map_point(0.5, 0.5))
+    expect(screen.part("override-slider")).to_be_visible()
+    legible.targets("proposal")
     for sheet in SHEETS:
         _show(screen, sheet)
         legible.check(sheet)

@@ -1,4 +1,5 @@
 // Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
+import { useEffect, useRef } from "preact/hooks";
 import { settings } from "../app/settings";
 import { cursor, live, mission, source, supposedHere, vehicle } from "../app/store";
 import { send } from "../commands/send";
@@ -86,8 +87,10 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
   const { result, problem } = proposed;
   const here = vehicle.value.at;
   const units = settings.value.units;
+  const card = useRef<HTMLDivElement>(null);
+  useEffect(() => card.current?.scrollIntoView({ block: "nearest" }), [result, problem]);
   return (
-    <div class="proposal" data-testid="proposal" data-allowed={result?.allowed ?? ""}>
+    <div class="proposal" data-testid="proposal" data-allowed={result?.allowed ?? ""} ref={card}>
       <h3>{t("proposal.title")}</h3>
       <div>
         {formatPlace(proposed.place, settings.value.coordinates)}

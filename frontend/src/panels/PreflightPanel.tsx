@@ -65,24 +65,23 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
         </>
       )}
       <div class="start-foot">
-      <div class="start-row">
-        <a class="button" href={`#/mission/${encodeURIComponent(missionId)}/edit`} data-testid="edit">
-          {t("preflight.edit")}
-        </a>
-        {!sliding && (
-          <button class="primary" data-testid="start" disabled={!preflightPassed} onClick={() => setSliding(true)}>
-            {t("preflight.start")}
-          </button>
+        {sliding ? (
+          <SlideToConfirm
+            label={t("preflight.slide")}
+            testId="start-slider"
+            onConfirm={() => void send("start", missionId, { kind: "start" }).then(() => setSliding(false))}
+            onCancel={() => setSliding(false)}
+          />
+        ) : (
+          <div class="start-row">
+            <a class="button" href={`#/mission/${encodeURIComponent(missionId)}/edit`} data-testid="edit">
+              {t("preflight.edit")}
+            </a>
+            <button class="primary" data-testid="start" disabled={!preflightPassed} onClick={() => setSliding(true)}>
+              {t("preflight.start")}
+            </button>
+          </div>
         )}
-      </div>
-      {sliding && (
-        <SlideToConfirm
-          label={t("preflight.slide")}
-          testId="start-slider"
-          onConfirm={() => void send("start", missionId, { kind: "start" }).then(() => setSliding(false))}
-          onCancel={() => setSliding(false)}
-        />
-      )}
       </div>
     </section>
   );

@@ -24,6 +24,7 @@ export function stateWords(mission: MissionState, etaS: number | null): string {
     case "done":
       return t("state.done", { reason: mission.ended ? told(mission.ended.fact.reason) : reason });
     case "draft":
+      return t(mission.preflightPassed === false ? "state.refused" : "state.draft");
     case "ready":
     case "taking_off":
     case "waiting":

@@ -12,7 +12,11 @@ function grouped(value: number, digits = 0): string {
   const key = `${locale.value}${digits}`;
   let formatter = formatters.get(key);
   if (!formatter) {
-    formatter = new Intl.NumberFormat(locale.value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    formatter = new Intl.NumberFormat(locale.value, {
+      minimumFractionDigits: digits,
+      maximumFractionDigits: digits,
+      signDisplay: "negative",
+    });
     formatters.set(key, formatter);
   }
   return formatter.format(value);
