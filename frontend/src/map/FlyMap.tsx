@@ -9,7 +9,7 @@ import { cancelProposal, proposal, propose } from "../commands/proposal";
 import { t, told, type MessageKey } from "../i18n";
 import { OLD_AFTER_S } from "../state/age";
 import { boundsOf, lonLat } from "../state/geometry";
-import { inFlight } from "../state/mission";
+import { inFlight, isHomeward } from "../state/mission";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration, formatLength } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
@@ -79,8 +79,7 @@ function nextElement(): HTMLElement {
 const spec = computed(() => mission.value.spec);
 const bearings = computed(() => mission.value.bearings);
 const estimated = computed(() => mission.value.belief);
-const plan = computed(() => mission.value.plan);
-const ended = computed(() => mission.value.ended);
+const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.plan));
 const home = computed(() => mission.value.home);
 const phase = computed(() => mission.value.phase);
 
@@ -101,7 +100,7 @@ function bind(map: GlMap): () => void {
     effect(() => put(map, "plan", planFeatures(spec.value))),
     effect(() => put(map, "bearings", bearingFeatures({ spec: spec.value, bearings: bearings.value }))),
     effect(() => put(map, "estimate", estimateFeatures({ belief: estimated.value }))),
-    effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value, ended: ended.value }, highlighted.value))),
+    effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => put(map, "overlays", shownOverlays.value)),
     effect(() => {
@@ -135,7 +134,7 @@ function bind(map: GlMap): () => void {
     }),
     effect(() => {
       const proposed = proposal.value;
-      const at = proposed?.place ?? (ended.value ? undefined : plan.value?.fact.place);
+      const at = proposed?.place ?? plan.value?.fact.place;
       nextMarker.getElement().classList.toggle("proposed", proposed !== null);
       nextMarker.getElement().title = t("map.next");
       if (!at) {

@@ -120,9 +120,9 @@ export function estimateFeatures(mission: Pick<MissionState, "belief">): Feature
   ]);
 }
 
-export function candidateFeatures(mission: Pick<MissionState, "plan" | "ended">, lit: number | null): Features {
+export function candidateFeatures(mission: Pick<MissionState, "plan">, lit: number | null): Features {
   const plan = mission.plan?.fact;
-  if (!plan || mission.ended) return collection([]);
+  if (!plan) return collection([]);
   return collection(
     rankCandidates(plan)
       .toReversed()

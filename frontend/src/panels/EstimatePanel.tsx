@@ -1,11 +1,13 @@
 // Where the emitter probably is, how wrong that may be, and how long until it may be said.
+import { computed } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { copyText } from "../app/clipboard";
 import { change, settings } from "../app/settings";
-import { live, mission, reviewTimeMs, shownTimeMs, supposedHere, vehicle } from "../app/store";
+import { live, mission, reviewTimeMs, shownBelief, shownTimeMs, supposedHere, vehicle } from "../app/store";
 import { t, told, toldReason, type MessageKey } from "../i18n";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
 import { distanceM, lonLat } from "../state/geometry";
+import { shareWithin } from "../state/nearness";
 import { remainingTime } from "../state/timeLeft";
 import { formatPlace, type CoordinateFormat } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
@@ -90,6 +92,24 @@ function BatteryThen() {
   );
 }
 
+/** How likely the emitter is as near to the estimate as the mission wants to know it; null until the belief is there. */
+const insideGoal = computed<number | null>(() => {
+  const { belief, spec } = mission.value;
+  const frame = shownBelief.value;
+  const estimate = belief?.fact.estimate;
+  if (!estimate || !spec || frame?.bearings !== belief.fact.bearings) return null;
+  return shareWithin(frame, lonLat(estimate), spec.localization.expected_rmse_m);
+});
+
+function Goal({ length }: { length: string }) {
+  const share = insideGoal.value;
+  return (
+    <small data-testid="inside-goal" data-share={share}>
+      {share === null ? t("estimate.threshold", { length }) : t("estimate.within", { length, percent: Math.round(100 * share) })}
+    </small>
+  );
+}
+
 export function EstimatePanel() {
   const { belief, spec, ended } = mission.value;
   const units = settings.value.units;
@@ -122,9 +142,7 @@ export function EstimatePanel() {
               <dt>{t("estimate.rmse")}</dt>
               <dd data-testid="expected-rmse" data-value={estimate.expected_rmse_m}>
                 ±{formatLength(estimate.expected_rmse_m, units)}
-                {spec && (
-                  <small> {t("estimate.threshold", { length: formatLength(spec.localization.expected_rmse_m, units) })}</small>
-                )}
+                {spec && <Goal length={formatLength(spec.localization.expected_rmse_m, units)} />}
               </dd>
             </div>
             <div>

@@ -8,6 +8,7 @@ import { locale, t, told } from "../i18n";
 import { cancelProposal, confirmProposal, propose, proposal, type Proposal } from "../commands/proposal";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
+import { isHomeward } from "../state/mission";
 import { highlighted } from "../app/highlight";
 import { formatPlace } from "../units/coordinates";
 import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
@@ -174,9 +175,9 @@ function Decision({ id }: { id: string }) {
 }
 
 export function PlanPanel() {
-  const { plan, missionId, ended, startedAt } = mission.value;
+  const { plan, missionId, startedAt } = mission.value;
   const proposed = proposal.value;
-  const isLive = cursor.value === null && !ended;
+  const isLive = cursor.value === null && !isHomeward(mission.value);
   const fact = plan?.fact;
   const here = vehicle.value.at;
   return (
@@ -184,7 +185,7 @@ export function PlanPanel() {
       <h2>
         {t("plan.title")}
         {supposedHere.value && <span class="supposed" data-testid="supposed">{t("whatIf.mark")}</span>}
-        {fact && here && (
+        {fact && here && !isHomeward(mission.value) && (
           <span class="muted">
             {t("plan.distance", {
               length: formatLength(distanceM(here, lonLat(fact.place)), settings.value.units),

@@ -237,5 +237,8 @@ const IN_FLIGHT: readonly Phase[] = [
   "landing",
 ];
 
+/** The search is over: no further place is flown to. */
+export const isHomeward = ({ ended, phase }: MissionState): boolean => ended !== null || phase === "returning" || phase === "landing";
+
 export const inFlight = (phase: Phase): boolean => IN_FLIGHT.includes(phase);
 export const isOver = (phase: Phase): boolean => phase === "done" || phase === "aborted" || phase === "failed";

@@ -1,5 +1,5 @@
 // "Localized in about ...": the plan's expectation, counted down while the search goes on.
-import { pausedMs, type MissionState } from "./mission";
+import { isHomeward, pausedMs, type MissionState } from "./mission";
 
 export interface TimeLeft {
   meanS: number;
@@ -9,9 +9,8 @@ export interface TimeLeft {
 
 /** Null without a plan, once it goes home, and when the planner gave no time. */
 export function remainingTime(mission: MissionState, timeMs: number): TimeLeft | null {
-  const { plan, ended, belief, phase } = mission;
-  const goesOn = !ended && !belief?.fact.localized && phase !== "returning" && phase !== "landing";
-  if (!plan || !goesOn) return null;
+  const { plan, belief } = mission;
+  if (!plan || belief?.fact.localized || isHomeward(mission)) return null;
   const { expected_time_s: mean, time_90_s: worst } = plan.fact;
   if (mean === null) return null;
   const elapsed = Math.max(0, (timeMs - Date.parse(plan.at) - pausedMs(mission, timeMs)) / 1000);
