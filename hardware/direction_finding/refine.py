@@ -29,7 +29,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from hardware.direction_finding.alternatives import KINDS, Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
@@ -241,6 +240,8 @@ def _posterior(
     weight: NDArray[np.float64],
     cost: NDArray[np.float64],
 ) -> Refined:
+    from scipy.interpolate import CubicSpline  # a seventh of a server's start, and only sweeps need it
+
     shape, turn = _alike(grid.heading_deg, look, weight)
     least = cost.min(axis=1, keepdims=True)
     score = alternatives.log_prior[:, None]
