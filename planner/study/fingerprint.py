@@ -6,7 +6,7 @@ from functools import cache
 
 from planner.sources import digest
 
-DECIDING = ("*.py", "belief/*", "kernels/**/*", "policy/*", "selection/*", "study/mission.py", "study/scenarios.py")
+DECIDING = ("*.py", "belief/*", "kernels/**/*.py", "policy/*", "selection/*", "study/mission.py", "study/scenarios.py")
 
 
 @cache
