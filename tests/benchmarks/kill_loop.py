@@ -35,6 +35,8 @@ from tests.system.console import Console, Event, console, simulated_vehicle
 HOLD_WITHIN_S = 5.0
 START_PATIENCE_S = 120.0
 ENDED = ("done", "aborted", "failed")
+FLYING = ("taking_off", "planning", "flying", "measuring")
+"""The mission in the server's hands: no phase in which one is after a restart."""
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 
 
@@ -135,6 +137,7 @@ class Servers:
 class Findings:
     kills: int = 0
     phases: Counter[str] = field(default_factory=Counter)
+    found_in: Counter[str] = field(default_factory=Counter)
     acknowledged: int = 0
     bearings: int = 0
     missions: int = 0
@@ -154,6 +157,7 @@ class Findings:
         return {
             "kills": self.kills,
             "killed_in": dict(self.phases.most_common()),
+            "found_in": dict(self.found_in.most_common()),
             "missions": self.missions,
             "acknowledged_facts": self.acknowledged,
             "acknowledged_bearings": self.bearings,
@@ -182,13 +186,15 @@ def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
     return known if known is not None and known[0] == tuple(bearings) else None
 
 
-async def phase_of(client: httpx.AsyncClient, mission_id: str) -> str:
-    """Asked again while the database is too busy to answer (503), as the page does."""
+async def phase_after_restart(client: httpx.AsyncClient, mission_id: str) -> str:
+    """Asked again while the database is too busy to answer (503), as a page does, until the restart is recorded."""
     async with asyncio.timeout(30):
-        while (answer := await client.get(f"/api/missions/{mission_id}")).status_code == 503:  # noqa: ASYNC110 (as a page would)
-            await asyncio.sleep(0.1)
-    assert answer.status_code == 200, f"the mission is not there any more: {answer.text}"
-    return answer.json()["phase"]
+        while True:
+            answer = await client.get(f"/api/missions/{mission_id}")
+            assert answer.status_code in (200, 503), f"the mission is not there any more: {answer.text}"
+            if answer.status_code == 200 and answer.json()["phase"] not in FLYING:
+                return answer.json()["phase"]
+            await asyncio.sleep(0.02)
 
 
 async def all_shown(shown: Console, count: int) -> None:
@@ -255,7 +261,8 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
             async with console(server.url) as shown:
                 if mission_id:
                     shown.mission_id = mission_id
-                    phase = await phase_of(shown.client, mission_id)
+                    phase = await phase_after_restart(shown.client, mission_id)
+                    found.found_in[phase] += 1
                     if phase == "hold":
                         found.hold_s[kind].append(time.monotonic() - server.began)
                     await shown.watch()
