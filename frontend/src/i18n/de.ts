@@ -101,7 +101,7 @@ export const de: Record<MessageKey, string> = {
   "estimate.rmse": "erwarteter Fehler",
   "estimate.c95": "95-%-Gebiet",
   "estimate.threshold": "Ziel {length}",
-  "estimate.within": "Ziel {length}: {percent} % darin",
+  "estimate.within": "{percent} % unter {length}",
   "estimate.localized": "Gefunden",
   "estimate.notYet": "Noch nicht",
   "estimate.localizedIn": "gefunden in",

@@ -100,7 +100,7 @@ export const en = {
   "estimate.rmse": "expected error",
   "estimate.c95": "95 % region",
   "estimate.threshold": "goal {length}",
-  "estimate.within": "goal {length}: {percent} % inside",
+  "estimate.within": "{percent} % within {length}",
   "estimate.localized": "Localized",
   "estimate.notYet": "Not yet",
   "estimate.localizedIn": "localized in",
