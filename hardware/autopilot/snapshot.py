@@ -63,6 +63,7 @@ class Snapshot:
     home_amsl_m: float | None = None
     _displaced_m: tuple[float, float] = (0.0, 0.0)
     """(north, east) the sum of all jumps of this flight: a jump back undoes one."""
+    _position_boot_s: float = 0.0
     _boot_clock: BootClock = field(default_factory=BootClock)
     _headings: deque[HeadingSample] = field(default_factory=deque)
 
@@ -127,21 +128,25 @@ class Snapshot:
         lat, lon = fields["lat"] / 1e7, fields["lon"] / 1e7
         if lat == 0.0 and lon == 0.0:
             return  # the autopilot has no position yet
-        place, at = GeoPoint(lat, lon), self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
-        self._jump(place, at)
-        self.position, self.position_at_s = place, at
+        place, boot_s = GeoPoint(lat, lon), fields["time_boot_ms"] / 1e3
+        self._jump(place, boot_s)
+        self.position, self._position_boot_s = place, boot_s
+        self.position_at_s = self._boot_clock.to_utc(boot_s, heard_at_s)
         self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
         self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
 
-    def _jump(self, place: GeoPoint, at_s: float) -> None:
-        """A position so far from the last one that no vehicle could have flown there is a jump."""
+    def _jump(self, place: GeoPoint, boot_s: float) -> None:
+        """A position so far from the last one that no vehicle could have flown there is a jump.
+
+        By the autopilot's own clock: what a link holds back and then brings all at once is none.
+        """
         self.jumped_m = None
         if not self.in_air:
             self._displaced_m = (0.0, 0.0)
-        if self.position is None or self.position_at_s is None:
+        if self.position is None or boot_s < self._position_boot_s:
             return
         north, east = north_east_m(self.position, place)
-        elapsed_s = max(0.0, at_s - self.position_at_s)
+        elapsed_s = boot_s - self._position_boot_s
         if math.hypot(north, east) <= JUMP_M + (JUMP_M_S + (self.speed_m_s or 0.0)) * elapsed_s:
             return
         self.jumped_m = math.hypot(north, east)

@@ -36,7 +36,7 @@ async def test_the_pilot_takes_over_and_nothing_is_sent_until_resume(operator: C
         while not (await operator.order("resume"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
             await asyncio.sleep(0.1)
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized"
+    assert ended["outcome"] == "localized", ended
 
 
 FLIGHT = {16, 20, 21, 22, 176, 192, 400}
@@ -60,7 +60,7 @@ async def test_a_vehicle_that_is_gone_is_said_and_the_mission_waits_for_it(opera
     await operator.until_event("link_restored")
     assert (await operator.order("resume"))["accepted"]
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized"
+    assert ended["outcome"] == "localized", ended
 
 
 async def test_a_silent_receiver_holds_the_measurement_and_loses_nothing(
@@ -78,5 +78,5 @@ async def test_a_silent_receiver_holds_the_measurement_and_loses_nothing(
     await operator.until_event("link_restored")
     assert (await operator.order("resume"))["accepted"]
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized"
+    assert ended["outcome"] == "localized", ended
     assert len(operator.of("bearing_measured")) > before

@@ -81,5 +81,5 @@ async def test_after_kill_9_in_flight_the_mission_holds_with_the_identical_belie
             assert after.messages["telemetry"][-1]["in_air"]
         assert (await after.order("resume"))["accepted"]
         ended = await after.until_event("mission_ended", wall_s=120)
-        assert ended["outcome"] == "localized"
+        assert ended["outcome"] == "localized", ended
         assert ended["mission_time_s"] > 60

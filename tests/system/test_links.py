@@ -83,7 +83,7 @@ async def test_a_late_and_lossy_link_costs_time_and_nothing_else(
             taken = len(shown.of("bearing_measured"))
             print(f"\n{flavour}: {ended['outcome']} in {ended['mission_time_s']:.0f} s, {taken} bearings, "
                   f"start refused {refused}, held because {holds}, alerts {alerts}")  # fmt: skip
-    assert ended["outcome"] == "localized"
+    assert ended["outcome"] == "localized", ended
     assert holds == ["held by operator"]
     assert not any("link" in text for text in alerts)
 

@@ -27,7 +27,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
         assert [e["seq"] for e in operator.events] == list(range(1, len(operator.events) + 1))
         assert second.events == operator.events
 
-    assert ended["outcome"] == "localized"
+    assert ended["outcome"] == "localized", ended
     assert operator.phases[:4] == ["ready", "taking_off", "planning", "flying"]
     assert operator.phases[-3:] == ["returning", "landing", "done"]
 

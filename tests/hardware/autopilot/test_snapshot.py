@@ -105,6 +105,14 @@ def test_a_position_no_vehicle_could_have_flown_to_is_a_jump() -> None:
     assert snapshot.jumped_m is None  # 9 m after 8 s of silence
 
 
+def test_positions_that_the_link_held_back_are_no_jump() -> None:
+    snapshot = Snapshot()
+    snapshot.fold("GLOBAL_POSITION_INT", HERE, T0 + 8.0)
+    twenty_m_north = HERE | {"time_boot_ms": 5000, "lat": HERE["lat"] + 1800}
+    snapshot.fold("GLOBAL_POSITION_INT", twenty_m_north, T0 + 8.05)
+    assert snapshot.jumped_m is None
+
+
 def test_a_jump_in_flight_makes_the_place_unsure_until_it_jumps_back() -> None:
     snapshot = Snapshot()
 
