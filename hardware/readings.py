@@ -57,6 +57,12 @@ class Telemetry:
     held_by_pilot: bool = False
     autopilot: Literal["px4", "ardupilot", "unknown"] = "unknown"
 
+    @property
+    def heard_at_s(self) -> float | None:
+        """When anything of this was last heard."""
+        times = (self.position_at_s, self.heading_at_s, self.mode_at_s, self.battery_at_s)
+        return max((at for at in times if at is not None), default=None)
+
 
 @dataclass(frozen=True, slots=True)
 class PreflightCheck:

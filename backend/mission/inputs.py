@@ -144,9 +144,14 @@ class LinkUp:
 
 @dataclass(frozen=True, slots=True)
 class BatteryLow:
-    """The battery just suffices for the way home and the reserve."""
+    """The battery just suffices for the way home and the reserve, or its charge is not known."""
 
     detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryReported:
+    """The charge is known again, and suffices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +211,7 @@ Input = (
     | LinkDown
     | LinkUp
     | BatteryLow
+    | BatteryReported
     | HomeReached
     | Landed
     | TimerExpired

@@ -37,6 +37,7 @@ from backend.mission.effects import (
 from backend.mission.inputs import (
     Arrived,
     BatteryLow,
+    BatteryReported,
     BeliefReady,
     Commanded,
     Edited,
@@ -114,7 +115,7 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
             _link_down(step, given)
         case LinkUp():
             _link_up(step, given)
-        case BatteryLow() | HomeReached() | Landed():
+        case BatteryLow() | BatteryReported() | HomeReached() | Landed():
             _vehicle(step, given)
         case TimerExpired():
             _timer(step, given)
@@ -274,7 +275,7 @@ def _link_up(step: Step, given: LinkUp) -> None:
         step.do(ReturnHome() if state.phase == "returning" else Land())
 
 
-def _vehicle(step: Step, given: BatteryLow | HomeReached | Landed) -> None:
+def _vehicle(step: Step, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
     phase = step.state.phase
     match given:
         case BatteryLow(detail=detail) if phase in AUTOMATIC or phase in ("hold", "manual"):
@@ -282,13 +283,15 @@ def _vehicle(step: Step, given: BatteryLow | HomeReached | Landed) -> None:
             if phase in AUTOMATIC:
                 step.record(ReturnOrdered(by="mission", reason=detail))
                 go_home(step, detail)
+        case BatteryReported():
+            clear_alerts(step, "battery")
         case HomeReached() if phase == "returning":
             step.go("landing", "above home")
             step.do(StartTimer("landing", LANDING_PATIENCE_S))
         case Landed() if phase in HOMEWARD:
             finish(step, step.state.return_reason)
         case Landed() if phase == "manual":
-            finish(step, "the vehicle landed while the pilot had control")
+            finish(step, "the vehicle landed while the pilot or its own failsafe had control")
         case Landed() if phase == "hold" or (phase in AUTOMATIC and phase != "taking_off"):
             _on_the_ground(step)
         case _:

@@ -57,17 +57,27 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """The vehicle as last heard, and how fast its battery drains (percent a second of flight)."""
+    """The vehicle as last heard, and how fast its battery drains (percent a second of flight).
+
+    heard_since_s: when it was heard again after its link had been lost.
+    """
 
     telemetry: Telemetry
     now_s: float
     drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
+    heard_since_s: float = -math.inf
 
     @property
     def position_age_s(self) -> float:
         """Infinite while no position was heard."""
         at = self.telemetry.position_at_s
         return math.inf if at is None else self.now_s - at
+
+    @property
+    def battery_unreported_s(self) -> float:
+        """So long the vehicle was heard without its battery's charge; the silence of a lost link is not counted."""
+        heard, battery = self.telemetry.heard_at_s, self.telemetry.battery_at_s
+        return 0.0 if heard is None or battery is None else heard - max(battery, self.heard_since_s)
 
 
 def battery_to_return_percent(limits: Limits, position: GeoPoint, drain_percent_s: float) -> float:
@@ -125,7 +135,7 @@ def battery_vetoes(
         return (Veto("battery_unknown", "the vehicle does not report its battery", remedy),)
     if end is None:
         return ()
-    if telemetry.battery_at_s is not None and situation.now_s - telemetry.battery_at_s > BATTERY_STALE_S:
+    if situation.battery_unreported_s > BATTERY_STALE_S:
         return (Veto("battery_stale", "the battery's charge is no longer reported", "check the battery monitor"),)
     left = telemetry.battery_percent - situation.drain_percent_s * flight_s
     needed = battery_to_return_percent(limits, end, situation.drain_percent_s)

@@ -27,6 +27,7 @@ GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECI
 HEARD_AGAIN_S, HEARD_AGAIN_WALL_S = 15.0, 5.0
 """So long after it was heard again a vehicle may still be acting on the silence before: it hears us later."""
 
+CHARGE_UNKNOWN = frozenset({"battery_unknown", "battery_stale"})
 MEASURED_DRAIN_AFTER_S = 60.0
 MEASURED_DRAIN_PERCENT = 2.0
 
@@ -67,7 +68,8 @@ class Watch:
     track: list[TrackPoint] = field(default_factory=list)
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
     _console_seen: bool = False
-    _battery_told: bool = False
+    _battery_told: str = ""
+    _heard_since_s: float = -math.inf
     _heard_again: Deadline | None = None
     _battery_unheard_since: float | None = None
     _on_ground_since: float | None = None
@@ -75,7 +77,8 @@ class Watch:
     _ticked_at: float = math.inf
 
     def situation(self) -> Situation:
-        return Situation(self.equipment.vehicle.telemetry(), self.equipment.clock.now(), self.drain.percent_s)
+        telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
+        return Situation(telemetry, now, self.drain.percent_s, self._heard_since_s)
 
     async def run(self) -> None:
         while True:
@@ -115,9 +118,8 @@ class Watch:
             self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}"))
 
     def _links(self, telemetry: Telemetry, now: float) -> None:
-        times = (telemetry.position_at_s, telemetry.heading_at_s, telemetry.mode_at_s, telemetry.battery_at_s)
-        heard_at_s = max((at for at in times if at is not None), default=None)
-        silence = "nothing was ever heard" if heard_at_s is None else f"nothing heard for {now - heard_at_s:.0f} s"
+        heard = telemetry.heard_at_s
+        silence = "nothing was ever heard" if heard is None else f"nothing heard for {now - heard:.0f} s"
         self._link("vehicle", telemetry.connected, silence, now)
         trouble = self.listening.trouble
         self._link("receiver", not trouble, trouble, now)
@@ -133,6 +135,7 @@ class Watch:
             self.give(inputs.LinkDown(link, detail))
         elif up and link in self._down_since:
             if link == "vehicle":
+                self._heard_since_s = now
                 self._heard_again = Deadline(self.equipment.clock, HEARD_AGAIN_S, HEARD_AGAIN_WALL_S)
             going_home = link == "vehicle" and self.tolerated_mode is not None
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
@@ -148,9 +151,12 @@ class Watch:
                 self._battery_unheard_since = now
             if now - self._battery_unheard_since < BATTERY_STALE_S:
                 return
-        if vetoes and not self._battery_told:
+        rule, told = vetoes[0].rule if vetoes else "", self._battery_told
+        self._battery_told = rule
+        if vetoes and rule != told:
             self.give(inputs.BatteryLow(vetoes[0].detail))
-        self._battery_told = bool(vetoes)
+        elif told in CHARGE_UNKNOWN and not vetoes:
+            self.give(inputs.BatteryReported())
 
     def _way_down(self, telemetry: Telemetry, now: float) -> None:
         state = self.state()

@@ -211,12 +211,7 @@ async def new_mission(shown: Console) -> None:
     await shown.draft(**LONG_SEARCH)
     await shown.ready()
     await shown.watch()
-    started = {"accepted": False}
-    until = time.monotonic() + 120
-    while not started["accepted"]:
-        assert time.monotonic() < until, f"the mission does not start: {started}"
-        started = await shown.order("start")
-        await asyncio.sleep(0.2)
+    await shown.start(120)
 
 
 async def fly_until_killed(server: Server, shown: Console, folder: Path, chance: random.Random) -> None:

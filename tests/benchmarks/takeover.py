@@ -78,9 +78,7 @@ async def run(flavour: str, times: int, seed: int) -> dict[str, Any]:
                 await shown.draft(**LONG_SEARCH)
                 await shown.ready(60)
                 await shown.watch()
-                async with asyncio.timeout(60):
-                    while not (await shown.order("start"))["accepted"]:  # noqa: ASYNC110 (as a person would)
-                        await asyncio.sleep(0.5)
+                await shown.start(60)
                 await shown.until_event("took_off", wall_s=60)
                 while len(late) < times and shown.phases[-1] not in ENDED:
                     phase, after_s = await one(shown, vehicle, chance, flavour == "px4" and len(late) % 2 == 1)

@@ -55,6 +55,18 @@ class Console:
         assert answer.status_code == 200, answer.text
         return answer.json()
 
+    async def start(self, wall_s: float = 30.0) -> list[str]:
+        """Order it until it is accepted, as a person would; why it was refused before."""
+        refused: list[str] = []
+        try:
+            async with asyncio.timeout(wall_s):
+                while not (answer := await self.order("start"))["accepted"]:
+                    refused.append(answer["reason"])
+                    await asyncio.sleep(0.3)
+        except TimeoutError:
+            raise AssertionError(f"the start was refused: {refused}") from None
+        return refused
+
     async def watch(self) -> None:
         """Open the websocket and keep what it says."""
         address = f"{self.url.replace('http', 'ws', 1)}/api/live?mission={self.mission_id}&after=0"
@@ -85,11 +97,12 @@ class Console:
                     self._news.clear()
                     await self._news.wait()
         except TimeoutError:
-            told = [(e["event"].get("after"), e["event"].get("reason")) for e in self.of("phase_changed")]
-            raise AssertionError(f"it did not happen in time; phases so far: {told}") from None
+            raise AssertionError(f"it did not happen in time; so far:\n{self.story()}") from None
 
     async def until_phase(self, phase: str, wall_s: float = 60.0) -> None:
-        await self.until(lambda: self.phases[-1:] == [phase], wall_s)
+        """It is in this phase, or was since this call: a busy machine tells several at once."""
+        known = len(self.phases)
+        await self.until(lambda: self.phases[-1:] == [phase] or phase in self.phases[known:], wall_s)
 
     async def until_event(self, kind: str, count: int = 1, wall_s: float = 60.0) -> Event:
         await self.until(lambda: len(self.of(kind)) >= count, wall_s)
@@ -101,6 +114,10 @@ class Console:
     @property
     def phases(self) -> list[str]:
         return [e["event"]["after"] for e in self.of("phase_changed")]
+
+    def story(self) -> str:
+        """What happened so far, a line an event: for a test that failed."""
+        return "\n".join(f"{e['at_utc']} {e['event']}"[:300] for e in self.events)
 
     async def close(self) -> None:
         if self._watching is not None:

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.system
 @pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
 async def test_the_pilot_takes_over_and_nothing_is_sent_until_resume(operator: Console, tmp_path: Path) -> None:
     vehicle = await simulated_vehicle(tmp_path)
-    await operator.order("start")
+    await operator.start()
     await operator.until_event("flight_started")
     took = await vehicle.order("pilot_mode")
     await operator.until_phase("manual")
@@ -36,7 +36,7 @@ async def test_the_pilot_takes_over_and_nothing_is_sent_until_resume(operator: C
         while not (await operator.order("resume"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
             await asyncio.sleep(0.1)
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized", ended
+    assert ended["outcome"] == "localized", operator.story()
 
 
 FLIGHT = {16, 20, 21, 22, 176, 192, 400}
@@ -46,7 +46,7 @@ FLIGHT = {16, 20, 21, 22, 176, 192, 400}
 async def test_a_vehicle_that_is_gone_is_said_and_the_mission_waits_for_it(operator: Console, tmp_path: Path) -> None:
     vehicle = await simulated_vehicle(tmp_path)
     await vehicle.order("set_param", name="NAV_DLL_ACT", value=1)
-    await operator.order("start")
+    await operator.start()
     await operator.until_event("flight_started")
     await vehicle.order("link_loss", seconds=72)
     lost = await operator.until_event("link_lost")
@@ -60,13 +60,13 @@ async def test_a_vehicle_that_is_gone_is_said_and_the_mission_waits_for_it(opera
     await operator.until_event("link_restored")
     assert (await operator.order("resume"))["accepted"]
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized", ended
+    assert ended["outcome"] == "localized", operator.story()
 
 
 async def test_a_silent_receiver_holds_the_measurement_and_loses_nothing(
     server: RunningServer, operator: Console
 ) -> None:
-    await operator.order("start")
+    await operator.start()
     await operator.until_phase("measuring")
     assert server.receiver is not None
     server.receiver.silence(True)
@@ -78,5 +78,5 @@ async def test_a_silent_receiver_holds_the_measurement_and_loses_nothing(
     await operator.until_event("link_restored")
     assert (await operator.order("resume"))["accepted"]
     ended = await operator.until_event("mission_ended", wall_s=120)
-    assert ended["outcome"] == "localized", ended
+    assert ended["outcome"] == "localized", operator.story()
     assert len(operator.of("bearing_measured")) > before

@@ -52,16 +52,6 @@ async def until_heard(shown: Console) -> None:
             await asyncio.sleep(0.2)
 
 
-async def started(shown: Console) -> list[str]:
-    """Ask until it is accepted, as a person would; why it was refused before."""
-    refused: list[str] = []
-    async with asyncio.timeout(90):
-        while not (answer := await shown.order("start"))["accepted"]:
-            refused.append(answer["reason"])
-            await asyncio.sleep(0.5)
-    return refused
-
-
 @pytest.mark.long
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
@@ -70,7 +60,7 @@ async def test_a_late_and_lossy_link_costs_time_and_nothing_else(
 ) -> None:
     """300 ms each way and 5 % lost each way: localized, never a false alarm, every command obeyed in the end."""
     async with flown_through(PoorLink(0.3, 0.05), tmp_path, flavour, speedup=2.0) as (shown, _):
-        refused = await started(shown)
+        refused = await shown.start(90)
         await shown.until_event("flight_started", wall_s=120)
         assert (await shown.order("hold"))["accepted"]
         await shown.until_phase("hold")
@@ -98,7 +88,7 @@ async def test_a_lost_console_holds_the_vehicle_and_then_sends_it_home(
     await operator.close()
     operator.events.clear()
     await operator.watch()
-    assert (await operator.order("start"))["accepted"]
+    await operator.start()
     await operator.until_event("flight_started")
     vehicle = await simulated_vehicle(tmp_path)
     await operator.close()

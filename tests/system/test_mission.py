@@ -16,7 +16,7 @@ pytestmark = pytest.mark.system
 
 @pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
 async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, operator: Console) -> None:
-    assert (await operator.order("start"))["accepted"]
+    await operator.start()
     async with console(server.url) as second:
         second.mission_id = operator.mission_id
         await operator.until_event("flight_started")
@@ -27,7 +27,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
         assert [e["seq"] for e in operator.events] == list(range(1, len(operator.events) + 1))
         assert second.events == operator.events
 
-    assert ended["outcome"] == "localized", ended
+    assert ended["outcome"] == "localized", operator.story()
     assert operator.phases[:4] == ["ready", "taking_off", "planning", "flying"]
     assert operator.phases[-3:] == ["returning", "landing", "done"]
 
@@ -52,7 +52,7 @@ async def test_a_mission_is_flown_to_a_localized_emitter(server: RunningServer, 
 
 
 async def test_hold_override_and_abort_are_obeyed_in_flight(operator: Console) -> None:
-    await operator.order("start")
+    await operator.start()
     await operator.until_event("flight_started")
     assert (await operator.order("hold"))["accepted"]
     await operator.until_phase("hold")

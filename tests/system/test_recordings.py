@@ -99,7 +99,7 @@ async def test_imported_bearings_are_flown_with_and_a_flying_mission_takes_none(
     imported = await sent(operator, mission_id, file, **words, frequency_hz=868.3e6)
     assert imported.status_code == 201
     assert "looked for in IQ only" in imported.json()["remarks"][-2]
-    assert (await operator.order("start"))["accepted"]
+    await operator.start()
     await operator.until_event("plan_chosen")
     beliefs = operator.of("belief_updated")
     assert [b["event"]["bearings"] for b in beliefs] == [1, 1]

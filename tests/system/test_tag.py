@@ -22,7 +22,7 @@ async def test_a_wildlife_tag_is_found_by_its_pulses(server: RunningServer) -> N
         await operator.draft(planner={"seed": 3}, **TAG)
         await operator.ready()
         await operator.watch()
-        assert (await operator.order("start"))["accepted"]
+        await operator.start()
         await operator.until_event("mission_ended", wall_s=180)
         mission = (await operator.client.get(f"/api/missions/{operator.mission_id}")).json()
         assert mission["outcome"] == "localized"

@@ -32,6 +32,7 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "BATT_FS_LOW_ACT": (2, INT8),
     "BATT_FS_CRT_ACT": (1, INT8),
     "RTL_ALT": (1500, INT32),
+    "RTL_LOIT_TIME": (5000, INT32),
     "WPNAV_SPEED": (1000.0, REAL32),
     "ATC_SLEW_YAW": (4500.0, REAL32),
     "WP_YAW_BEHAVIOR": (2, INT8),
@@ -72,7 +73,8 @@ class ArduCopter(Firmware):
     def enter(self, mode: str) -> None:
         flight = self.flight
         if mode in ("RTL", "SMART_RTL"):
-            flight.return_home(self.parameters["RTL_ALT"] / 100.0, self.parameters["WPNAV_SPEED"] / 100.0)
+            p = self.parameters
+            flight.return_home(p["RTL_ALT"] / 100.0, p["WPNAV_SPEED"] / 100.0, math.inf, p["RTL_LOIT_TIME"] / 1000.0)
         elif mode == "LAND":
             flight.land()
         elif flight.in_air:

@@ -22,7 +22,9 @@ class Flight:
         self.grounded_for = 0.0
         self.demand = Demand(0.0, 0.0, 0.0, copter.heading)
         self._return_up = 0.0
-        self._return_leg: Literal["climb", "home", "down"] = "climb"
+        self._return_leg: Literal["climb", "home", "loiter", "land"] = "climb"
+        self._loiter_up = math.inf
+        self._loiter_left = 0.0
 
     @property
     def in_air(self) -> bool:
@@ -73,8 +75,11 @@ class Flight:
         self.demand.east += copter.v_east * speed * braking
         self.task = "fly" if self.in_air else "idle"
 
-    def return_home(self, minimum_up: float, speed: float) -> None:
+    def return_home(self, minimum_up: float, speed: float, loiter_up: float, loiter: float) -> None:
+        """Climb, go home, descend to `loiter_up` m, wait there for `loiter` s (for ever when negative), land."""
         self.demand = self._here()
+        self._loiter_up = loiter_up
+        self._loiter_left = math.inf if loiter < 0.0 else loiter
         self._return_up = max(minimum_up, self.navigation.up)
         self.demand.up, self.demand.speed = self._return_up, speed
         self._return_leg = "climb"
@@ -110,19 +115,24 @@ class Flight:
     def step(self, dt: float) -> None:
         self.navigation.step(dt)
         if self.armed and self.task == "return":
-            self._advance_return()
+            self._advance_return(dt)
         if self.armed and self.task == "land":
             self.demand.up = self.navigation.up - 5.0
             self.demand.descend = 1.0 if self.copter.up > 8.0 else 0.6
         self.copter.step(dt, self.demand if self.armed and self.task != "idle" else None, self.navigation.error)
         self.grounded_for = self.grounded_for + dt if self.copter.on_ground else 0.0
 
-    def _advance_return(self) -> None:
+    def _advance_return(self, dt: float) -> None:
         nav, demand = self.navigation, self.demand
         if self._return_leg == "climb" and nav.up > self._return_up - 1.0:
             self._return_leg = "home"
             demand.north = demand.east = 0.0
         elif self._return_leg == "home" and math.hypot(nav.north, nav.east) < 1.0:
-            self._return_leg = "down"
-        elif self._return_leg == "down":
+            self._return_leg = "loiter"
+            demand.up, demand.descend = min(self._loiter_up, nav.up), 1.5
+        elif self._return_leg == "loiter" and nav.up < demand.up + 0.5:
+            self._loiter_left -= dt
+            if self._loiter_left <= 0.0:
+                self._return_leg = "land"
+        elif self._return_leg == "land":
             demand.up, demand.descend = nav.up - 5.0, 1.5 if self.copter.up > 10.0 else 0.7

@@ -42,6 +42,8 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "MPC_XY_VEL_MAX": (12.0, REAL32),
     "MPC_YAWRAUTO_MAX": (60.0, REAL32),
     "RTL_RETURN_ALT": (30.0, REAL32),
+    "RTL_DESCEND_ALT": (30.0, REAL32),
+    "RTL_LAND_DELAY": (0.0, REAL32),
     "SYS_AUTOSTART": (10040, INT32),
     "CAL_GYRO0_ID": (1310988, INT32),
     "CAL_ACC0_ID": (1310988, INT32),
@@ -91,7 +93,8 @@ class Px4(Firmware):
     def enter(self, mode: str) -> None:
         flight = self.flight
         if mode == "RETURN":
-            flight.return_home(self.parameters["RTL_RETURN_ALT"], self.parameters["MPC_XY_CRUISE"])
+            p = self.parameters
+            flight.return_home(p["RTL_RETURN_ALT"], p["MPC_XY_CRUISE"], p["RTL_DESCEND_ALT"], p["RTL_LAND_DELAY"])
         elif mode == "LAND":
             flight.land()
         elif mode == "TAKEOFF":

@@ -69,6 +69,8 @@ class FlatVehicle:
             autopilot="px4",
         )
         self.heard = True
+        self.silence_unnoticed = False
+        self.charge_reported = True
         self.stuck = False
         self.reachable = True
         self.headings_heard: list[HeadingSample] = []
@@ -84,10 +86,11 @@ class FlatVehicle:
     def telemetry(self) -> Telemetry:
         now = self.clock.now()
         if self.heard:
+            battery_at_s = now if self.charge_reported else self.state.battery_at_s
             self.state = replace(
-                self.state, at_s=now, position_at_s=now, heading_at_s=now, battery_at_s=now, mode_at_s=now
+                self.state, at_s=now, position_at_s=now, heading_at_s=now, battery_at_s=battery_at_s, mode_at_s=now
             )
-        return replace(self.state, connected=self.heard)
+        return replace(self.state, connected=self.heard or self.silence_unnoticed)
 
     def headings(self, since_s: float) -> list[HeadingSample]:
         return [h for h in self.headings_heard if h.at_s >= since_s]

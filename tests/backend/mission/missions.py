@@ -235,6 +235,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
         *(inputs.LinkUp(link, 3.0) for link in links),
         inputs.LinkUp("vehicle", 12.0, going_home=True),
         inputs.BatteryLow("just enough to return"),
+        inputs.BatteryReported(),
         inputs.HomeReached(),
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in timers),

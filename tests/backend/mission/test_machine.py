@@ -439,6 +439,14 @@ def test_a_low_battery_brings_the_vehicle_home() -> None:
         assert walk.state.phase == "returning"
 
 
+def test_the_alert_of_an_unknown_charge_is_cleared_when_it_is_reported_again() -> None:
+    walk = Walk().to("hold")
+    walk.give(inputs.BatteryLow("the battery's charge is no longer reported"))
+    assert any(a.startswith("battery") for a in walk.state.open_alerts)
+    walk.give(inputs.BatteryReported())
+    assert not any(a.startswith("battery") for a in walk.state.open_alerts)
+
+
 def test_a_vetoed_flight_holds_and_says_why() -> None:
     walk = Walk().to("flying")
     effects = walk.give(inputs.WorkVetoed((VETO,)))

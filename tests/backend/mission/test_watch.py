@@ -108,6 +108,36 @@ def test_the_battery_is_told_once_until_it_recovers(scene: Scene) -> None:
     assert scene.tick(2) == []
 
 
+def test_a_charge_that_the_vehicle_no_longer_reports_is_told_and_cleared_when_it_is_reported_again(
+    scene: Scene,
+) -> None:
+    scene.tick()
+    scene.vehicle.charge_reported = False
+    assert scene.tick(30, step_s=1.0) == []
+    assert scene.tick(2, step_s=1.0) == [inputs.BatteryLow("the battery's charge is no longer reported")]
+    scene.see(battery_percent=26.0)
+    scene.vehicle.charge_reported = True
+    (low,) = scene.tick(2)
+    assert isinstance(low, inputs.BatteryLow)
+    assert "the reserve" in low.detail
+    scene.see(battery_percent=None)
+    scene.tick(200)
+    scene.see(battery_percent=90.0)
+    assert scene.tick(2) == [inputs.BatteryReported()]
+
+
+def test_a_lost_link_is_no_battery_that_stopped_reporting_neither_before_nor_after_it_was_noticed(
+    scene: Scene,
+) -> None:
+    scene.tick()
+    scene.vehicle.heard, scene.vehicle.silence_unnoticed = False, True
+    assert scene.tick(36, step_s=1.0) == []
+    scene.vehicle.silence_unnoticed = False
+    assert [type(told) for told in scene.tick(36, step_s=1.0)] == [inputs.LinkDown]
+    scene.vehicle.heard, scene.vehicle.charge_reported = True, False
+    assert [type(told) for told in scene.tick(5, step_s=1.0)] == [inputs.LinkUp]
+
+
 def test_a_battery_that_stays_unknown_in_the_air_sends_the_vehicle_home(scene: Scene) -> None:
     scene.see(battery_percent=None)
     assert scene.tick(100) == []
