@@ -124,6 +124,9 @@ def start(server: Server, mission_id: str) -> None:
     while not httpx.post(f"{base}/api/missions/{mission_id}/preflight", timeout=30).json()["passed"]:
         assert time.monotonic() < until, "the checklist does not pass"
         time.sleep(0.5)
-    command = {"command_id": str(uuid4()), "command": {"kind": "start"}}
-    answer = httpx.post(f"{base}/api/missions/{mission_id}/commands", json=command, timeout=30).json()
-    assert answer["accepted"], answer
+    answer = {"accepted": False}
+    while not answer["accepted"]:
+        assert time.monotonic() < until, answer
+        command = {"command_id": str(uuid4()), "command": {"kind": "start"}}
+        answer = httpx.post(f"{base}/api/missions/{mission_id}/commands", json=command, timeout=30).json()
+        time.sleep(0.2)

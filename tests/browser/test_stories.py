@@ -115,8 +115,12 @@ def fly_by_keyboard(screen: Screen, patient: str) -> None:
     keyboard.press("Enter")
     expect(screen.part("start-slider")).to_be_focused()
     keyboard.down(" ")
-    screen.expect_phase("flying", "measuring")
+    refused = screen.refused("problem-start")
     keyboard.up(" ")
+    if refused:
+        screen.checked()
+        screen.start()
+    screen.expect_phase("flying", "measuring")
     screen.hold()
     screen.map_ready()
 
