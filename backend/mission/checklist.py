@@ -7,6 +7,7 @@ import asyncio
 from backend.events import CheckFact
 from backend.mission.equipment import Equipment
 from backend.mission.errors import MissionInputError
+from backend.mission.fresh import fresh
 from backend.mission.listening import Listening, expected_pulses
 from backend.mission.localization import Localization, localization
 from backend.mission.safety import Situation, start_vetoes
@@ -44,11 +45,16 @@ async def checklist(
 
     antenna: what its check before a known emitter said, when there was one.
     """
+
+    def situation() -> Situation:
+        return Situation(equipment.vehicle.telemetry(), equipment.clock.now())
+
+    await fresh(situation)
     checks = [_of(check) for check in await equipment.vehicle.preflight()]
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
     checks.append(sound)
     if task is not None:
-        vetoes = start_vetoes(task.limits, Situation(equipment.vehicle.telemetry(), equipment.clock.now()))
+        vetoes = start_vetoes(task.limits, await fresh(situation))
         checks += [_fact(f"safety: {v.rule}", False, v.detail, v.remedy) for v in vetoes]
         if not vetoes:
             checks.append(_fact("safety", True, "fence, battery and position allow the start", ""))

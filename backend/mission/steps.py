@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import asyncio
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from backend.events import BearingMeasured, PlanChosen, SweepRejected
 from backend.mission import effects, inputs
 from backend.mission.equipment import Equipment
+from backend.mission.fresh import fresh
 from backend.mission.listening import Listening
 from backend.mission.localization import Localization
 from backend.mission.measuring import Measured, measure
@@ -24,10 +24,6 @@ from hardware.ports import VehicleError
 from hardware.readings import GeoPoint
 from planner.belief.grid import GridBelief
 from planner.types import PlannerError
-
-FRESH_S = 1.0
-PATIENCE_WALL_S = 3.0
-"""As long as the link may be silent before it counts as lost."""
 
 
 @dataclass(slots=True)
@@ -43,7 +39,7 @@ class Steps:
     _belief: tuple[tuple[str, ...], GridBelief] | None = field(default=None)
 
     async def take_off(self, effect: effects.TakeOff) -> inputs.Input:
-        vehicle, now = self.equipment.vehicle, await self._heard()
+        vehicle, now = self.equipment.vehicle, await fresh(self.situation)
         position = now.telemetry.position
         if now.telemetry.in_air and position is not None:
             altitude = self.task.limits.home_amsl_m + effect.altitude_relative_m
@@ -68,7 +64,7 @@ class Steps:
             return inputs.WorkVetoed((Veto("no_way", str(error), "choose another place"),))
         while way:
             last = GeoPoint(effect.place.lat, effect.place.lon)
-            vetoes = place_vetoes(self.task.limits, await self._heard(), last, effect.altitude_amsl_m, way[:-1])
+            vetoes = place_vetoes(self.task.limits, await fresh(self.situation), last, effect.altitude_amsl_m, way[:-1])
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
             (east, north), *way = way
@@ -79,7 +75,7 @@ class Steps:
         return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)
 
     async def measure(self, effect: effects.Measure) -> inputs.Input:
-        vetoes = turn_vetoes(self.task.limits, await self._heard())
+        vetoes = turn_vetoes(self.task.limits, await fresh(self.situation))
         if vetoes:
             return inputs.WorkVetoed(vetoes)
         found = await measure(
@@ -93,7 +89,7 @@ class Steps:
                 return inputs.SweepRefused(sweep)
 
     async def plan(self, effect: effects.PlanNext, measured: Sequence[BearingMeasured]) -> inputs.Input:
-        position = (await self._heard()).telemetry.position
+        position = (await fresh(self.situation)).telemetry.position
         if position is None:
             raise VehicleError("the vehicle has no position, so no place can be planned; wait for a GPS fix")
         platform = self.task.frame.to_enu(position)
@@ -102,6 +98,7 @@ class Steps:
             choice = await asyncio.to_thread(self._choose, belief, measured, platform, effect)
         except PlannerError as error:
             return inputs.NothingToPlan(str(error))
+        await fresh(self.situation)
         return inputs.Planned(choice, self._choice_vetoes(choice))
 
     async def belief(self, measured: Sequence[BearingMeasured]) -> inputs.Input:
@@ -146,15 +143,6 @@ class Steps:
         except PlannerError:
             return straight
         return place_vetoes(self.task.limits, self.situation(), point, altitude_amsl_m, way[:-1])
-
-    async def _heard(self) -> Situation:
-        """The situation, a moment later when telemetry was held up: that is waited for before it is held against it."""
-        until = time.monotonic() + PATIENCE_WALL_S
-        while True:
-            now = self.situation()
-            if now.position_age_s <= FRESH_S or time.monotonic() > until:
-                return now
-            await asyncio.sleep(0.02)
 
     def _way(self, end: tuple[float, float]) -> list[tuple[float, float]]:
         position = self.situation().telemetry.position
