@@ -45,6 +45,8 @@ class Settings(BaseSettings):
 
     vehicle_url: str | None = None
     simulate: Literal["px4", "ardupilot"] = "px4"
+    simulated_flies_on: bool = True
+    """A server that is killed leaves its simulated vehicle in the air, as a real one would stay; the next finds it."""
     world: Literal["open", "multipath"] = "open"
     """The simulated emitter's surroundings: open ground, or walls that reflect, so that some bearings are wrong."""
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)

@@ -191,7 +191,7 @@ class Hangar:
                 speedup=s.time_factor,
                 seed=s.seed,
                 wind=(3.0, 240.0, 1.0),
-                keep_running=True,
+                keep_running=s.simulated_flies_on,
             )
         )
         ports = {"connect_port": started.connect_port, "control_port": started.control_port}

@@ -93,6 +93,7 @@ def demo(
             data_dir=folder,
             vehicle_url=vehicle,
             simulate=flavour,
+            simulated_flies_on=False,
             time_factor=speedup if speedup is not None else (10.0 if vehicle is None else 1.0),
             seed=seed,
             world=world,

@@ -24,7 +24,14 @@ def flavour() -> str:
 @pytest.fixture
 async def server(tmp_path: Path, flavour: str) -> AsyncIterator[RunningServer]:
     """The real server on a free port, its SQLite file, and a simulated vehicle of its own process."""
-    settings = Settings(port=0, data_dir=tmp_path, simulate=flavour, time_factor=SPEEDUP, seed=3)  # type: ignore[arg-type]
+    settings = Settings(
+        port=0,
+        data_dir=tmp_path,
+        simulate=flavour,  # type: ignore[arg-type]
+        simulated_flies_on=False,
+        time_factor=SPEEDUP,
+        seed=3,
+    )
     async with running_server(settings) as running:
         yield running
 
