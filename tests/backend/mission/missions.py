@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 
 from backend import commands
 from backend.events import BearingMeasured, BeliefUpdated, CheckFact, Event, PlanChosen, Recorded, SweepRejected
+from backend.mission import effects as asked
 from backend.mission import inputs
 from backend.mission.effects import Effect, Record
 from backend.mission.machine import transition
@@ -28,6 +29,21 @@ FAILED_CHECK = CheckFact(name="gps", ok=False, detail="no fix", remedy="wait", b
 START = inputs.StartFacts(checks=(CHECK,), home=HOME, home_amsl_m=100.0, software="test")
 VETO = Veto("fence", "outside", "stay inside")
 BATTERY_VETO = Veto("battery", "too little", "go home")
+
+MOVES = (asked.TakeOff, asked.FlyTo, asked.Measure, asked.ReturnHome, asked.Land)
+"""What sends the vehicle somewhere."""
+
+
+def kinds(effects: tuple[Effect, ...]) -> list[type]:
+    return [type(e) for e in effects]
+
+
+def moves(effects: tuple[Effect, ...]) -> list[Effect]:
+    return [e for e in effects if isinstance(e, MOVES)]
+
+
+def answer(effects: tuple[Effect, ...]) -> asked.Reply:
+    return next(e for e in effects if isinstance(e, asked.Reply))
 
 
 def commanded(command: commands.Command, command_id: str = "c", **more: object) -> inputs.Commanded:
