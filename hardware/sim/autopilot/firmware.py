@@ -7,6 +7,7 @@ behaviour was measured on PX4 1.16 SIH and ArduCopter 4.7 SITL).
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass, field
 from random import Random
@@ -72,7 +73,7 @@ def deg_or_none(value: float) -> float | None:
     return None if math.isnan(value) else value
 
 
-class Firmware:
+class Firmware(ABC):
     """Base of the flavours. `time` is seconds since boot, simulated."""
 
     name: ClassVar[str]
@@ -132,9 +133,9 @@ class Firmware:
             self.heartbeat_due = self.heartbeat_on_mode_change
         self.enter(mode)
 
+    @abstractmethod
     def enter(self, mode: str) -> None:
-        """Begin the flight task of a mode; flavours implement it."""
-        raise NotImplementedError
+        """Begin the flight task of a mode."""
 
     def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
@@ -156,8 +157,9 @@ class Firmware:
             return ACCEPTED
         return self.carry_out(command)
 
+    @abstractmethod
     def carry_out(self, command: Command) -> int:
-        raise NotImplementedError
+        """What the flavour makes of a command; MAV_RESULT."""
 
     def _spoiled_goto(self) -> bool:
         if self.faults.ignore_goto > 0:
@@ -200,15 +202,15 @@ class Firmware:
         self.flight.disarm()
         return ACCEPTED
 
+    @abstractmethod
     def disarm_delay(self) -> float:
         """Seconds on the ground, armed and without a take-off, after which the autopilot disarms (<= 0: never)."""
-        raise NotImplementedError
 
     # -- the pilot -------------------------------------------------------------------------------------------------
 
+    @abstractmethod
     def move_sticks(self, velocity: tuple[float, float, float], yaw_rate: float) -> bool:
         """The pilot moves the sticks; True when that took control."""
-        raise NotImplementedError
 
     def switch_mode(self, mode: str) -> None:
         """The pilot's mode switch. Raises ValueError for a mode this flavour has not."""
@@ -227,6 +229,7 @@ class Firmware:
             self._watch_battery()
             self.watch()
 
+    @abstractmethod
     def watch(self) -> None:
         """What a flavour watches besides."""
 
@@ -241,20 +244,20 @@ class Firmware:
             flight.disarm()
             self.say("Disarmed: no take-off")
 
-    def landed(self) -> None:
+    def landed(self) -> None:  # noqa: B027 (a flavour may do nothing here)
         """After the motors stopped at the end of a landing."""
 
     def watches_station(self, system_id: int) -> bool:
         """Whether this ground station's heartbeats count for the failsafe."""
         return True
 
+    @abstractmethod
     def gcs_timeout(self) -> float:
         """Seconds without a ground station's heartbeat that count as lost."""
-        raise NotImplementedError
 
+    @abstractmethod
     def gcs_lost(self) -> None:
         """The failsafe for a lost ground station, by its parameter."""
-        raise NotImplementedError
 
     gcs_timeout_floor: float = 0.0
     """A ground station sends heartbeats by the wall's clock: sped up, no less than this many simulated seconds."""
@@ -269,13 +272,13 @@ class Firmware:
         elif not lost:
             self.gcs_failsafe = False
 
+    @abstractmethod
     def battery_low(self) -> None:
         """The battery failsafe, by its parameter; called once."""
-        raise NotImplementedError
 
+    @abstractmethod
     def battery_threshold(self) -> float:
         """Percent."""
-        raise NotImplementedError
 
     def _watch_battery(self) -> None:
         if not self._battery_failsafe and self.copter.battery_percent < self.battery_threshold():
