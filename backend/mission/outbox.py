@@ -79,12 +79,18 @@ class Outbox:
             self._writer = asyncio.create_task(self._write())
 
     async def flushed(self) -> None:
-        """Returns when everything handed in so far is durable and shown."""
-        await self._waiting.join()
+        """Returns when everything handed in so far is durable and shown, whatever is handed in meanwhile."""
+        reached = asyncio.Event()
+
+        async def mark() -> None:
+            reached.set()
+
+        self.after(mark)
+        await reached.wait()
 
     async def close(self) -> None:
         """Everything handed in is written first. What still comes afterwards is written too."""
-        await self.flushed()
+        await self._waiting.join()
         if self._writer is not None:
             writer, self._writer = self._writer, None
             writer.cancel()

@@ -28,6 +28,24 @@ async def test_facts_are_stored_in_order_and_shown_afterwards() -> None:
     await outbox.close()
 
 
+async def test_whoever_waits_for_what_is_handed_in_so_far_does_not_wait_for_what_comes_after() -> None:
+    outbox, journal, _ = made()
+    more = True
+
+    async def again() -> None:
+        await asyncio.sleep(0)
+        if more:
+            outbox.after(again)
+
+    outbox.after(again)
+    outbox.record([ResumeOrdered(by="a")])
+    async with asyncio.timeout(10):
+        await outbox.flushed()
+    assert len(journal.stored["m"]) == 1
+    more = False
+    await outbox.close()
+
+
 async def test_a_journal_that_fails_is_asked_again_and_the_order_is_kept() -> None:
     outbox, journal, publisher = made()
     journal.away = True
