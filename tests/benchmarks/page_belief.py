@@ -4,9 +4,10 @@
 
 A mission is flown and its page watched. Times in ms of the wall: `server` from the arrival of the bearing's event in
 the browser to that of the belief's event, `frame` from there to the belief's own arrival, `page` from there until the
-map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is their sum. `work_ms`
-is what the server's parts need of one thread when nothing else runs in it: comparable between machines under load.
-Without a graphics card the processor draws: `drawn` is then an upper bound.
+map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is their sum.
+`repaints`: how often the map was drawn in `whole`. `work_ms` is what the server's parts need of one thread when nothing
+else runs in it: comparable between machines under load. Without a graphics card the processor draws: `drawn` is then an
+upper bound.
 """
 
 from __future__ import annotations
@@ -34,6 +35,11 @@ from tests.browser.screen import Screen
 WATCH = """
 window.stages = [];
 let open = null;
+const clear = WebGL2RenderingContext.prototype.clear;
+WebGL2RenderingContext.prototype.clear = function (mask) {
+  if (open && mask & this.COLOR_BUFFER_BIT) open.repaints += 1;
+  clear.call(this, mask);
+};
 const Plain = window.WebSocket;
 window.WebSocket = class extends Plain {
   constructor(...all) {
@@ -41,7 +47,7 @@ window.WebSocket = class extends Plain {
     this.addEventListener('message', ({data}) => {
       const at = performance.now();
       if (typeof data !== 'string') { if (open && open.updated) open.arrived = at; return; }
-      if (data.includes('"kind":"bearing_measured"')) open = {bearing: at};
+      if (data.includes('"kind":"bearing_measured"')) open = {bearing: at, repaints: 0};
       if (open && data.includes('"kind":"belief_updated"')) open.updated = at;
     });
   }
@@ -134,7 +140,8 @@ def main() -> None:
     arguments = parser.parse_args()
     seen = fly(arguments.bearings, arguments.speedup)
     stages = {name: spread([one[end] - one[begin] for one in seen]) for name, begin, end in STAGES}
-    print(json.dumps({"stages_ms": stages, "work_ms": own_work()}))
+    repaints = spread([one["repaints"] for one in seen])
+    print(json.dumps({"stages_ms": stages, "repaints": repaints, "work_ms": own_work()}))
 
 
 if __name__ == "__main__":

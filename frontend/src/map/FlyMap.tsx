@@ -16,7 +16,7 @@ import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { beliefPixels, imageCorners } from "./beliefImage";
 import { createMap, fit, gridStepM } from "./createMap";
-import { areaPoints, bearingFeatures, candidateFeatures, collection, estimateFeatures, flightPoints, pathFeatures, planFeatures, type Features } from "./features";
+import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, pathFeatures, planFeatures, type Features } from "./features";
 import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, SWITCHES, type SourceName, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
@@ -83,6 +83,27 @@ const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.pl
 const home = computed(() => mission.value.home);
 const phase = computed(() => mission.value.phase);
 
+/** The belief follows its bearing within this, or the bearing is drawn without it. */
+const BELIEF_FOLLOWS_MS = 300;
+
+/** A bearing, its estimate and its belief in one repaint: the belief would have to wait for the bearing's own. */
+function putMeasured(map: GlMap): (() => void) | undefined {
+  const measured = { spec: spec.value, bearings: bearings.value, belief: estimated.value };
+  const draw = () => put(map, "measured", measuredFeatures(measured));
+  const counted = measured.bearings.filter((b) => !b.excluded).length;
+  if (cursor.value !== null || shownBelief.value?.bearings === counted) return void draw();
+  const timer = setTimeout(draw, BELIEF_FOLLOWS_MS);
+  return () => clearTimeout(timer);
+}
+
+function putOverlays(map: GlMap): void {
+  const overlays = shownOverlays.value;
+  put(map, "overlays", overlays);
+  for (const { id } of map.getStyle().layers.filter((layer) => "source" in layer && layer.source === "overlays")) {
+    map.setLayoutProperty(id, "visibility", overlays.features.length > 0 ? "visible" : "none");
+  }
+}
+
 const canPropose = () =>
   cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
 
@@ -98,16 +119,15 @@ function bind(map: GlMap): () => void {
   let nextShown = false;
   const stops = [
     effect(() => put(map, "plan", planFeatures(spec.value))),
-    effect(() => put(map, "bearings", bearingFeatures({ spec: spec.value, bearings: bearings.value }))),
-    effect(() => put(map, "estimate", estimateFeatures({ belief: estimated.value }))),
     effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
-    effect(() => put(map, "overlays", shownOverlays.value)),
+    effect(() => putOverlays(map)),
     effect(() => {
       const at = home.value;
       put(map, "home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(at) } }] : []));
     }),
     effect(() => paintBelief(map)),
+    effect(() => putMeasured(map)),
     effect(() => {
       for (const layer of missionLayers(palettes[settings.value.theme])) {
         const by = layer.metadata?.switch;

@@ -3,10 +3,10 @@ import { missionAt, type MissionState } from "../state/mission";
 import { bearingDeg } from "../state/geometry";
 import { record, someBearing, somePlan, someSpec } from "../state/examples";
 import type { LonLat } from "../wire/beliefFrame";
-import { bearingFeatures, candidateFeatures, estimateFeatures, planFeatures } from "./features";
+import { candidateFeatures, measuredFeatures, planFeatures } from "./features";
 
 const of = (state: MissionState, ...what: string[]) =>
-  bearingFeatures(state).features.filter((f) => what.includes(f.properties?.["what"]));
+  measuredFeatures(state).features.filter((f) => what.includes(f.properties?.["what"]));
 
 const drafted = { kind: "mission_drafted", spec: someSpec() } as const;
 
@@ -40,7 +40,7 @@ it("the chosen candidate is drawn last, on top", () => {
 });
 
 it("nothing is drawn of an estimate that is not there", () => {
-  expect(estimateFeatures(missionAt(record(drafted), Infinity)).features).toEqual([]);
+  expect(measuredFeatures(missionAt(record(drafted), Infinity)).features).toEqual([]);
 });
 
 it("without a fence of its own the margin around the area is shown", () => {

@@ -9,7 +9,7 @@ import type { LonLat } from "../wire/beliefFrame";
 
 export type Features = GeoJSON.FeatureCollection;
 
-type Measured = Pick<MissionState, "spec" | "bearings">;
+type Bearings = Pick<MissionState, "spec" | "bearings">;
 
 export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
 
@@ -59,7 +59,7 @@ export function planFeatures(spec: MissionSpec | null): Features {
 /** Measurement places so near to each other that their numbers would cover one another. */
 const ONE_PLACE_M = 3;
 
-function placeFeatures({ bearings }: Measured): GeoJSON.Feature[] {
+function placeFeatures({ bearings }: Bearings): GeoJSON.Feature[] {
   const places: { at: LonLat; numbers: number[] }[] = [];
   for (const { fact } of bearings) {
     const at = lonLat(fact.place);
@@ -71,7 +71,7 @@ function placeFeatures({ bearings }: Measured): GeoJSON.Feature[] {
 }
 
 /** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
-function directionFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
+function directionFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   const reach = reachM(spec);
   const used = bearings.filter((b) => !b.excluded);
   const counted = used.flatMap(({ fact }, i) => {
@@ -91,7 +91,7 @@ function directionFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
 }
 
 /** Received power around each measurement place as a rose; the newest strong, older ones fainter. */
-function roseFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
+function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   const size = reachM(spec) / 9;
   return bearings.flatMap(({ fact, excluded }, i) => {
     const scale = polarScale(fact.binned_db);
@@ -104,21 +104,21 @@ function roseFeatures({ spec, bearings }: Measured): GeoJSON.Feature[] {
   });
 }
 
-/** Everything that the sweeps say, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
-export const bearingFeatures = (mission: Measured): Features =>
-  collection([...directionFeatures(mission), ...roseFeatures(mission), ...placeFeatures(mission)]);
-
 /** The region, the expected error as a circle, the estimate. */
-export function estimateFeatures(mission: Pick<MissionState, "belief">): Features {
-  const estimate = mission.belief?.fact.estimate;
-  if (!estimate) return collection([]);
+function estimateFeatures({ belief }: Pick<MissionState, "belief">): GeoJSON.Feature[] {
+  const estimate = belief?.fact.estimate;
+  if (!estimate) return [];
   const at = lonLat(estimate);
-  return collection([
+  return [
     feature(estimate.c95 as GeoJSON.Geometry, { what: "c95" }),
     polygon(circle(at, estimate.expected_rmse_m), { what: "circle" }),
     point(at, { what: "estimate" }),
-  ]);
+  ];
 }
+
+/** What the sweeps say and what follows, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
+export const measuredFeatures = (mission: Bearings & Pick<MissionState, "belief">): Features =>
+  collection([...directionFeatures(mission), ...roseFeatures(mission), ...placeFeatures(mission), ...estimateFeatures(mission)]);
 
 export function candidateFeatures(mission: Pick<MissionState, "plan">, lit: number | null): Features {
   const plan = mission.plan?.fact;

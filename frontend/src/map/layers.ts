@@ -3,7 +3,7 @@ import type { ExpressionSpecification, LayerSpecification, Map as GlMap } from "
 import { collection } from "./features";
 import type { Palette } from "./palette";
 
-export const SOURCES = ["plan", "overlays", "bearings", "path", "estimate", "candidates", "home"] as const;
+export const SOURCES = ["plan", "overlays", "path", "measured", "candidates", "home"] as const;
 export type SourceName = (typeof SOURCES)[number];
 
 /** Tiles of 760 m at 50 degrees north, drawn to 0.1 m: a search is one or two of them, however near it is looked at. */
@@ -22,6 +22,7 @@ const FONT = ["sans-serif"];
 
 const of = (what: string): ExpressionSpecification => ["==", ["get", "what"], what];
 
+/** Layers of one source stand together: at each change of the source the map draws its tiles' outlines over the whole screen. */
 export function missionLayers(colours: Palette): Drawn[] {
   const quality: ExpressionSpecification = [
     "interpolate-lab", ["linear"], ["get", "quality"], 0.6, colours.bearingLow, 0.95, colours.bearingHigh,
@@ -35,27 +36,27 @@ export function missionLayers(colours: Palette): Drawn[] {
     { id: "no-fly-line", type: "line", source: "plan", filter: of("no_fly"), paint: { "line-color": colours.noFly, "line-width": 2 }, metadata: { switch: "fence" } },
     { id: "fence", type: "line", source: "plan", filter: of("fence"), paint: { "line-color": colours.fence, "line-width": 2.5, "line-dasharray": [1, 1.5] }, metadata: { switch: "fence" } },
     { id: "area", type: "line", source: "plan", filter: of("area"), paint: { "line-color": colours.area, "line-width": 2, "line-dasharray": [5, 3] } },
-    { id: "overlay-fill", type: "fill", source: "overlays", filter: ["==", ["geometry-type"], "Polygon"], paint: { "fill-color": ["coalesce", ["get", "fill"], colours.ink], "fill-opacity": 0.12 } },
-    { id: "overlay-line", type: "line", source: "overlays", paint: { "line-color": ["coalesce", ["get", "stroke"], colours.ink], "line-width": 1.5 } },
-    { id: "overlay-point", type: "circle", source: "overlays", filter: ["==", ["geometry-type"], "Point"], paint: { "circle-radius": 4, "circle-color": ["coalesce", ["get", "marker-color"], colours.ink] } },
-    { id: "wedges", type: "fill", source: "bearings", filter: of("wedge"), paint: { "fill-color": quality, "fill-opacity": fading(0.14, 0.05) }, metadata: { switch: "bearings" } },
-    { id: "bearing-halo", type: "line", source: "bearings", filter: of("main"), paint: { "line-color": colours.halo, "line-width": 4.5, "line-opacity": 0.6 }, metadata: { switch: "bearings" } },
-    { id: "bearings", type: "line", source: "bearings", filter: of("main"), paint: { "line-color": quality, "line-width": 2.2, "line-opacity": fading(1, 0.6) }, metadata: { switch: "bearings" } },
-    { id: "other-peaks", type: "line", source: "bearings", filter: of("peak"), paint: { "line-color": quality, "line-width": 1.6, "line-dasharray": [4, 3], "line-opacity": ["max", 0.35, ["get", "weight"]] }, metadata: { switch: "bearings" } },
-    { id: "excluded", type: "line", source: "bearings", filter: of("excluded"), paint: { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] }, metadata: { switch: "bearings" } },
-    { id: "c95-halo", type: "line", source: "estimate", filter: of("c95"), paint: { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }, metadata: { switch: "belief" } },
-    { id: "c95", type: "line", source: "estimate", filter: of("c95"), paint: { "line-color": colours.c95, "line-width": 2.2 }, metadata: { switch: "belief" } },
+    { id: "overlay-fill", type: "fill", source: "overlays", filter: ["==", ["geometry-type"], "Polygon"], layout: { visibility: "none" }, paint: { "fill-color": ["coalesce", ["get", "fill"], colours.ink], "fill-opacity": 0.12 } },
+    { id: "overlay-line", type: "line", source: "overlays", layout: { visibility: "none" }, paint: { "line-color": ["coalesce", ["get", "stroke"], colours.ink], "line-width": 1.5 } },
+    { id: "overlay-point", type: "circle", source: "overlays", filter: ["==", ["geometry-type"], "Point"], layout: { visibility: "none" }, paint: { "circle-radius": 4, "circle-color": ["coalesce", ["get", "marker-color"], colours.ink] } },
     { id: "path-halo", type: "line", source: "path", paint: { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.6 }, metadata: { switch: "path" } },
     { id: "path", type: "line", source: "path", paint: { "line-color": colours.path, "line-width": 2, "line-opacity": 0.85 }, metadata: { switch: "path" } },
-    { id: "roses", type: "fill", source: "bearings", filter: of("rose"), paint: { "fill-color": colours.rose, "fill-opacity": ["case", ["get", "excluded"], 0.05, fading(0.35, 0.08)] }, metadata: { switch: "roses" } },
-    { id: "rose-lines", type: "line", source: "bearings", filter: of("rose"), paint: { "line-color": colours.rose, "line-width": 1.5, "line-opacity": fading(1, 0.3) }, metadata: { switch: "roses" } },
+    { id: "wedges", type: "fill", source: "measured", filter: of("wedge"), paint: { "fill-color": quality, "fill-opacity": fading(0.14, 0.05) }, metadata: { switch: "bearings" } },
+    { id: "bearing-halo", type: "line", source: "measured", filter: of("main"), paint: { "line-color": colours.halo, "line-width": 4.5, "line-opacity": 0.6 }, metadata: { switch: "bearings" } },
+    { id: "bearings", type: "line", source: "measured", filter: of("main"), paint: { "line-color": quality, "line-width": 2.2, "line-opacity": fading(1, 0.6) }, metadata: { switch: "bearings" } },
+    { id: "other-peaks", type: "line", source: "measured", filter: of("peak"), paint: { "line-color": quality, "line-width": 1.6, "line-dasharray": [4, 3], "line-opacity": ["max", 0.35, ["get", "weight"]] }, metadata: { switch: "bearings" } },
+    { id: "excluded", type: "line", source: "measured", filter: of("excluded"), paint: { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] }, metadata: { switch: "bearings" } },
+    { id: "c95-halo", type: "line", source: "measured", filter: of("c95"), paint: { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }, metadata: { switch: "belief" } },
+    { id: "c95", type: "line", source: "measured", filter: of("c95"), paint: { "line-color": colours.c95, "line-width": 2.2 }, metadata: { switch: "belief" } },
+    { id: "roses", type: "fill", source: "measured", filter: of("rose"), paint: { "fill-color": colours.rose, "fill-opacity": ["case", ["get", "excluded"], 0.05, fading(0.35, 0.08)] }, metadata: { switch: "roses" } },
+    { id: "rose-lines", type: "line", source: "measured", filter: of("rose"), paint: { "line-color": colours.rose, "line-width": 1.5, "line-opacity": fading(1, 0.3) }, metadata: { switch: "roses" } },
+    { id: "circle", type: "line", source: "measured", filter: of("circle"), paint: { "line-color": colours.ink, "line-width": 1.8, "line-dasharray": [2, 2] }, metadata: { switch: "belief" } },
     { id: "candidates", type: "circle", source: "candidates", paint: { "circle-color": shade, "circle-radius": ["case", ["get", "lit"], 10, ["interpolate", ["linear"], ["get", "shade"], 0, 3.5, 4, 6.5, 5, 8]], "circle-stroke-color": ["case", ["get", "lit"], colours.accent, [">=", ["get", "shade"], 4], colours.halo, colours.ink], "circle-stroke-width": ["case", ["get", "lit"], 3, [">=", ["get", "shade"], 4], 2, 0.6], "circle-opacity": 0.95 }, metadata: { switch: "candidates" } },
     { id: "candidate-values", type: "symbol", source: "candidates", filter: ["any", [">=", ["get", "shade"], 4], ["get", "lit"]], layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-offset": [0, 1.3], "text-anchor": "top" }, paint: { "text-color": colours.ink, "text-halo-color": colours.halo, "text-halo-width": 1.6 }, metadata: { switch: "candidates" } },
-    { id: "circle", type: "line", source: "estimate", filter: of("circle"), paint: { "line-color": colours.ink, "line-width": 1.8, "line-dasharray": [2, 2] }, metadata: { switch: "belief" } },
     { id: "home", type: "circle", source: "home", paint: { "circle-radius": 8, "circle-color": colours.halo, "circle-stroke-color": colours.ink, "circle-stroke-width": 2 } },
     { id: "home-letter", type: "symbol", source: "home", layout: { "text-field": "H", "text-font": FONT, "text-size": 11, "text-allow-overlap": true }, paint: { "text-color": colours.ink } },
-    { id: "places", type: "circle", source: "bearings", filter: of("place"), paint: { "circle-radius": 9, "circle-color": colours.halo, "circle-stroke-color": colours.bearingHigh, "circle-stroke-width": 2 } },
-    { id: "place-numbers", type: "symbol", source: "bearings", filter: of("place"), layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-allow-overlap": true }, paint: { "text-color": colours.ink } },
-    { id: "estimate", type: "circle", source: "estimate", filter: of("estimate"), paint: { "circle-radius": 5, "circle-color": colours.ink, "circle-stroke-color": colours.halo, "circle-stroke-width": 2.5 } },
+    { id: "places", type: "circle", source: "measured", filter: of("place"), paint: { "circle-radius": 9, "circle-color": colours.halo, "circle-stroke-color": colours.bearingHigh, "circle-stroke-width": 2 } },
+    { id: "place-numbers", type: "symbol", source: "measured", filter: of("place"), layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-allow-overlap": true }, paint: { "text-color": colours.ink } },
+    { id: "estimate", type: "circle", source: "measured", filter: of("estimate"), paint: { "circle-radius": 5, "circle-color": colours.ink, "circle-stroke-color": colours.halo, "circle-stroke-width": 2.5 } },
   ]; // prettier-ignore
 }
