@@ -95,7 +95,11 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
   return map;
 }
 
+/** Pixels that the map's tools and its scale cover along its edges. */
+const COVERED = { top: 60, right: 62, bottom: 44, left: 14 };
+
 export function fit(map: GlMap, box: [number, number, number, number], animate: boolean): void {
-  const padding = Math.min(48, 0.06 * map.getContainer().clientHeight);
+  const share = Math.min(1, map.getContainer().clientHeight / 360);
+  const padding = { ...COVERED, top: share * COVERED.top, bottom: share * COVERED.bottom };
   map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }

@@ -7,7 +7,8 @@ import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { NotARecording, readRecording, replays } from "../sources/replay";
-import { inFlight, isOver } from "../state/mission";
+import { isOver } from "../state/mission";
+import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration } from "../units/quantities";
 import type { MissionSummary, Problem } from "../wire";
@@ -31,7 +32,6 @@ function Export({ id }: { id: string }) {
 }
 
 function Row({ mission }: { mission: MissionSummary }) {
-  const flies = inFlight(mission.phase);
   return (
     <tr data-testid="mission-row" data-mission={mission.mission_id} data-phase={mission.phase}>
       <td>
@@ -40,7 +40,7 @@ function Row({ mission }: { mission: MissionSummary }) {
         </a>
       </td>
       <td>
-        <span class={`tag ${flies ? "active" : ""}`}>
+        <span class={`tag tone-${toneOfMission(mission.phase, mission.outcome)}`}>
           {mission.outcome ? t(`outcome.${mission.outcome}`) : phaseName(mission.phase)}
         </span>
       </td>

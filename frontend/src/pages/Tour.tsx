@@ -5,6 +5,10 @@ import { change } from "../app/settings";
 import { t, type MessageKey } from "../i18n";
 
 const STEPS = [1, 2, 3, 4, 5, 6] as const;
+
+/** On the example every part appears in its time; elsewhere only what is there is explained. */
+const ofExample = () => new URLSearchParams(location.search).has("tour");
+const partOf = (step: number) => document.querySelector(`[data-tour="${step}"]`);
 const CARD = { width: 380, height: 190 };
 
 function placeCard(box: DOMRect): { left: number; top: number } {
@@ -20,15 +24,13 @@ function placeCard(box: DOMRect): { left: number; top: number } {
 export function Tour() {
   const [index, setIndex] = useState(0);
   const [box, setBox] = useState<DOMRect | null>(null);
-  const step = STEPS[index]!;
-  useEffect(() => {
-    const mark = document.querySelector(`[data-tour="${step}"]`);
-    setBox(mark?.getBoundingClientRect() ?? null);
-  }, [step]);
+  const [steps] = useState(() => STEPS.filter((step) => ofExample() || partOf(step)));
+  const step = steps[index]!;
+  useEffect(() => setBox(partOf(step)?.getBoundingClientRect() ?? null), [step]);
   const end = () => {
     change("tourSeen", true);
     overlay.value = null;
-    if (new URLSearchParams(location.search).has("tour")) location.href = location.pathname;
+    if (ofExample()) location.href = location.pathname;
   };
   const at = box ? placeCard(box) : { left: innerWidth / 2 - CARD.width / 2, top: innerHeight / 2 - CARD.height / 2 };
   return (
@@ -40,7 +42,7 @@ export function Tour() {
           <button disabled={index === 0} onClick={() => setIndex(index - 1)}>
             {t("tour.back")}
           </button>
-          {index < STEPS.length - 1 ? (
+          {index < steps.length - 1 ? (
             <button class="primary" data-testid="tour-next" onClick={() => setIndex(index + 1)}>
               {t("tour.next")}
             </button>
@@ -51,8 +53,8 @@ export function Tour() {
           )}
         </div>
         <div class="start-row">
-          <span class="muted">{t("tour.step", { step: index + 1, count: STEPS.length })}</span>
-          {index < STEPS.length - 1 && <button onClick={end}>{t("tour.end")}</button>}
+          <span class="muted">{t("tour.step", { step: index + 1, count: steps.length })}</span>
+          {index < steps.length - 1 && <button onClick={end}>{t("tour.end")}</button>}
         </div>
       </div>
     </>

@@ -1,4 +1,6 @@
 import { overlay, toggle, type Overlay } from "../app/overlay";
+import { route } from "../app/route";
+import { flying } from "../app/store";
 import { t } from "../i18n";
 
 const show = (which: Overlay) => () => {
@@ -7,6 +9,12 @@ const show = (which: Overlay) => () => {
 const close = () => {
   overlay.value = null;
 };
+
+/** On a page without the parts it explains the tour is of the example, unless something flies: then nobody is led away. */
+function showTour(): void {
+  if (route.peek().page === "mission" || flying.peek()) overlay.value = "tour";
+  else location.href = "?fixture&tour#/mission/example";
+}
 
 export function Menu() {
   const isOpen = overlay.value === "menu";
@@ -43,7 +51,7 @@ export function Menu() {
             </button>
           </li>
           <li>
-            <button onClick={show("tour")} data-testid="menu-tour">
+            <button onClick={showTour} data-testid="menu-tour">
               {t("menu.tour")}
             </button>
           </li>

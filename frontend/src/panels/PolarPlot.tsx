@@ -65,11 +65,7 @@ export function PolarPlot({ data }: { data: PolarData }) {
           data-testid="polar-power"
         />
       )}
-      {scale &&
-        data.samples.map((s, i) => {
-          const [x, y] = polarPoint(s.headingDeg, radius(s.db, scale));
-          return <circle class="polar-sample" cx={x} cy={y} r="0.018" key={i} />;
-        })}
+      {scale && <path class="polar-samples" d={data.samples.map((s) => `M${polarPoint(s.headingDeg, radius(s.db, scale)).join(" ")}h0`).join("")} />}
       {data.peaks.map((peak) => {
         const [x, y] = polarPoint(peak.deg, 0.35 + 0.65 * Math.min(1, peak.weight));
         return <line class="polar-peak" x1="0" y1="0" x2={x} y2={y} key={peak.deg} />;

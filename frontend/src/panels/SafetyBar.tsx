@@ -9,6 +9,7 @@ import { sendUrgent, urgent, type Urgent } from "../commands/urgent";
 import { t, type MessageKey } from "../i18n";
 import { ageS, freshness, OLD_AFTER_S, type Freshness } from "../state/age";
 import { distanceM, lonLat } from "../state/geometry";
+import { toneOfPhase } from "../state/tone";
 import { reviewWords, stateWords, waitsWords } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
@@ -188,7 +189,7 @@ function Words() {
   const waits = waitsWords(shown) ?? (cursor.value === null && fresh && aboutThis ? status?.value.waits_for : null);
   return (
     <div class="words">
-      <div class={`state-words ${lost ? "stale" : ""}`} data-testid="state-words" data-phase={shown.phase} role="status">
+      <div class={`state-words ${lost ? "stale" : `tone-${toneOfPhase(shown.phase)}`}`} data-testid="state-words" data-phase={shown.phase} role="status">
         <span data-testid="phase" hidden>
           {shown.phase}
         </span>

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { SourceMessage } from "../sources/source";
 import type { TelemetryMessage } from "../wire";
-import { record, someBearing } from "./examples";
+import { phase, record, someBearing } from "./examples";
 import { emptyLive, reduceLive, type LiveState } from "./live";
 
 const telemetry = (lat: number, lon: number, changes: Partial<TelemetryMessage> = {}): TelemetryMessage => ({
@@ -23,8 +23,9 @@ describe("reduceLive", () => {
 
   it("draws the path in steps of three metres, only in the air", () => {
     const step = 1 / 111_320;
-    const state = run(telemetry(50, 7), telemetry(50 + 2 * step, 7), telemetry(50 + 4 * step, 7), telemetry(51, 7, { in_air: false }));
-    expect(state.path).toHaveLength(2);
+    const flown = [telemetry(50, 7), telemetry(50 + 2 * step, 7), telemetry(50 + 4 * step, 7), telemetry(51, 7, { in_air: false })];
+    expect(run({ type: "event", recorded: record(phase("flying"))[0]! }, ...flown).path).toHaveLength(2);
+    expect(run({ type: "event", recorded: record(phase("ready"))[0]! }, ...flown).path).toEqual([]);
   });
 
   it("drops an event it already has", () => {

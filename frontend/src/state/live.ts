@@ -3,7 +3,7 @@ import type { SourceMessage } from "../sources/source";
 import type { Hello, Recorded, StatusMessage, SweepProgress, TelemetryMessage } from "../wire";
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 import { distanceM } from "./geometry";
-import { emptyMission, foldMission, type MissionState } from "./mission";
+import { emptyMission, foldMission, inFlight, type MissionState } from "./mission";
 
 /** A value and when this page received it (ms of the page's monotonic clock), so that it can visibly age. */
 export interface Received<T> {
@@ -43,8 +43,9 @@ export const emptyLive: LiveState = {
 /** The vehicle on the map covers what is shorter; each step draws the whole map again. */
 const PATH_STEP_M = 3.0;
 
-function extendPath(path: readonly LonLat[], telemetry: TelemetryMessage): readonly LonLat[] {
-  if (telemetry.lon === null || telemetry.lat === null || telemetry.in_air === false) return path;
+/** Of the mission shown: the vehicle may be on the way home from another one. */
+function extendPath({ path, mission }: LiveState, telemetry: TelemetryMessage): readonly LonLat[] {
+  if (telemetry.lon === null || telemetry.lat === null || telemetry.in_air === false || !inFlight(mission.phase)) return path;
   const here: LonLat = [telemetry.lon, telemetry.lat];
   const last = path.at(-1);
   return last && distanceM(last, here) < PATH_STEP_M ? path : [...path, here];
@@ -69,7 +70,7 @@ export function reduceLive(state: LiveState, message: SourceMessage, nowMs: numb
     case "event":
       return foldRecorded(heard, message.recorded);
     case "telemetry":
-      return { ...heard, telemetry: { value: message, atMs: nowMs }, path: extendPath(heard.path, message) };
+      return { ...heard, telemetry: { value: message, atMs: nowMs }, path: extendPath(heard, message) };
     case "sweep_progress":
       return { ...heard, sweep: { value: message, atMs: nowMs } };
     case "status":
