@@ -152,9 +152,10 @@ def battery_vetoes(
 
 
 def start_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
-    """May a mission take off from where the vehicle stands?"""
+    """May a mission take off from where the vehicle stands? Who flew it before is no matter once it is disarmed."""
     telemetry = situation.telemetry
-    found = [*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s)]
+    found = [veto for veto in vehicle_vetoes(situation) if veto.rule != "pilot" or telemetry.armed is not False]
+    found += battery_vetoes(limits, situation, limits.measurement_time_s)
     if telemetry.in_air:
         found.append(Veto("ground", "the vehicle is already in the air", "land it; a mission starts on the ground"))
     if telemetry.position is not None:

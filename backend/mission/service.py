@@ -26,7 +26,7 @@ from backend.mission.machine import transition
 from backend.mission.patient_vehicle import MendsFailsafes, PatientVehicle
 from backend.mission.ports import Status
 from backend.mission.runner import Runner
-from backend.mission.safety import Veto, battery_to_return_percent
+from backend.mission.safety import Veto, battery_to_return_percent, resume_vetoes
 from backend.mission.state import GROUND, TERMINAL, MissionState, fold
 from backend.mission.watch import GOING_HOME
 from backend.spec import MissionSpec, Place
@@ -240,6 +240,7 @@ class MissionService:
             checks, task = await checklist(state.mission, self._equipment, listening, state.antenna)
             home, home_amsl_m = home_of(self._equipment.vehicle.telemetry())
             facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, self._equipment.software)
+            objections += resume_vetoes(self._equipment.vehicle.telemetry())
             given = inputs.Commanded(str(request.command_id), by, request.command, objections, facts)
             if task is None or objections:
                 asked, seq = await self._record(mission_id, state, given)

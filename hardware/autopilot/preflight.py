@@ -63,7 +63,7 @@ def telemetry_checks(
         ),
         PreflightCheck(
             "Control",
-            latched is None,
+            latched is None or t.armed is False,
             latched or "no pilot intervenes",
             "Give control back with the transmitter, then resume.",
         ),

@@ -149,7 +149,7 @@ class FlatVehicle:
         self._order("land")
 
     def touch_down(self) -> None:
-        self.state = replace(self.state, armed=False, in_air=False, altitude_relative_m=0.0)
+        self.state = replace(self.state, armed=False, in_air=False, altitude_relative_m=0.0, held_by_pilot=False)
 
     def take_control(self) -> None:
         self.state = replace(self.state, controller="pilot", mode="POSCTL", held_by_pilot=True)

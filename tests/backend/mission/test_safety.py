@@ -136,6 +136,11 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
     assert start_vetoes(LIMITS, drifted) == ()
 
 
+def test_a_vehicle_that_a_pilot_landed_and_disarmed_may_start_again_an_armed_one_may_not() -> None:
+    assert start_vetoes(LIMITS, situation(in_air=False, armed=False, controller="pilot")) == ()
+    assert [v.rule for v in start_vetoes(LIMITS, situation(in_air=False, armed=True, controller="pilot"))] == ["pilot"]
+
+
 def test_resuming_is_vetoed_until_the_pilot_has_given_back_unless_it_is_the_failsafe_that_was_found() -> None:
     assert resume_vetoes(telemetry(controller="pilot", mode="HOLD")) == ()
     assert resume_vetoes(telemetry()) == ()

@@ -86,6 +86,18 @@ async def test_after_the_end_the_next_mission_may_start(stage: Stage) -> None:
     assert (await order(stage, second, commands.Start())).accepted
 
 
+async def test_after_a_pilot_landed_it_the_next_mission_may_start(stage: Stage) -> None:
+    first = await stuck(stage)
+    stage.vehicle.take_control()
+    await stage.until_phase(first, "manual")
+    stage.vehicle.stuck = False
+    stage.vehicle.touch_down()
+    await stage.until_phase(first, "done")
+    await stage.until_true(lambda: stage.service.active_mission_id is None)
+    assert stage.vehicle.state.controller == "pilot"
+    await flying(stage)
+
+
 async def test_hold_reaches_the_vehicle_before_the_journal_is_waited_for(stage: Stage) -> None:
     mission_id = await stuck(stage)
     stage.journal.away = True

@@ -61,6 +61,8 @@ def test_an_autopilot_that_would_not_arm_and_a_pilot_in_control_refuse() -> None
     assert refused(READY, prearm_ok=False) == ["Ready to arm"]
     assert refused(replace(READY, in_air=True), prearm_ok=False) == []
     assert refused(READY, latched="the pilot took over") == ["Control"]
+    assert refused(replace(READY, armed=True), latched="the pilot took over") == ["Control"]
+    assert refused(replace(READY, armed=False), latched="the pilot took over and landed") == []
 
 
 def test_a_battery_that_is_not_reported_is_a_caution_only() -> None:
