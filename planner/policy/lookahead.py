@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.policy.allowed import nearest_allowed
+from planner.policy.information import bearing_gradient, known_information
 from planner.types import Decision, FloatArray, PlannerError, Problem
 
 
@@ -54,15 +55,9 @@ def places(course: Course, headings: FloatArray) -> FloatArray:
 
 def log_determinant(course: Course, headings: FloatArray) -> tuple[float, FloatArray]:
     """log det J of the course and its gradient (P, K) with respect to the headings."""
-    visited = places(course, headings)
-    times = np.arange(course.steps + 1)
-    relative = course.target + course.velocity * times[:, None] - visited
+    relative, r2, g = _bearings(course, headings)
     x, y = relative[..., 0], relative[..., 1]
-    r2 = x**2 + y**2 + course.closest**2
-    g = np.stack([-y, x], axis=-1) / r2[..., None]
-    if not course.bearing_at_start:
-        g[:, 0] = 0.0
-    information = course.information + np.einsum("pki,pkj->ij", g, g) / course.sigma**2
+    information = _summed(course, g)
     determinant = float(np.linalg.det(information))
     if not determinant > 1e-250:
         return -575.0, np.zeros_like(headings)
@@ -123,12 +118,21 @@ def myopic_headings(course: Course) -> FloatArray:
 
 def fisher_information(course: Course, headings: FloatArray) -> FloatArray:
     """(2, 2) J, 1/m^2, of a flown course."""
+    return _summed(course, _bearings(course, headings)[2])
+
+
+def _bearings(course: Course, headings: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The target relative to the places (P, K + 1, 2), m, squared ranges (P, K + 1), and the bearings' gradients g."""
     times = np.arange(course.steps + 1)
     relative = course.target + course.velocity * times[:, None] - places(course, headings)
-    if not course.bearing_at_start:
-        relative = relative[:, 1:]
     r2 = (relative**2).sum(axis=-1) + course.closest**2
-    g = np.stack([-relative[..., 1], relative[..., 0]], axis=-1) / r2[..., None]
+    g = bearing_gradient(relative, r2)
+    if not course.bearing_at_start:
+        g[:, 0] = 0.0
+    return relative, r2, g
+
+
+def _summed(course: Course, g: FloatArray) -> FloatArray:
     return course.information + np.einsum("pki,pkj->ij", g, g) / course.sigma**2
 
 
@@ -149,14 +153,10 @@ def stationary_course(ratio: float, steps: int = 20, distance: float = 1.0) -> C
 
 @dataclass(frozen=True, slots=True)
 class Lookahead:
-    """As a policy: the first place of the best course of `steps` steps of `step` m each, planned anew every time.
-
-    myopic: choose the one next step only.
-    """
+    """As a policy: the first place of the best course of `steps` steps of `step` m each, planned anew every time."""
 
     steps: int = 4
     step: float = 40.0
-    myopic: bool = False
 
     def __call__(
         self,
@@ -170,10 +170,10 @@ class Lookahead:
         course = Course(
             starts=np.array([platform]),
             step=self.step,
-            steps=1 if self.myopic else self.steps,
+            steps=self.steps,
             target=np.array([look.x, look.y]),
             sigma=problem.sigma,
-            information=np.array(np.linalg.inv(look.covariance + 1e-9 * np.eye(2)), dtype=np.float64),
+            information=known_information(look),
             bearing_at_start=False,
             closest=max(belief.h, problem.threshold),
         )

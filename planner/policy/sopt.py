@@ -9,21 +9,23 @@ next: so it takes many more bearings than the others (thesis Table 4.2: 9 instea
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.motion import flight_time
-from planner.policy.ahead import first_of
+from planner.policy.ahead import PlansAhead
 from planner.policy.allowed import nearest_allowed
-from planner.types import Decision, Estimate, FloatArray, Problem
+from planner.types import Estimate, FloatArray, Problem
 
 
 @dataclass(frozen=True, slots=True)
-class Sopt:
+class Sopt(PlansAhead):
     """deviations: size of the ellipse. most: bearings tried at each place. distances: values of r1 tried."""
 
+    what: ClassVar[str] = "bearings that would fix the near edge of the belief"
     deviations: float = 3.0
     most: int = 30
     distances: int = 50
@@ -40,17 +42,6 @@ class Sopt:
         second = min((target + across, target - across), key=lambda place: float(np.hypot(*(place - centre))))
         first, second = (nearest_allowed(problem, belief, place) for place in (first, second))
         return np.concatenate([np.repeat(first[None], k1, axis=0), np.repeat(second[None], k2, axis=0)])
-
-    def __call__(
-        self,
-        problem: Problem,
-        belief: GridBelief,
-        platform: tuple[float, float],
-        rng: np.random.Generator | None = None,
-    ) -> Decision:
-        """The first place of the route. `rng` is not used."""
-        route = self.route(problem, belief, platform)
-        return first_of(route, f"first of {len(route)} bearings that would fix the near edge of the belief")
 
     def _quickest(self, problem: Problem, distance: float) -> tuple[int, int, float, float]:
         """k1, k2, r1, r2 of the least travel + measuring time, by exhaustive search."""

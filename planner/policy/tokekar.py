@@ -9,29 +9,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations, product
+from typing import ClassVar
 
 import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.policy.actions import constrained_actions
-from planner.policy.ahead import first_of
+from planner.policy.ahead import PlansAhead
 from planner.policy.allowed import nearest_allowed
+from planner.policy.information import bearing_gradient, bearing_information, known_information
 from planner.types import Decision, FloatArray, PlannerError, Problem
 
 
-def information(places: FloatArray, target: FloatArray, sigma: float, nearest: float) -> FloatArray:
-    """(..., 2, 2) J of one bearing from each of (..., 2) places to the target, ranges below `nearest` m count as it."""
-    relative = target - places
-    r2 = np.maximum((relative**2).sum(axis=-1), nearest**2)
-    g = np.stack([-relative[..., 1], relative[..., 0]], axis=-1) / r2[..., None]
-    return g[..., :, None] * g[..., None, :] / sigma**2  # (3.77)
-
-
 @dataclass(frozen=True, slots=True)
-class Subset:
+class Subset(PlansAhead):
     """Exhaustive choice of `bearings` places on a coarse action grid, then the shortest way through them."""
 
+    what: ClassVar[str] = "places that together tell most about the estimate"
     bearings: int = 3
     grid: tuple[int, int] = (6, 6)
 
@@ -45,22 +40,11 @@ class Subset:
         coarse = replace(problem, action_grid=self.grid, action_spacing=None)
         places = constrained_actions(coarse, belief)
         chosen = np.array(list(combinations(range(len(places)), min(self.bearings, len(places)))))
-        each = information(places, np.array([look.x, look.y]), problem.sigma, nearest=belief.h)
-        known = np.linalg.inv(look.covariance + 1e-9 * np.eye(2))
+        each = bearing_information(places, np.array([look.x, look.y]), problem.sigma, nearest=belief.h)
+        known = known_information(look)
         best = chosen[np.argmax(np.linalg.det(known + each[chosen].sum(axis=1)))]
         orders = [places[list(order)] for order in permutations(best)]
         return min(orders, key=lambda way: _length(np.vstack([platform, way])))
-
-    def __call__(
-        self,
-        problem: Problem,
-        belief: GridBelief,
-        platform: tuple[float, float],
-        rng: np.random.Generator | None = None,
-    ) -> Decision:
-        """The first place of the route. `rng` is not used."""
-        route = self.route(problem, belief, platform)
-        return first_of(route, f"first of {len(route)} places that together tell most about the estimate")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +71,10 @@ class WorstCase:
         root = np.linalg.cholesky(look.covariance + 1e-9 * np.eye(2))
         around = self.deviations * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ root.T
         targets = np.array([look.x, look.y]) + np.vstack([np.zeros(2), around])
-        known = np.linalg.inv(look.covariance + 1e-9 * np.eye(2))
+        known = known_information(look)
         determinants = np.linalg.det(
-            known + information(places[:, None], targets, problem.sigma, nearest=max(belief.h, problem.threshold))
+            known
+            + bearing_information(places[:, None], targets, problem.sigma, nearest=max(belief.h, problem.threshold))
         )
         best = int(np.argmax(determinants.min(axis=1)))
         x, y = places[best]
@@ -97,12 +82,13 @@ class WorstCase:
 
 
 @dataclass(frozen=True, slots=True)
-class Tree:
+class Tree(PlansAhead):
     """Min over move sequences, max over measurement sequences, of det P after an EKF has taken them all.
 
     depth: moves of `step` m into one of `directions`. Nature's measurements err by -2, 0 or 2 standard deviations.
     """
 
+    what: ClassVar[str] = "moves that hold out best against unlucky bearings"
     depth: int = 3
     step: float = 40.0
     directions: int = 8
@@ -132,17 +118,6 @@ class Tree:
         best = ways[int(np.argmin(worst))]
         return np.array([nearest_allowed(problem, belief, place) for place in best])
 
-    def __call__(
-        self,
-        problem: Problem,
-        belief: GridBelief,
-        platform: tuple[float, float],
-        rng: np.random.Generator | None = None,
-    ) -> Decision:
-        """The first place of the route. `rng` is not used."""
-        route = self.route(problem, belief, platform)
-        return first_of(route, f"first of {len(route)} moves that hold out best against unlucky bearings")
-
 
 def _ekf(
     mean: FloatArray, covariance: FloatArray, place: FloatArray, error: FloatArray, sigma: float, nearest: float
@@ -150,7 +125,7 @@ def _ekf(
     """One EKF update of (..., 2) means with a bearing from `place` that errs by `error` innovation deviations."""
     relative = mean - place
     r2 = np.maximum((relative**2).sum(axis=-1), nearest**2)
-    h = np.stack([-relative[..., 1], relative[..., 0]], axis=-1) / r2[..., None]
+    h = bearing_gradient(relative, r2)
     ph = np.einsum("...ij,...j->...i", covariance, h)
     s = (h * ph).sum(axis=-1) + sigma**2
     updated = mean + ph * (error / np.sqrt(s))[..., None]

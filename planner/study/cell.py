@@ -31,7 +31,7 @@ PLANNERS: dict[str, Policy] = {
     "tokekar_worst_case": tokekar_worst_case,
     "tokekar_tree": tokekar_tree,
     "lookahead": lookahead,
-    "lookahead_myopic": Lookahead(myopic=True),
+    "lookahead_myopic": Lookahead(steps=1),
 }
 """Planners without settings; `rollout` is the one with."""
 

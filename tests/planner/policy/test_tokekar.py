@@ -7,7 +7,8 @@ import pytest
 from planner.belief.estimate import estimate
 from planner.belief.grid import prior_belief
 from planner.policy.ahead import PlansAhead
-from planner.policy.tokekar import Subset, Tree, WorstCase, _ekf, information
+from planner.policy.information import bearing_information
+from planner.policy.tokekar import Subset, Tree, WorstCase, _ekf
 from planner.study.scenarios import scenario
 from planner.types import PlannerError
 
@@ -18,11 +19,6 @@ def case():
     return problem, prior_belief(problem)
 
 
-def test_information_of_a_bearing():
-    (j,) = information(np.array([[10.0, 20.0]]), np.array([13.0, 24.0]), 0.1, nearest=1.0)
-    np.testing.assert_allclose(j, np.array([[16.0, -12.0], [-12.0, 9.0]]) / (625 * 0.01))
-
-
 def test_subset_has_the_largest_determinant_of_all(case):
     problem, belief = case
     route = Subset(bearings=2, grid=(4, 4)).route(problem, belief, (150.0, 0.0))
@@ -30,10 +26,12 @@ def test_subset_has_the_largest_determinant_of_all(case):
     known = np.linalg.inv(look.covariance)
     lattice = (np.stack(np.meshgrid(np.arange(4), np.arange(4)), -1).reshape(-1, 2) + 0.5) * 75.0
     best = max(
-        np.linalg.det(known + information(lattice[list(c)], np.array([look.x, look.y]), problem.sigma, 1.0).sum(0))
+        np.linalg.det(
+            known + bearing_information(lattice[list(c)], np.array([look.x, look.y]), problem.sigma, 1.0).sum(0)
+        )
         for c in combinations(range(16), 2)
     )
-    got = np.linalg.det(known + information(route, np.array([look.x, look.y]), problem.sigma, 1.0).sum(0))
+    got = np.linalg.det(known + bearing_information(route, np.array([look.x, look.y]), problem.sigma, 1.0).sum(0))
     assert got == pytest.approx(best)
 
 
@@ -58,7 +56,7 @@ def test_ekf_agrees_with_the_information_form(case):
     covariance, place = np.array([[400.0, 30.0], [30.0, 900.0]]), np.array([20.0, 10.0])
     mean = np.array([150.0, 140.0])
     _, posterior = _ekf(mean, covariance, place, np.array(1.0), problem.sigma, 1.0)
-    expected = np.linalg.inv(np.linalg.inv(covariance) + information(place, mean, problem.sigma, 1.0))
+    expected = np.linalg.inv(np.linalg.inv(covariance) + bearing_information(place, mean, problem.sigma, 1.0))
     np.testing.assert_allclose(posterior, expected)
 
 
