@@ -20,6 +20,7 @@ from backend.mission import area
 from backend.mission.errors import MissionInputError
 from backend.mission.safety import Limits
 from backend.spec import MissionSpec, Place
+from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import GeoPoint
 from planner.belief.estimate import confidence_region
@@ -105,6 +106,13 @@ class Localization:
             digest=digest(shown),
         )
         return fact, shown
+
+    def heading_offset(self, measured: Sequence[BearingMeasured], heading_sigma_deg: float) -> HeadingOffset | None:
+        """What the bearings are off by together; heading_sigma_deg: what their sigmas hold of the heading's."""
+        places = np.array([self.frame.to_enu(GeoPoint(b.place.lat, b.place.lon)) for b in measured]).reshape(-1, 2)
+        bearing = np.array([b.bearing_deg for b in measured])
+        own = np.sqrt(np.maximum(np.array([b.sigma_deg for b in measured]) ** 2 - heading_sigma_deg**2, 0.0))
+        return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
 
     def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:
         place = self.frame.to_geo(spread.x, spread.y)

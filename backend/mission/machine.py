@@ -75,6 +75,7 @@ from backend.mission.step import (
     refuse_flight,
     why_not_yet,
 )
+from hardware.direction_finding.heading_offset import HeadingOffset
 
 LANDING_PATIENCE_S = 120.0
 UNSURE_PLACE_M = 5.0
@@ -190,12 +191,24 @@ def _doubt_place(step: Step, bearing: BearingMeasured) -> None:
         clear_alerts(step, "place")
 
 
+def _doubt_heading(step: Step, offset: HeadingOffset | None) -> None:
+    if offset is not None and offset.significant:
+        text = (
+            f"the bearings of this flight disagree by a common offset of about {offset.offset_deg:+.0f} "
+            f"± {offset.std_error_deg:.0f} degrees: the place found may be wrong"
+        )
+        alert(step, "heading", "caution", text, "check compass and antenna mounting; one wrong place looks alike")
+    else:
+        clear_alerts(step, "heading")
+
+
 def _belief(step: Step, given: BeliefReady) -> None:
     state = step.state
     if given.bearing_ids != state.bearing_ids or state.belief_current:
         return
     fact: BeliefUpdated = given.fact
     step.record(fact)
+    _doubt_heading(step, given.heading_offset)
     if state.phase == "planning":
         go_on(step, "belief updated")
     elif fact.localized and state.phase in ("flying", "measuring"):

@@ -33,7 +33,18 @@ from backend.mission.safety import Veto
 from backend.mission.state import MissionState, evolve
 
 Topic = Literal[
-    "vehicle", "receiver", "console", "payload", "pilot", "battery", "place", "failure", "safety", "ground", "storage"
+    "vehicle",
+    "receiver",
+    "console",
+    "payload",
+    "pilot",
+    "battery",
+    "place",
+    "heading",
+    "failure",
+    "safety",
+    "ground",
+    "storage",
 ]
 
 

@@ -88,6 +88,27 @@ def test_a_claim_against_an_outlier_names_the_bearing_it_stands_against() -> Non
     assert agreed.contradicting == []
 
 
+AROUND = ((90, -40), (250, 20), (150, 160), (30, 60))
+
+
+@pytest.mark.parametrize("off_deg", [0.0, 12.0])
+def test_a_compass_that_is_off_is_told_from_bearings_of_all_sides(off_deg: float) -> None:
+    seen = [towards(x, y, (150.0, 60.0), sigma=4.2) for x, y in AROUND]
+    turned = [b.model_copy(update={"bearing_deg": (b.bearing_deg + off_deg) % 360.0}) for b in seen]
+    found = task().heading_offset(turned, heading_sigma_deg=4.0)
+    assert found is not None
+    assert found.offset_deg == pytest.approx(off_deg, abs=0.5)
+    assert found.significant == (off_deg > 5.0)
+
+
+def test_what_a_heading_may_be_off_by_is_taken_out_of_the_sigma() -> None:
+    seen = [towards(x, y, (150.0, 60.0), sigma=5.0) for x, y in AROUND]
+    known, unknown = task().heading_offset(seen, 4.0), task().heading_offset(seen, 0.0)
+    assert known is not None
+    assert unknown is not None
+    assert known.std_error_deg == pytest.approx(0.6 * unknown.std_error_deg, rel=0.02)
+
+
 def test_without_bearings_the_belief_is_the_prior_over_the_area() -> None:
     fact, belief = task().belief_fact([])
     assert fact.bearings == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -33,6 +35,7 @@ from backend.mission import inputs
 from backend.mission.effects import Effect
 from backend.mission.machine import transition
 from backend.mission.state import AUTOMATIC, HOMEWARD, TERMINAL, MissionState, fold
+from hardware.direction_finding.heading_offset import HeadingOffset
 
 VEHICLE = (*MOVES, asked.HoldVehicle)
 IN_FLIGHT = tuple(AUTOMATIC | HOMEWARD)
@@ -347,6 +350,28 @@ def test_a_failed_take_off_on_the_ground_ends_the_mission_and_in_the_air_holds()
     air.give(inputs.WorkFailed("take_off", "no altitude", "look", in_air=True))
     assert (ground.state.phase, ground.state.outcome) == ("failed", "failed")
     assert air.state.phase == "hold"
+
+
+def test_an_offset_common_to_all_bearings_is_told_until_it_is_none() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    walk.give(replace(belief_ready(walk.state), heading_offset=HeadingOffset(12.4, 1.6, 40.0)))
+    (told,) = [r.event for r in walk.recorded if isinstance(r.event, AlertRaised)]
+    assert told.level == "caution"
+    assert "about +12 ± 2 degrees" in told.text
+    walk.give(inputs.Planned(plan(2)))
+    walk.give(inputs.Arrived(HOME, 0.3, 9.0))
+    assert walk.state.open_alerts
+    walk.give(inputs.SweepTaken(bearing(2)))
+    walk.give(belief_ready(walk.state))
+    assert not walk.state.open_alerts
+
+
+def test_an_offset_that_chance_may_have_made_is_not_told() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    walk.give(replace(belief_ready(walk.state), heading_offset=HeadingOffset(7.0, 3.0, 5.0)))
+    assert walk.state.open_alerts == ()
 
 
 def test_a_stale_belief_is_not_recorded() -> None:
