@@ -6,11 +6,9 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from backend.events import BearingMeasured, CandidateFact
 from backend.mission.localization import Localization
-from backend.mission.planning import candidate_facts, cost_of, decide, way_to
+from backend.mission.planning import candidate_facts, cost_of, decide, in_nine_of_ten, way_to
 from backend.mission.safety import Situation, place_vetoes, standing_vetoes
 from backend.spec import Place
 from hardware.readings import GeoPoint
@@ -21,7 +19,8 @@ from planner.types import PlannerError
 class Forecast:
     """allowed False: the vehicle may not go there now, `reason` says why (the times may still be known).
 
-    mean_s: mean time until localized by way of the place; p90_s: not exceeded in 90 % of the rollouts. None: unknown.
+    mean_s: mean time until localized by way of the place; p90_s: not exceeded in at least 90 % of the rollouts and
+    never below the mean. None: unknown.
     """
 
     place: Place
@@ -81,7 +80,7 @@ def preview(task: Localization, start: Place, threads: int) -> Preview:
         first_place=task.place(decision.x, decision.y),
         reason=decision.reason,
         mean_s=float(times.mean()) if len(times) else None,
-        p90_s=float(np.quantile(times, 0.9)) if len(times) else None,
+        p90_s=in_nine_of_ten(times),
         times_s=[float(t) for t in times],
         candidates=candidate_facts(task, decision),
         rollouts=decision.rollouts,
