@@ -1,6 +1,6 @@
 // What the operator prefers, kept in this browser.
 import { effect, signal } from "@preact/signals";
-import { setLanguage, type Language } from "../i18n";
+import { setLanguage, tellInUnits, type Language } from "../i18n";
 import type { CoordinateFormat } from "../units/coordinates";
 import type { UnitSystem } from "../units/quantities";
 
@@ -62,5 +62,6 @@ export function applySettings(): void {
   });
   effect(() => {
     void setLanguage(settings.value.language);
+    tellInUnits(settings.value.units);
   });
 }

@@ -4,7 +4,7 @@ import { en, type MessageKey } from "./en";
 import { tellIn } from "./told";
 
 export type { MessageKey } from "./en";
-export { told, toldName, toldReason } from "./told";
+export { told, tellInUnits, toldName, toldReason } from "./told";
 export type Language = "en" | "de";
 export type Parameters = Record<string, string | number>;
 

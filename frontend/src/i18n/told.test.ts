@@ -1,8 +1,11 @@
 import { afterEach, expect, it } from "vitest";
 import table from "./told.json";
-import { sentencesOf, tellIn, told, toldName, toldReason, translated } from "./told";
+import { sentencesOf, tellIn, tellInUnits, told, toldName, toldReason, translated } from "./told";
 
-afterEach(() => tellIn(null));
+afterEach(() => {
+  tellIn(null);
+  tellInUnits("metric");
+});
 
 it("says in English what the server said, names with a capital", () => {
   expect(told("the vehicle has no position")).toBe("the vehicle has no position");
@@ -28,6 +31,17 @@ it("puts the values of a sentence into its translation, sentences within sentenc
   expect(told("a.csv: no usable pulse of tag 3 in any rotation; first remark: a.csv:2: a pulse needs 19 columns, this row has 7; line left out")).toBe(
     "a.csv: kein brauchbarer Puls der Kennung 3 in irgendeiner Drehung; erste Bemerkung: a.csv:2: ein Puls braucht 19 Spalten, diese Zeile hat 7; Zeile ausgelassen",
   );
+});
+
+it("gives the server's values in the operator's units", () => {
+  expect(told("135181 m2 to fly in")).toBe("0.14 km² to fly in");
+  expect(told("expected error 31 m, wanted below 10 m")).toBe("expected error 31 m, wanted below 10 m");
+  tellInUnits("imperial");
+  expect(told("135181 m2 to fly in")).toBe("33.40 acres to fly in");
+  expect(told("not yet: expected error 31 m, wanted below 10 m")).toBe("not yet: expected error 102 ft, wanted below 32.8 ft");
+  expect(told("wind of 12.5 m/s; 20 MHz, 30 mm, 4 m2s")).toBe("wind of 28.0 mph; 20 MHz, 30 mm, 4 m2s");
+  tellIn(table);
+  expect(told("135181 m2 to fly in")).toBe("33.40 acres Flugraum");
 });
 
 it("shows a sentence that it does not know as it came", () => {

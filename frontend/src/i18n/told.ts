@@ -1,6 +1,7 @@
 // What the server says in words (reasons, checks, alerts), in the page's language. Its English sentences are the codes:
 // told.json has one for each, with {} where the server puts a value; a sentence that is not there is shown as it came.
 import { signal } from "@preact/signals";
+import { formatArea, formatLength, formatSpeed, type UnitSystem } from "../units/quantities";
 
 type Sentence = { pattern: RegExp; german: string; literal: number };
 
@@ -40,7 +41,26 @@ const value = (text: string, known: readonly Sentence[]): string =>
 
 const capital = (text: string) => (/^[a-z]+([ :]|$)/.test(text) ? text[0]!.toUpperCase() + text.slice(1) : text);
 
-export const told = (text: string): string => (sentences.value === null ? text : translated(text, sentences.value));
+const units = signal<UnitSystem>("metric");
+
+export function tellInUnits(system: UnitSystem): void {
+  units.value = system;
+}
+
+const QUANTITY = /(-?\d+(?:[.,]\d+)?) (m2|m²|m\/s|m)(?![\w²/])/g;
+
+/** The server's SI values as the operator reads them; metric lengths and speeds already are as exact as they should be. */
+function inUnits(text: string, system: UnitSystem): string {
+  return text.replace(QUANTITY, (asSent, digits: string, unit: string) => {
+    const value = Number(digits.replace(",", "."));
+    if (unit === "m2" || unit === "m²") return formatArea(value, system);
+    if (system === "metric") return asSent;
+    return unit === "m" ? formatLength(value, system) : formatSpeed(value, system);
+  });
+}
+
+export const told = (text: string): string =>
+  inUnits(sentences.value === null ? text : translated(text, sentences.value), units.value);
 
 /** The name of a check or a rule, as a heading. */
 export const toldName = (text: string): string => capital(told(text).replace(/(?<=[a-z])_(?=[a-z])/g, " "));
