@@ -24,7 +24,7 @@ def test_subset_has_the_largest_determinant_of_all(case):
     route = Subset(bearings=2, grid=(4, 4)).route(problem, belief, (150.0, 0.0))
     look = estimate(belief, "map")
     known = np.linalg.inv(look.covariance)
-    lattice = (np.stack(np.meshgrid(np.arange(4), np.arange(4)), -1).reshape(-1, 2) + 0.5) * 75.0
+    lattice = 75.0 * (np.array(list(product(range(4), range(4))), dtype=np.float64) + 0.5)
     best = max(
         np.linalg.det(
             known + bearing_information(lattice[list(c)], np.array([look.x, look.y]), problem.sigma, 1.0).sum(0)
