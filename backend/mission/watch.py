@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from backend.events import Phase
 from backend.mission import inputs
 from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
 from backend.mission.ports import TrackPoint
 from backend.mission.safety import BATTERY_STALE_S, NOMINAL_DRAIN_PERCENT_S, Limits, Situation, battery_vetoes
-from backend.mission.state import MissionState
+from backend.mission.state import AUTOMATIC, HOMEWARD, MissionState
 from hardware.autopilot.patience import Deadline
 from hardware.readings import Telemetry
 
@@ -27,25 +28,32 @@ GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECI
 HEARD_AGAIN_S, HEARD_AGAIN_WALL_S = 15.0, 5.0
 """So long after it was heard again a vehicle may still be acting on the silence before: it hears us later."""
 
-CHARGE_UNKNOWN = frozenset({"battery_unknown", "battery_stale"})
+RECOVERED_PERCENT = 2.0
+"""A low battery counts as recovered with so much to spare: a charge at the limit is told once."""
+
 MEASURED_DRAIN_AFTER_S = 60.0
 MEASURED_DRAIN_PERCENT = 2.0
 
 
 @dataclass(slots=True)
 class Drain:
-    """Battery used a second of this flight, the nominal rate until enough was used to tell."""
+    """Battery used a second in the air since the last take-off, the nominal rate until enough was used to tell.
+
+    Time is the charge's own: what a lost link did not bring drained nothing.
+    """
 
     began: tuple[float, float] | None = None
     percent_s: float = NOMINAL_DRAIN_PERCENT_S
 
     def update(self, telemetry: Telemetry, now_s: float) -> None:
-        charge = telemetry.battery_percent
+        charge, at_s = telemetry.battery_percent, telemetry.battery_at_s or now_s
+        if telemetry.in_air is False:
+            self.began = None
         if not telemetry.in_air or charge is None:
             return
         if self.began is None or charge > self.began[1]:
-            self.began = (now_s, charge)
-        seconds, used = now_s - self.began[0], self.began[1] - charge
+            self.began = (at_s, charge)
+        seconds, used = at_s - self.began[0], self.began[1] - charge
         if seconds >= MEASURED_DRAIN_AFTER_S and used >= MEASURED_DRAIN_PERCENT:
             self.percent_s = used / seconds
 
@@ -68,7 +76,8 @@ class Watch:
     track: list[TrackPoint] = field(default_factory=list)
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
     _console_seen: bool = False
-    _battery_told: str = ""
+    _battery_told: tuple[str, str] = ("", "")
+    """The rule that was broken, and who flew then: a change of either is told again."""
     _heard_since_s: float = -math.inf
     _heard_again: Deadline | None = None
     _battery_unheard_since: float | None = None
@@ -141,22 +150,27 @@ class Watch:
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 
     def _battery(self, telemetry: Telemetry, now: float) -> None:
-        if not telemetry.in_air:
+        if not telemetry.in_air or not telemetry.connected:
             return
-        vetoes = battery_vetoes(self.limits, self.situation())
+        situation, state = self.situation(), self.state()
+        vetoes = battery_vetoes(self.limits, situation)
         if telemetry.battery_percent is not None:
             self._battery_unheard_since = None
         elif vetoes:
             if self._battery_unheard_since is None:
                 self._battery_unheard_since = now
-            if now - self._battery_unheard_since < BATTERY_STALE_S:
+            if now - max(self._battery_unheard_since, self._heard_since_s) < BATTERY_STALE_S:
                 return
-        rule, told = vetoes[0].rule if vetoes else "", self._battery_told
-        self._battery_told = rule
-        if vetoes and rule != told:
-            self.give(inputs.BatteryLow(vetoes[0].detail))
-        elif told in CHARGE_UNKNOWN and not vetoes:
-            self.give(inputs.BatteryReported())
+        if vetoes:
+            told = (vetoes[0].rule, flown_by(state.phase))
+            if told != self._battery_told:
+                self._battery_told = told
+                self.give(inputs.BatteryLow(vetoes[0].detail))
+        elif self._battery_told != ("", "") or any(alert.startswith("battery-") for alert in state.open_alerts):
+            spare = replace(self.limits, reserve_percent=self.limits.reserve_percent + RECOVERED_PERCENT)
+            if not battery_vetoes(spare, situation):
+                self._battery_told = ("", "")
+                self.give(inputs.BatteryReported())
 
     def _way_down(self, telemetry: Telemetry, now: float) -> None:
         state = self.state()
@@ -193,3 +207,8 @@ class Watch:
                 mode=telemetry.mode,
             )
         )
+
+
+def flown_by(phase: Phase) -> str:
+    """Who has to act on a low battery: the mission itself does when it flies, people when it is held."""
+    return "mission" if phase in AUTOMATIC else "home" if phase in HOMEWARD else "people"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from doubles import FRAME, Stage, spec
-from missions import Walk
+from missions import BATTERY_VETO, Walk, plan, walk_in
 
 from backend.mission import inputs, watch
 from backend.mission.equipment import Equipment
@@ -105,7 +105,29 @@ def test_the_battery_is_told_once_until_it_recovers(scene: Scene) -> None:
     (low,) = scene.tick(5)
     assert isinstance(low, inputs.BatteryLow)
     scene.see(battery_percent=90.0)
-    assert scene.tick(2) == []
+    assert scene.tick(2) == [inputs.BatteryReported()]
+
+
+def test_a_charge_at_the_limit_is_told_once(scene: Scene) -> None:
+    told = []
+    for charge in (29.0, 31.0, 29.0, 31.0):  # five percent for the landing, twenty-five in reserve
+        scene.see(battery_percent=charge)
+        told += [type(given) for given in scene.tick()]
+    assert told == [inputs.BatteryLow]
+
+
+def test_a_low_battery_is_told_again_when_the_mission_flies_on_or_is_held_on_its_way_home(scene: Scene) -> None:
+    scene.see(battery_percent=26.0)
+    for phase, told in (("hold", 1), ("waiting", 1), ("returning", 1), ("hold", 1), ("manual", 0)):
+        scene.state = walk_in(phase).state
+        assert [type(given) for given in scene.tick(5)].count(inputs.BatteryLow) == told
+
+
+def test_an_alert_that_a_planned_flight_or_another_server_raised_is_cleared_too(scene: Scene) -> None:
+    walk = Walk().to("planning")
+    walk.give(inputs.Planned(plan(1), (BATTERY_VETO,)))
+    scene.state = walk.state
+    assert inputs.BatteryReported() in scene.tick()
 
 
 def test_a_charge_that_the_vehicle_no_longer_reports_is_told_and_cleared_when_it_is_reported_again(
@@ -217,3 +239,16 @@ def test_drain_is_nominal_until_enough_was_used_to_tell() -> None:
         if second < 60:
             assert drain.percent_s == NOMINAL_DRAIN_PERCENT_S
     assert drain.percent_s == pytest.approx(0.1)
+
+
+def test_drain_counts_neither_the_time_on_the_ground_nor_a_silent_link() -> None:
+    drain = Drain()
+    flying = replace(Stage().vehicle.state, in_air=True)
+    drain.update(replace(flying, battery_percent=90.0, battery_at_s=0.0), 0.0)
+    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 100.0)
+    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 300.0)
+    assert drain.percent_s == pytest.approx(0.1)
+    drain.update(replace(flying, in_air=False, battery_percent=80.0, battery_at_s=1_000.0), 1_000.0)
+    drain.update(replace(flying, battery_percent=80.0, battery_at_s=2_000.0), 2_000.0)
+    drain.update(replace(flying, battery_percent=60.0, battery_at_s=2_100.0), 2_100.0)
+    assert drain.percent_s == pytest.approx(0.2)
