@@ -135,7 +135,7 @@ class Runner:
             case effects.ReturnHome(hold_first=hold_first):
                 self._run("command", "return", self._return_home(hold_first))
             case effects.Land():
-                self._run("command", "land", _silently(vehicle.land()))
+                self._run("command", "land", self._land())
             case effects.PlanNext():
                 self._run("thinking", "plan", self.steps.plan(effect, self._state.bearings))
             case effects.UpdateBelief():
@@ -152,10 +152,18 @@ class Runner:
             case _:
                 assert_never(effect)
 
+    async def _land(self) -> None:
+        if not self._down:
+            await self._equipment.vehicle.land()
+
+    @property
+    def _down(self) -> bool:
+        telemetry = self._equipment.vehicle.telemetry()
+        return telemetry.in_air is False and not telemetry.armed
+
     async def _return_home(self, hold_first: bool) -> None:
         vehicle = self._equipment.vehicle
-        telemetry = vehicle.telemetry()
-        if telemetry.in_air is False and not telemetry.armed:
+        if self._down:
             return
         if hold_first:
             try:
@@ -239,8 +247,7 @@ class Runner:
         while True:
             await self._equipment.clock.sleep(TRACK_SAVED_S)
             self._flush_track()
-            down = self._equipment.vehicle.telemetry().in_air is False
-            on_ground_s = on_ground_s + TRACK_SAVED_S if self._state.phase in TERMINAL and down else 0.0
+            on_ground_s = on_ground_s + TRACK_SAVED_S if self._state.phase in TERMINAL and self._down else 0.0
             if on_ground_s > DOWN_AFTER_ABORT_S:
                 self.finished.set()
 

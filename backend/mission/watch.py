@@ -81,6 +81,7 @@ class Watch:
     _heard_since_s: float = -math.inf
     _heard_again: Deadline | None = None
     _battery_unheard_since: float | None = None
+    _flown: bool = False
     _on_ground_since: float | None = None
     _tracked_at: float = -math.inf
     _ticked_at: float = math.inf
@@ -176,7 +177,9 @@ class Watch:
         state = self.state()
         if state.phase == "returning" and self._above_home(telemetry):
             self.give(inputs.HomeReached())
-        if not state.took_off or telemetry.in_air is not False or not telemetry.connected:
+        self._flown |= telemetry.in_air is True
+        flown = state.took_off or self._flown or (state.phase in HOMEWARD and not telemetry.armed)
+        if not flown or telemetry.in_air is not False or not telemetry.connected:
             self._on_ground_since = None
             return
         if self._on_ground_since is None:

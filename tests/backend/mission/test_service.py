@@ -117,6 +117,40 @@ async def test_abort_holds_and_returns_at_once(stage: Stage) -> None:
     await stage.until_true(lambda: stage.vehicle.names[-2:] == ["hold", "return_home"])
 
 
+async def test_a_return_during_the_take_off_ends_the_mission_once_the_vehicle_is_down(stage: Stage) -> None:
+    stage.vehicle.stuck = True
+    mission_id = await flying(stage, "taking_off")
+    await stage.until_true(lambda: stage.vehicle.names == ["take_off"])
+    stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True)
+    assert (await order(stage, mission_id, commands.Return())).accepted
+    await stage.until_phase(mission_id, "landing")
+    stage.vehicle.touch_down()
+    ended = await stage.until(mission_id, "mission_ended")
+    assert ended.reason.startswith("return ordered by anna")  # type: ignore[union-attr]
+
+
+async def test_a_return_before_the_vehicle_left_the_ground_ends_the_mission(stage: Stage) -> None:
+    stage.vehicle.stuck = True
+    mission_id = await flying(stage, "taking_off")
+    assert (await order(stage, mission_id, commands.Return())).accepted
+    await stage.until_phase(mission_id, "done")
+
+
+async def test_a_vehicle_that_landed_at_home_while_it_was_not_heard_ends_the_mission(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    stage.vehicle.stuck = False
+    assert (await order(stage, mission_id, commands.Return())).accepted
+    await stage.until_phase(mission_id, "landing")
+    stage.vehicle.heard = False
+    await stage.until(mission_id, "link_lost")
+    stage.vehicle.touch_down()
+    stage.vehicle.heard = True
+    await stage.until_phase(mission_id, "done")
+    assert "land" not in stage.vehicle.names
+    told = [e.text for e in stage.journal.events(mission_id) if e.kind == "alert_raised"]  # type: ignore[union-attr]
+    assert not any("landed" in text for text in told)
+
+
 async def test_the_pilot_silences_the_mission_until_an_operator_resumes(stage: Stage) -> None:
     mission_id = await stuck(stage)
     stage.vehicle.take_control()
