@@ -42,12 +42,18 @@ def _of(results: pd.DataFrame, cell: Cell) -> pd.DataFrame:
     return results.loc[results["cell"] == cell.name()]
 
 
+def _configs(summaries: list[Summary]) -> list[str]:
+    """fast before medium before slow, as many as there are."""
+    present = {s.cell.config for s in summaries}
+    return [config for config in MEASUREMENT_TIMES if config in present]
+
+
 def time_by_target(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Scenario 1: mean time against the target's distance along the row."""
     chosen = [s for s in summaries if s.cell.scenario == "1"]
     if not chosen:
         return None
-    configs = sorted({s.cell.config for s in chosen}, key=list(MEASUREMENT_TIMES).index)
+    configs = _configs(chosen)
     figure, axes = _axes(len(configs))
     for panel, config in zip(axes, configs, strict=True):
         for summary in chosen:
@@ -76,7 +82,7 @@ def times_violin(results: pd.DataFrame, summaries: list[Summary], paths: int) ->
     chosen = [s for s in summaries if s.cell.scenario == "2" and s.runs >= 10]
     if not chosen:
         return None
-    configs = sorted({s.cell.config for s in chosen}, key=list(MEASUREMENT_TIMES).index)
+    configs = _configs(chosen)
     most = max(sum(s.cell.config == config for s in chosen) for config in configs)
     figure, axes = _axes(len(configs), width=5.5, height=1.2 + 0.42 * most, columns=3)
     for panel, config in zip(axes, configs, strict=True):
@@ -114,7 +120,7 @@ def first_actions(results: pd.DataFrame, summaries: list[Summary], paths: int) -
 
 def action_values(results: pd.DataFrame, summaries: list[Summary], paths: int) -> Figure | None:
     """Expected time by way of each first place, with the belief it is for, for every configuration of Scenario 2."""
-    configs = sorted({s.cell.config for s in summaries if s.cell.scenario == "2"}, key=list(MEASUREMENT_TIMES).index)
+    configs = _configs([s for s in summaries if s.cell.scenario == "2"])
     if not configs:
         return None
     figure, axes = _axes(len(configs), width=4.8, height=4.4)
@@ -224,7 +230,7 @@ def _by_budget(summaries: list[Summary], measure: Callable[[Summary], tuple[floa
     series = {key: found for key, found in series.items() if len({s.cell.budget for s in found}) > 1}
     if not series:
         return None
-    configs = sorted({config for config, _ in series}, key=list(MEASUREMENT_TIMES).index)
+    configs = _configs([s for found in series.values() for s in found])
     figure, axes = _axes(len(configs), width=5.0)
     for panel, config in zip(axes, configs, strict=True):
         here = {words: found for (own, words), found in series.items() if own == config}
