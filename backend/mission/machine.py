@@ -47,6 +47,7 @@ from backend.mission.inputs import (
     Interrupted,
     InTheAir,
     Landed,
+    Link,
     LinkDown,
     LinkUp,
     NothingToPlan,
@@ -216,14 +217,16 @@ def _belief(step: Step, given: BeliefReady) -> None:
 
 
 def _failed(step: Step, given: WorkFailed) -> None:
-    phase = step.state.phase
+    phase, way_home = step.state.phase, given.step in ("return", "land")
     if phase in GROUND or step.state.pilot_has_control:
         return
-    alert(step, "failure", "warning", given.detail, given.remedy)
+    unheard = "vehicle" in step.state.links_down and (way_home or given.step == "hold")
+    remedy = "it is ordered again when the vehicle is heard" if unheard else given.remedy
+    alert(step, "failure", "warning", given.detail, remedy)
     if phase == "taking_off" and given.step == "take_off" and given.in_air is False:
         step.do(CancelWork())
         end(step, "failed", "failed", given.detail)
-    elif phase in AUTOMATIC or (phase in HOMEWARD and given.step not in ("plan", "belief")):
+    elif phase in AUTOMATIC or (phase in HOMEWARD and way_home and not unheard):
         hold(step, given.detail)
 
 
@@ -240,9 +243,14 @@ def _pilot(step: Step, given: PilotTookOver) -> None:
         step.go("manual", given.detail)
 
 
+def _concerned(state: MissionState, link: Link) -> bool:
+    """An aborted mission's vehicle still flies home."""
+    return state.phase not in GROUND | TERMINAL or (state.phase == "aborted" and link == "vehicle")
+
+
 def _link_down(step: Step, given: LinkDown) -> None:
     state = step.state
-    if state.phase in GROUND or state.phase in TERMINAL or given.link in state.links_down:
+    if not _concerned(state, given.link) or given.link in state.links_down:
         return
     step.record(LinkLost(link=given.link, detail=given.detail))
     match given.link:
@@ -272,20 +280,27 @@ def _link_down(step: Step, given: LinkDown) -> None:
 
 def _link_up(step: Step, given: LinkUp) -> None:
     state = step.state
-    if given.link not in state.links_down or state.phase in TERMINAL:
+    if not _concerned(state, given.link) or given.link not in state.links_down:
         return
     step.record(LinkRestored(link=given.link, outage_s=given.outage_s))
     clear_alerts(step, given.link)
     if given.link == "console":
         step.do(CancelTimer("console_hold"))
         step.do(CancelTimer("console_return"))
-    elif given.link == "vehicle" and state.phase == "hold":
-        if given.going_home:
-            _failsafe_flies(step, "its failsafe acted while the link was lost")
-        elif not state.pilot_has_control:
-            step.do(HoldVehicle())
-    elif given.link == "vehicle" and state.phase in HOMEWARD:
-        step.do(ReturnHome() if state.phase == "returning" else Land())
+    elif given.link == "vehicle" and not state.pilot_has_control:
+        _heard_again(step, given.going_home)
+
+
+def _heard_again(step: Step, going_home: bool) -> None:
+    """What was ordered last is ordered again: the vehicle may not have heard it."""
+    state = step.state
+    if state.phase in HOMEWARD or (state.phase == "aborted" and state.homebound):
+        clear_alerts(step, "failure")
+        step.do(Land() if state.phase == "landing" else ReturnHome())
+    elif state.phase == "hold" and going_home:
+        _failsafe_flies(step, "its failsafe acted while the link was lost")
+    elif state.phase in ("hold", "aborted") and not going_home:
+        step.do(HoldVehicle())
 
 
 def _vehicle(step: Step, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:

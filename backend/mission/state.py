@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from backend.events import (
+    AbortOrdered,
     AlertAcknowledged,
     AlertCleared,
     AlertRaised,
@@ -25,6 +26,7 @@ from backend.events import (
     ControlTaken,
     Event,
     FlightStarted,
+    HoldOrdered,
     LinkLost,
     LinkRestored,
     MissionDrafted,
@@ -36,6 +38,7 @@ from backend.events import (
     PlanChosen,
     PlanVetoed,
     Recorded,
+    ReturnOrdered,
     ServerRestarted,
     SweepRejected,
     SweepStarted,
@@ -61,8 +64,9 @@ class MissionState:
     """`chosen`: the place being proposed, flown to or measured at, None when the next is still to be planned.
 
     avoid: places vetoed or without a usable sweep since the last bearing. belief_current: no bearing came or went
-    since `belief` was computed. localized_at_s: when the belief was first good enough. open_alerts: ids raised and not
-    cleared. answered: the first answer to every command id.
+    since `belief` was computed. localized_at_s: when the belief was first good enough. homebound: an abort or a return
+    was ordered last, and no hold since. open_alerts: ids raised and not cleared. answered: the first answer to every
+    command id.
     """
 
     phase: Phase = "draft"
@@ -84,6 +88,7 @@ class MissionState:
     belief: BeliefUpdated | None = None
     belief_current: bool = False
     return_reason: str = ""
+    homebound: bool = False
     pilot_has_control: bool = False
     links_down: frozenset[str] = frozenset()
     open_alerts: tuple[str, ...] = ()
@@ -181,6 +186,8 @@ def _evolve_surroundings(state: MissionState, event: Event) -> MissionState:
     match event:
         case AutomaticChanged(automatic=automatic):
             return replace(state, automatic=automatic)
+        case AbortOrdered() | ReturnOrdered() | HoldOrdered():
+            return replace(state, homebound=not isinstance(event, HoldOrdered))
         case ControlTaken():
             return replace(state, pilot_has_control=True)
         case ControlReleased():

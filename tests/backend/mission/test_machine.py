@@ -309,6 +309,48 @@ def test_a_lost_vehicle_link_holds_and_on_return_the_hold_is_sent() -> None:
     assert answer(walk.command(commands.Resume())).accepted
 
 
+@pytest.mark.parametrize("ordered", [commands.Return(), inputs.TimerExpired("console_return")])
+def test_a_way_home_ordered_over_a_lost_link_is_ordered_again_when_the_vehicle_is_heard(ordered: object) -> None:
+    walk = Walk().to("flying")
+    walk.give(inputs.LinkDown("vehicle", "silent"))
+    if isinstance(ordered, commands.Return):
+        walk.command(ordered)
+    else:
+        walk.give(ordered)  # type: ignore[arg-type]
+    walk.give(inputs.WorkFailed("return", "no answer", "look", in_air=True))
+    assert walk.state.phase == "returning"
+    told = [r.event for r in walk.recorded if isinstance(r.event, AlertRaised)][-1]
+    assert told.remedy == "it is ordered again when the vehicle is heard"
+    assert moves(walk.give(inputs.LinkUp("vehicle", 9.0))) == [asked.ReturnHome()]
+    assert not walk.state.open_alerts
+    walk.give(inputs.WorkFailed("return", "refused", "look", in_air=True))
+    assert walk.state.phase == "hold"
+
+
+def test_an_abort_over_a_lost_link_is_ordered_again_when_the_vehicle_is_heard_unless_it_was_held_since() -> None:
+    for lost_first in (True, False):
+        walk = Walk().to("flying")
+        steps = [lambda w: w.give(inputs.LinkDown("vehicle", "silent")), lambda w: w.command(commands.Abort())]
+        for step in steps if lost_first else reversed(steps):
+            step(walk)
+        walk.give(inputs.WorkFailed("return", "no answer", "look", in_air=True))
+        assert moves(walk.give(inputs.LinkUp("vehicle", 9.0))) == [asked.ReturnHome()]
+        assert not walk.state.open_alerts
+        walk.give(inputs.LinkDown("vehicle", "silent"))
+        walk.command(commands.Hold())
+        effects = walk.give(inputs.LinkUp("vehicle", 9.0))
+        assert [e for e in effects if isinstance(e, VEHICLE)] == [asked.HoldVehicle()]
+
+
+def test_a_fault_of_our_own_does_not_stop_the_way_home() -> None:
+    for phase in HOMEWARD:
+        walk = Walk().to(phase)
+        effects = walk.give(inputs.WorkFailed("hold", "watching failed inside Crossfix", "look", in_air=True))
+        assert walk.state.phase == phase
+        assert not any(isinstance(e, (*VEHICLE, asked.CancelWork)) for e in effects)
+        assert walk.state.open_alerts
+
+
 def test_a_silent_receiver_holds_only_a_running_measurement() -> None:
     flying = Walk().to("flying")
     flying.give(inputs.LinkDown("receiver", "silent"))
