@@ -45,6 +45,8 @@ from hardware.sim.world import Emitter, Reflector, World
 log = logging.getLogger("crossfix")
 
 HOME_AMSL_M = 120.0
+TELEMETRY_HELD_WALL_S = 0.25
+"""The simulated receiver waits so long for the pose of its samples, however fast the simulation runs."""
 EDGE_M = 10.0
 """The simulated emitter stays so far inside the suggested area."""
 WALLS = 3
@@ -133,7 +135,10 @@ class EmitterAroundHome:
             reflectors = walls(self._seed, home) if self._world == "multipath" else ()
             world = World(emitters, reflectors=reflectors, seed=self._seed)
             ground = telemetry.home_amsl_m or 0.0
-            self._receiver = SimulatedReceiver(world, self._vehicle.telemetry, self._clock, ground_amsl_m=ground)
+            held_s = max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor)
+            self._receiver = SimulatedReceiver(
+                world, self._vehicle.telemetry, self._clock, ground_amsl_m=ground, telemetry_held_s=held_s
+            )
         self._receiver.expect(self._pulses)
         self.truth = self._places.get(frequency_hz)
         await self._receiver.open(frequency_hz)

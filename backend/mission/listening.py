@@ -8,6 +8,7 @@ from collections import deque
 from typing import Literal
 
 from backend.spec import EmitterSpec
+from hardware.autopilot.patience import Deadline
 from hardware.ports import Clock, HardwareError, HearsPulses, Receiver, ReceiverError
 from hardware.readings import PowerSample, Pulses
 
@@ -16,6 +17,7 @@ log = logging.getLogger("crossfix.mission")
 KEPT_SAMPLES = 60_000
 REOPEN_S = 1.0
 MISSED_PULSES = 10
+LATE_WALL_S = 2.0
 
 
 class Listening:
@@ -120,6 +122,15 @@ class Listening:
             if sample.at_s <= end_s:
                 found.append(sample)
         return found[::-1]
+
+    async def heard_until(self, at_s: float) -> None:
+        """Wait for the samples of the time before `at_s`: a link or a busy machine brings them late.
+
+        No longer than the receiver may be silent.
+        """
+        patience = Deadline(self._clock, self._silent_after_s, LATE_WALL_S)
+        while (self.last is None or self.last.at_s < at_s) and not patience.passed:  # noqa: ASYNC110 (patience is polled)
+            await asyncio.sleep(0.02)
 
     async def first_sample(self, wall_s: float) -> bool:
         """Whether a carrier's sample or a tag's pulse is heard within so many seconds of the wall."""

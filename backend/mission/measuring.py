@@ -21,9 +21,6 @@ from hardware.readings import BearingReading, Sweep
 
 log = logging.getLogger("crossfix.mission")
 
-LATE_SAMPLES_S = 0.7
-"""Samples and headings of the turn's last moment arrive this much later."""
-
 PROGRESS_S = 0.2
 BINS = 180
 
@@ -45,7 +42,6 @@ async def measure(
     progress = asyncio.create_task(_show_progress(equipment, mission_id, listening, place_number, ordered_s))
     try:
         began_s, ended_s = await turn_and_listen(equipment, mission, listening)
-        await equipment.clock.sleep(LATE_SAMPLES_S)
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)

@@ -31,14 +31,15 @@ def turn_rate_deg_s(mission: MissionSpec) -> float:
 
 
 async def turn_and_listen(equipment: Equipment, mission: MissionSpec, listening: Listening) -> tuple[float, float]:
-    """Begin and end (s) of the turning. Raises VehicleError."""
-    began_s = equipment.clock.now()
+    """Begin and end (s) of the turning, whose samples have all arrived by now. Raises VehicleError."""
+    began_s = ended_s = equipment.clock.now()
     for _ in range(1 if mission.emitter.kind == "carrier" else MOST_TURNS):
         await equipment.vehicle.turn(turn_rate_deg_s(mission))
         ended_s = equipment.clock.now()
+        await listening.heard_until(ended_s)
         if complete(mission, listening.between(began_s, ended_s), equipment.vehicle.headings(began_s)):
             break
-    return began_s, equipment.clock.now()
+    return began_s, ended_s
 
 
 def complete(mission: MissionSpec, samples: Sequence[PowerSample], headings: Sequence[HeadingSample]) -> bool:

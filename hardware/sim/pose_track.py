@@ -7,9 +7,6 @@ from dataclasses import dataclass, field
 from hardware.readings import GeoPoint, Telemetry
 from hardware.sim.world import Pose
 
-HEADING_HELD_S = 0.5
-"""Telemetry older than this is no longer waited for: the vehicle is taken to stand as last heard."""
-
 
 @dataclass(frozen=True, slots=True)
 class _Fix:
@@ -19,9 +16,13 @@ class _Fix:
 
 @dataclass(slots=True)
 class PoseTrack:
-    """Fed with telemetry snapshots; answers where the vehicle was, interpolated between the last two."""
+    """Fed with telemetry snapshots; answers where the vehicle was, interpolated between the last two.
+
+    held_s: telemetry older than this is no longer waited for: the vehicle is taken to stand as last heard.
+    """
 
     ground_amsl_m: float = 0.0
+    held_s: float = 0.5
     _before: _Fix | None = field(default=None, init=False)
     _after: _Fix | None = field(default=None, init=False)
 
@@ -32,7 +33,7 @@ class PoseTrack:
             return None
         if self._after is None or heard.at_s > self._after.at_s:
             self._before, self._after = self._after or heard, heard
-        return max(heard.at_s, now_s - HEADING_HELD_S)
+        return max(heard.at_s, now_s - self.held_s)
 
     def at(self, at_s: float) -> Pose:
         """The pose at `at_s`: linear, headings the short way round, held outside the two snapshots."""

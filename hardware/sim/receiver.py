@@ -19,7 +19,8 @@ class SimulatedReceiver:
     """Power samples `rate_hz` times a second of the clock's time, each made at the vehicle's pose of that moment.
 
     Telemetry comes in steps: a sample waits until a heading at or after its own time was heard, and place and heading
-    are interpolated between the two snapshots around it. Nothing is received before the vehicle knows its position.
+    are interpolated between the two snapshots around it; what is `telemetry_held_s` late is not waited for. Nothing is
+    received before the vehicle knows its position.
     `silence(True)` makes the receiver go mute and `unplug()` makes it vanish, for rehearsing faults.
     """
 
@@ -30,6 +31,7 @@ class SimulatedReceiver:
         clock: Clock,
         rate_hz: float = 20.0,
         ground_amsl_m: float = 0.0,
+        telemetry_held_s: float = 0.5,
     ) -> None:
         if not rate_hz > 0:
             raise ReceiverError(f"the sample rate is {rate_hz} Hz; it must be greater than zero")
@@ -38,6 +40,7 @@ class SimulatedReceiver:
         self._clock = clock
         self._period_s = 1.0 / rate_hz
         self._ground_amsl_m = ground_amsl_m
+        self._telemetry_held_s = telemetry_held_s
         self._link: RadioLink | None = None
         self._silent = False
         self._gone = False
@@ -72,7 +75,7 @@ class SimulatedReceiver:
         if self._link is None:
             raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
         link = self._link
-        track = PoseTrack(self._ground_amsl_m)
+        track = PoseTrack(self._ground_amsl_m, self._telemetry_held_s)
         next_s = self._next_s(link, self._clock.now())
         while self._link is link:
             if self._gone:

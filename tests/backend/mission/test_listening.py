@@ -3,8 +3,10 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable
 
+import pytest
 from doubles import HummingReceiver
 
+from backend.mission import listening as module
 from backend.mission.listening import Listening
 from hardware.clock import ScaledClock
 from hardware.readings import PowerSample
@@ -41,6 +43,39 @@ async def test_samples_of_an_interval_come_in_order() -> None:
     assert listening.state == "ok"
     await listening.stop()
     assert listening.state == "off"
+
+
+async def test_samples_that_come_late_are_waited_for() -> None:
+    listening, receiver, clock = made()
+    due_s = clock.now() + 2.0
+
+    async def late() -> AsyncIterator[PowerSample]:
+        await clock.sleep(6.0)
+        for k in range(5):
+            yield PowerSample(due_s - 1.0 + 0.5 * k, 868.3e6, -60.0)
+        await asyncio.Event().wait()
+
+    receiver.samples = late  # type: ignore[method-assign]
+    listening.start()
+    async with asyncio.timeout(10):
+        await listening.heard_until(due_s)
+    assert [s.at_s for s in listening.between(due_s - 2.0, due_s)] == pytest.approx([due_s - 1.0, due_s - 0.5, due_s])
+    await listening.stop()
+
+
+async def test_a_silent_receiver_is_not_waited_for_longer_than_it_may_be_silent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "LATE_WALL_S", 0.01)
+    listening, receiver, clock = made()
+    receiver.mute = True
+    listening.start()
+    began_s = clock.now()
+    async with asyncio.timeout(10):
+        await listening.heard_until(began_s)
+    assert clock.now() - began_s >= 5.0
+    assert listening.last is None
+    await listening.stop()
 
 
 async def test_a_receiver_with_a_backlog_without_end_keeps_nobody_waiting() -> None:
