@@ -101,7 +101,8 @@ class BeliefReady:
 
 @dataclass(frozen=True, slots=True)
 class WorkFailed:
-    """A step could not be done. `in_air`: what the vehicle's telemetry says (None: unknown)."""
+    """A step could not be done. `in_air`: what the vehicle's telemetry says (None: unknown, or on the ground and armed:
+    it may still rise)."""
 
     step: StepName
     detail: str

@@ -159,7 +159,7 @@ class Runner:
     @property
     def _down(self) -> bool:
         telemetry = self._equipment.vehicle.telemetry()
-        return telemetry.in_air is False and not telemetry.armed
+        return telemetry.in_air is False and telemetry.armed is False
 
     async def _return_home(self, hold_first: bool) -> None:
         vehicle = self._equipment.vehicle
@@ -210,7 +210,9 @@ class Runner:
                 )
 
     def _failure(self, name: inputs.StepName, detail: str, remedy: str) -> inputs.WorkFailed:
-        return inputs.WorkFailed(name, detail, remedy, self._equipment.vehicle.telemetry().in_air)
+        telemetry = self._equipment.vehicle.telemetry()
+        may_rise = telemetry.in_air is False and telemetry.armed is not False
+        return inputs.WorkFailed(name, detail, remedy, None if may_rise else telemetry.in_air)
 
     def _stop_timer(self, name: inputs.TimerName) -> None:
         timer = self._timers.pop(name, None)

@@ -178,7 +178,7 @@ class Watch:
         if state.phase == "returning" and self._above_home(telemetry):
             self.give(inputs.HomeReached())
         self._flown |= telemetry.in_air is True
-        flown = state.took_off or self._flown or (state.phase in HOMEWARD and not telemetry.armed)
+        flown = state.took_off or self._flown or (state.phase in HOMEWARD and telemetry.armed is False)
         if not flown or telemetry.in_air is not False or not telemetry.connected:
             self._on_ground_since = None
             return

@@ -16,6 +16,8 @@ Fields = dict[str, Any]
 
 HISTORY_S = 300.0
 JUMP_M, JUMP_M_S = 5.0, 10.0
+ARMING_S = 1.5
+"""A heartbeat heard so long after the autopilot agreed to arm says what came of it."""
 _ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
 _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
 _FIXES = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
@@ -43,6 +45,10 @@ class Snapshot:
     custom_mode: int | None = None
     mode_at_s: float | None = None
     armed: bool | None = None
+    """As the last heartbeat said."""
+    heartbeat_at_s: float | None = None
+    arming_at_s: float = -math.inf
+    """When the autopilot last agreed to arm."""
     landed_state: int = _UNDEFINED
     prearm_ok: bool | None = None
     position: GeoPoint | None = None
@@ -72,6 +78,11 @@ class Snapshot:
         return self._boot_clock.reboots
 
     @property
+    def disarmed(self) -> bool:
+        """Certainly: a heartbeat of once a second does not yet know that the autopilot has just agreed to arm."""
+        return self.armed is False and (self.heartbeat_at_s or -math.inf) >= self.arming_at_s + ARMING_S
+
+    @property
     def in_air(self) -> bool | None:
         if self.landed_state != _UNDEFINED:
             return self.landed_state != _ON_GROUND
@@ -89,7 +100,7 @@ class Snapshot:
         match name:
             case "HEARTBEAT":
                 self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
-                self.armed = bool(int(fields["base_mode"]) & _ARMED)
+                self.armed, self.heartbeat_at_s = bool(int(fields["base_mode"]) & _ARMED), heard_at_s
             case "CURRENT_MODE":
                 self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
             case "ATTITUDE":
@@ -191,7 +202,7 @@ class Snapshot:
             battery_at_s=self.battery_at_s,
             gps_fix=None if self.fix_type is None else _FIXES[min(self.fix_type, len(_FIXES) - 1)],
             satellites=self.satellites,
-            armed=self.armed,
+            armed=None if self.armed is False and not self.disarmed else self.armed,
             in_air=self.in_air,
             mode=mode,
             mode_at_s=self.mode_at_s,

@@ -21,7 +21,7 @@ async def take_off(helm: Helm, altitude_relative_m: float) -> None:
     try:
         await _leave_ground(helm, manoeuvre, altitude_relative_m, target_amsl)
     finally:
-        if not snapshot.armed:
+        if snapshot.disarmed:
             monitor.latch.stand_down()
     slack = max(1.0, 0.03 * altitude_relative_m)
 
@@ -51,6 +51,7 @@ async def _leave_ground(helm: Helm, manoeuvre: Manoeuvre, relative_m: float, ams
             await helm.select(manoeuvre, dialect.before_take_off)
             if not snapshot.armed:
                 await helm.order(manoeuvre, arm(), dialect.take_off_modes, "arming")
+                snapshot.arming_at_s = clock.now()
             take_off = dialect.take_off(relative_m, amsl_m)
             await helm.order(manoeuvre, take_off, dialect.take_off_modes, "take-off")
             if await helm.until(manoeuvre, Deadline(clock, 10.0, 2.0), rising):

@@ -121,7 +121,7 @@ class MavsdkVehicle:
         """Brake and hover, at any time; a flight or turn in progress ends with an error. Returns once it hovers."""
         dialect, snapshot, helm = self._monitor.dialect, self._monitor.snapshot, self._helm
         manoeuvre = helm.begin("Hold")
-        if not snapshot.armed:
+        if snapshot.disarmed:
             return
 
         def hovers() -> bool:
@@ -160,5 +160,5 @@ class MavsdkVehicle:
     def _refuse_disarmed(self, what: str) -> None:
         """Return and land are refused only when that is certain: they are the way out of trouble."""
         self._monitor.check_connected()
-        if self._monitor.snapshot.armed is False:
+        if self._monitor.snapshot.disarmed:
             raise VehicleError(f"The vehicle is on the ground and not armed: {what}.")

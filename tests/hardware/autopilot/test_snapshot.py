@@ -46,6 +46,20 @@ def test_wire_units_become_named_units() -> None:
     assert (t.battery_percent, t.home_amsl_m) == (77.0, 488.0)
 
 
+def test_a_vehicle_that_agreed_to_arm_is_not_disarmed_until_a_later_heartbeat_says_so() -> None:
+    snapshot = Snapshot()
+    assert not snapshot.disarmed
+    snapshot.fold("HEARTBEAT", {"custom_mode": 4, "base_mode": 81}, T0)
+    assert snapshot.disarmed
+    snapshot.arming_at_s = T0 + 0.1
+    assert not snapshot.disarmed
+    assert snapshot.telemetry(T0 + 0.2, True, "GUIDED", "nobody", False, "ardupilot").armed is None
+    snapshot.fold("HEARTBEAT", {"custom_mode": 4, "base_mode": 81}, T0 + 0.2)
+    assert not snapshot.disarmed
+    snapshot.fold("HEARTBEAT", {"custom_mode": 4, "base_mode": 81}, T0 + 1.7)
+    assert snapshot.disarmed
+
+
 def test_what_was_never_heard_is_none() -> None:
     t = Snapshot().telemetry(T0, False, None, "nobody", False, "unknown")
 

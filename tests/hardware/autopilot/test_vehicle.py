@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from hardware.autopilot.connect import connect_vehicle
+from hardware.autopilot.messages import TAKE_OFF
+from hardware.autopilot.snapshot import Fields, Snapshot
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
 from hardware.frame import LocalFrame
@@ -150,6 +152,29 @@ async def test_hold_during_take_off_stops_the_climb(rig: Rig) -> None:
     height = rig.vehicle.telemetry().altitude_relative_m
     assert height is not None
     assert 5.0 < height < 40.0
+
+
+@pytest.mark.parametrize("stop", ["hold", "return_home"])
+async def test_what_stops_a_take_off_is_sent_before_a_heartbeat_has_said_that_the_vehicle_is_armed(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch, stop: str
+) -> None:
+    await rig.clock.sleep(8.0)
+    fold = Snapshot.fold
+
+    def without_heartbeat(snapshot: Snapshot, name: str, fields: Fields, heard_at_s: float) -> None:
+        if name != "HEARTBEAT":
+            fold(snapshot, name, fields, heard_at_s)
+
+    monkeypatch.setattr(Snapshot, "fold", without_heartbeat)
+    take_off = asyncio.create_task(rig.vehicle.take_off(100.0))
+    async with asyncio.timeout(30):
+        while not [number for _, number in (await rig.sim.order("commands"))["commands"] if number == TAKE_OFF]:  # noqa: ASYNC110 (another process)
+            await asyncio.sleep(0)
+    await getattr(rig.vehicle, stop)()
+    with pytest.raises(VehicleError, match="replaced by"):
+        await take_off
+    mode = (await rig.sim.order("truth"))["mode"]
+    assert mode in ({"hold": ("HOLD", "BRAKE"), "return_home": ("RETURN", "RTL", "LAND")}[stop])
 
 
 async def test_two_holds_at_once_both_succeed(rig: Rig) -> None:
