@@ -84,7 +84,7 @@ def _judge(
 ) -> PreflightCheck:
     """Heavy: call it off the event loop."""
     if not samples and trouble:
-        return PreflightCheck("antenna", False, f"the receiver: {trouble}", "mend the receiver and turn again")
+        return PreflightCheck("antenna", False, f"the receiver: {trouble}", "plug it in and tune it, then turn again")
     clock = ClockOffset(0.0, False)
     try:
         clock = estimate_clock_offset(samples, headings, equipment.pattern)
@@ -97,7 +97,7 @@ def _judge(
             clock_offset_s=clock.offset_s if clock.identified else 0.0,
         )
     except SweepError as error:
-        return PreflightCheck("antenna", False, str(error), "turn the vehicle once around by hand, slowly")
+        return PreflightCheck("antenna", False, error.problem, error.remedy)
     found = check_antenna(sweep, equipment.pattern, emitter)
     if clock.identified and abs(clock.offset_s) > CLOCK_ALLOWED_S:
         late = f"the receiver's clock is {clock.offset_s:+.2f} s off the vehicle's"

@@ -54,7 +54,10 @@ async def measure(
     altitude_amsl_m = math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m
     try:
         if pulsed and not any(sample.detected for sample in samples):
-            raise SweepError("no pulse of the tag was heard in any direction; it may be out of range or switched off")
+            raise SweepError(
+                "no pulse of the tag was heard in any direction",
+                "switch it on, or measure nearer to it",
+            )
         sweep = assemble_sweep(
             [sample for sample in samples if sample.detected],
             equipment.vehicle.headings(began_s - 1.0),

@@ -123,8 +123,8 @@ def check_antenna(
         )
     binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
     unable = unusable(sweep, binned)
-    if unable:
-        return failed(unable, "mend this and turn again")
+    if unable is not None:
+        return failed(unable.problem, unable.remedy)
     db = binned.power_db[binned.filled]
     spread = float(np.percentile(db, 95) - np.percentile(db, 5))
     expected = float(np.ptp(pattern.gain_db))

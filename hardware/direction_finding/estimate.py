@@ -20,7 +20,7 @@ from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
-from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
+from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, SweepError, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
 
 PENALTY = 0.3
@@ -62,8 +62,8 @@ class SparseDirectionFinder:
         """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
-        if refusal:
-            return refused(binned, refusal)
+        if refusal is not None:
+            return refused(binned, str(refusal))
         bank, curve, alternatives = self._prepare(pattern)
         noise_db = sweep.noise_floor_db
         power = linear_power(binned, noise_db)
@@ -131,30 +131,36 @@ class SparseDirectionFinder:
         )
 
 
-def unusable(sweep: Sweep, binned: BinnedSweep) -> str:
-    """Why no method can use this sweep, in the operator's words; empty when it can be used."""
+def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepError | None:
+    """Why no method can use this sweep, in the operator's words; None when it can be used."""
     samples = sweep.power_db.size
     finite = int((np.abs(sweep.power_db) < IMPLAUSIBLE_DB).sum())
     if samples == 0:
-        return "the receiver delivered nothing during the turn; check that it is running and tuned"
+        return SweepError("the receiver delivered nothing during the turn", "check that it is running and tuned")
     if finite == 0:
-        return "every power value of the sweep is invalid (not a number); check the receiver"
+        return SweepError("every power value of the sweep is invalid (not a number)", "restart the receiver")
     if sweep.clipped_samples > MAXIMUM_CLIPPED * samples:
-        return (
-            f"the receiver was overdriven ({sweep.clipped_samples} of {samples} samples clipped); "
-            "lower its gain or measure further away"
+        return SweepError(
+            f"the receiver was overdriven ({sweep.clipped_samples} of {samples} samples clipped)",
+            "lower its gain or measure further away",
         )
     filled = int(binned.filled.sum())
     if filled < MINIMUM_BINS:
-        return f"heard in only {filled} directions; at least {MINIMUM_BINS} around the circle are needed"
+        return SweepError(
+            f"heard in only {filled} directions, at least {MINIMUM_BINS} around the circle are needed",
+            "turn slower, or raise the receiver's sample rate",
+        )
     if binned.largest_gap_deg > MAXIMUM_GAP_DEG:
-        return (
-            f"heard over only {360.0 - binned.largest_gap_deg:.0f} degrees of the turn; "
-            "the vehicle must turn once all the way round"
+        return SweepError(
+            f"heard over only {360.0 - binned.largest_gap_deg:.0f} degrees of the turn",
+            "the vehicle must turn once all the way round while the receiver listens",
         )
     if np.ptp(binned.power_db[binned.filled]) < 1e-6:
-        return "the power is the same in every direction: the receiver shows a constant, not a signal"
-    return ""
+        return SweepError(
+            "the receiver shows the same power in every direction, a constant and not a signal",
+            "check its antenna input and its gain",
+        )
+    return None
 
 
 def linear_power(binned: BinnedSweep, noise_db: float | None) -> NDArray[np.float64]:

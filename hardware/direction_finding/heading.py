@@ -75,7 +75,10 @@ def estimate_clock_offset(
         residual = sweep.power_db - curve.gain_db(np.subtract.outer(bearing, front))
         costs[k] = float(np.min(np.var(residual, axis=1)))
     if not np.isfinite(costs).any():
-        raise SweepError("no power sample fell between two headings at any clock offset")
+        raise SweepError(
+            f"no power sample fell between two headings, whatever the clocks differ by up to {limit_s:.1f} s",
+            "set the clocks of receiver and vehicle by GPS or NTP",
+        )
     best = int(np.argmin(costs))
     # a sharp minimum inside the range: half a second away the fit is clearly worse to both sides
     away = max(round(0.5 / step_s), 1)

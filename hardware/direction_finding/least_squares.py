@@ -27,8 +27,8 @@ class LeastSquaresDirectionFinder:
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
-        if refusal:
-            return refused(binned, refusal)
+        if refusal is not None:
+            return refused(binned, str(refusal))
         curve = PatternCurve(pattern)
         heading, power = binned.heading_deg[binned.filled], binned.power_db[binned.filled]
         count = binned.count[binned.filled].astype(np.float64)
@@ -55,8 +55,8 @@ class CorrelationDirectionFinder:
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
-        if refusal:
-            return refused(binned, refusal)
+        if refusal is not None:
+            return refused(binned, str(refusal))
         curve = PatternCurve(pattern)
         heading = binned.heading_deg[binned.filled]
         measured = linear_power(binned, sweep.noise_floor_db)[binned.filled]

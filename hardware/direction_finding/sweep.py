@@ -22,7 +22,12 @@ IMPLAUSIBLE_DB = 400.0
 
 
 class SweepError(ValueError):
-    """No sweep can be made of this; the message says why and what to do."""
+    """No sweep, or no bearing from one: what is wrong, and what mends it."""
+
+    def __init__(self, problem: str, remedy: str) -> None:
+        super().__init__(f"{problem}; {remedy}")
+        self.problem = problem
+        self.remedy = remedy
 
 
 def assemble_sweep(
@@ -43,9 +48,11 @@ def assemble_sweep(
     minus the vehicle's, subtracted from the samples' times. Raises SweepError when nothing is left.
     """
     if not samples:
-        raise SweepError("the receiver delivered no sample during the turn; check that it is running and tuned")
+        raise SweepError("the receiver delivered nothing during the turn", "check that it is running and tuned")
     if len(headings) < 2:
-        raise SweepError("the vehicle reported no heading during the turn; check its telemetry rates")
+        raise SweepError(
+            "the vehicle reported no heading during the turn", "check its telemetry link and the rate of ATTITUDE"
+        )
     track = sorted(headings, key=lambda h: h.at_s)
     heading_s = np.array([h.at_s for h in track])
     turned = np.unwrap(np.array([h.heading_deg for h in track]), period=360.0)
@@ -57,15 +64,16 @@ def assemble_sweep(
     if not known.all():
         heading_s, turned = heading_s[known], np.unwrap(turned[known], period=360.0)
     if heading_s.size < 2:
-        raise SweepError("the vehicle's headings are not numbers; check its compass and telemetry")
+        raise SweepError("the vehicle's headings are not numbers", "calibrate its compass, or restart the autopilot")
 
     after = np.clip(np.searchsorted(heading_s, heard_s), 1, heading_s.size - 1)
     usable = (heard_s >= heading_s[0]) & (heard_s <= heading_s[-1])
     usable &= heading_s[after] - heading_s[after - 1] <= MAXIMUM_HEADING_GAP_S
     if not usable.any():
         raise SweepError(
-            "no power sample fell between two headings; the clocks of receiver and vehicle disagree "
-            f"(samples {heard_s[0]:.1f}..{heard_s[-1]:.1f} s, headings {heading_s[0]:.1f}..{heading_s[-1]:.1f} s)"
+            "no power sample fell between two headings "
+            f"(samples {heard_s[0]:.1f}..{heard_s[-1]:.1f} s, headings {heading_s[0]:.1f}..{heading_s[-1]:.1f} s)",
+            "set the clocks of receiver and vehicle by GPS or NTP, and look for gaps in the telemetry",
         )
     nose = np.interp(heard_s[usable], heading_s, turned) % 360.0
     floors = [s.noise_floor_db for s in heard if s.noise_floor_db is not None]
@@ -89,7 +97,7 @@ def _place_and_drift(track: list[HeadingSample], position: GeoPoint | None) -> t
     places = [h.position for h in track if h.position is not None]
     if not places:
         if position is None:
-            raise SweepError("the place of the sweep is not known: the vehicle reported no position")
+            raise SweepError("the vehicle reported no position during the turn", "wait for a GPS fix")
         return position, 0.0
     lat, lon = np.array([p.lat_deg for p in places]), np.array([p.lon_deg for p in places])
     mean = position or GeoPoint(float(lat.mean()), float(lon.mean()))

@@ -17,6 +17,7 @@ CATALOGUE: dict[str, str] = json.loads((ROOT / "frontend/src/i18n/told.json").re
 ROOMS = [
     "planner/belief/verdict.py",
     "backend/api/recordings.py",
+    "backend/mission/antenna_check.py",
     "backend/mission/checklist.py",
     "backend/mission/importing.py",
     "backend/mission/listening.py",
@@ -28,8 +29,11 @@ ROOMS = [
     "hardware/autopilot/ardupilot.py",
     "hardware/autopilot/preflight.py",
     "hardware/autopilot/px4.py",
+    "hardware/direction_finding/calibration.py",
     "hardware/direction_finding/estimate.py",
+    "hardware/direction_finding/heading.py",
     "hardware/direction_finding/recordings.py",
+    "hardware/direction_finding/sweep.py",
     "hardware/direction_finding/table_file.py",
     "hardware/direction_finding/uavrt.py",
 ]

@@ -86,14 +86,15 @@ def test_drift_while_turning_is_measured_from_the_mean_place() -> None:
 @pytest.mark.parametrize(
     ("heard", "track", "words"),
     [
-        ([], headings(np.arange(0.0, 2.0, 0.1), 30.0), "no sample"),
+        ([], headings(np.arange(0.0, 2.0, 0.1), 30.0), "delivered nothing"),
         (powers(np.arange(0.0, 2.0, 0.1)), [], "no heading"),
         (powers(np.arange(100.0, 102.0, 0.1)), headings(np.arange(0.0, 2.0, 0.1), 30.0), "clocks"),
     ],
 )
 def test_nothing_to_assemble_says_why(heard: list, track: list, words: str) -> None:
-    with pytest.raises(SweepError, match=words):
+    with pytest.raises(SweepError, match=words) as told:
         assemble_sweep(heard, track, frequency_hz=868e6, altitude_amsl_m=0.0, position=PLACE)
+    assert str(told.value) == f"{told.value.problem}; {told.value.remedy}"
 
 
 def test_empty_bins_are_nan_not_zero_and_means_are_of_decibels() -> None:
