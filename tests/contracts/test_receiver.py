@@ -27,6 +27,7 @@ from hardware.sim.world import Emitter, World
 
 FREQUENCY_HZ = 868_300_000.0
 HOME = GeoPoint(50.6, 7.2)
+PATIENCE_S = 20.0
 WORLD = World((Emitter(GeoPoint(50.601, 7.2), FREQUENCY_HZ),))
 
 
@@ -80,6 +81,9 @@ class LoopbackPayload:
             rows: list[WireSample] = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False, True) for k in numbers]
             message = Samples(first_seq=self.next, oldest_seq=1, clock_offset_s=None, samples=rows)
             self.session.receive(message.model_dump_json())
+            if self.session.refused:
+                said = [self.session.outgoing.get_nowait() for _ in range(self.session.outgoing.qsize())]
+                raise AssertionError(f"the server refused the samples: {said[-1]}")
             self.next += 5
             await asyncio.sleep(0.005)
 
@@ -99,15 +103,21 @@ async def receiver(request: pytest.FixtureRequest, tmp_path: Path) -> AsyncItera
     made = request.param(tmp_path)
     yield made
     if isinstance(made, LoopbackPayload) and made.task is not None:
+        if made.task.done():
+            made.task.result()  # says why the double stopped sending
         made.task.cancel()
 
 
 async def first(receiver: Receiver, count: int) -> list[PowerSample]:
     heard: list[PowerSample] = []
-    async for sample in receiver.samples():
-        heard.append(sample)
-        if len(heard) == count:
-            break
+    try:
+        async with asyncio.timeout(PATIENCE_S):
+            async for sample in receiver.samples():
+                heard.append(sample)
+                if len(heard) == count:
+                    break
+    except TimeoutError:
+        pytest.fail(f"{count} samples were wanted, {len(heard)} came within {PATIENCE_S:.0f} s")
     return heard
 
 
@@ -129,10 +139,11 @@ async def test_samples_before_open_are_refused(receiver: Receiver) -> None:
 async def test_closing_ends_the_samples(receiver: Receiver) -> None:
     await receiver.open(FREQUENCY_HZ)
     count = 0
-    async for _ in receiver.samples():
-        count += 1
-        if count == 3:
-            await receiver.close()
+    async with asyncio.timeout(PATIENCE_S):
+        async for _ in receiver.samples():
+            count += 1
+            if count == 3:
+                await receiver.close()
     assert count < 40
 
 
