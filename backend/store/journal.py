@@ -373,6 +373,9 @@ class SqlJournal:
         return [d.mission_id for d in sorted(begun, key=lambda d: (d.started_at_us, d.mission_id))]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
+        for waiting in self._pending:
+            if isinstance(waiting, SweepEntry) and (waiting.mission_id, waiting.sweep_id) == (mission_id, sweep_id):
+                return waiting
         return await self._stored.sweep(mission_id, sweep_id)
 
     async def track(self, mission_id: str) -> list[TrackPoint]:

@@ -149,6 +149,9 @@ async def test_flight_goes_on_while_the_database_is_away(bench, outage):
                 assert journal.report().detail
                 assert journal.report().spooled == 12
                 assert len(await journal.read("m")) == flight.count + 2
+                waiting = await journal.sweep("m", f"s{flight.count - 1}")
+                assert waiting is not None
+                np.testing.assert_array_equal(waiting.sweep().power_db, SWEEP.power_db)
                 if outage.stops_reading:
                     with pytest.raises(JournalUnavailable):
                         await journal.read("another")
