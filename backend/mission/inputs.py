@@ -30,7 +30,8 @@ class StartFacts:
 class Commanded:
     """An operator's command. `objections`: vetoes found beforehand (safety of an override, a pilot who has not given
     control back when it is to be resumed, another mission flying).
-    `on_ground`: the vehicle says that it stands on the ground."""
+    `on_ground`: the vehicle says that it stands on the ground. `failsafe_flies`: the autopilot is on its own way home,
+    which this order may take it from."""
 
     command_id: str
     by: str
@@ -38,6 +39,7 @@ class Commanded:
     objections: tuple[Veto, ...] = ()
     start: StartFacts | None = None
     on_ground: bool = False
+    failsafe_flies: bool = False
 
 
 @dataclass(frozen=True, slots=True)

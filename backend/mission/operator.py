@@ -45,7 +45,7 @@ from backend.mission.effects import (
 )
 from backend.mission.inputs import Commanded
 from backend.mission.state import AUTOMATIC, GROUND, HOMEWARD, TERMINAL
-from backend.mission.step import Step, clear_alerts, end, go_on, take_off
+from backend.mission.step import Step, clear_alerts, end, forget_failsafe, go_on, take_off
 
 NOT_STARTED = ("the mission has not started", "start it first")
 ENDED = ("the mission has ended", "draft a new one")
@@ -96,7 +96,7 @@ def _carry_out(step: Step, given: Commanded) -> None:
         case Return():
             _return(step, given)
         case Abort():
-            _abort(step, by)
+            _abort(step, given)
         case Override():
             _override(step, given, command)
         case Accept():
@@ -141,6 +141,7 @@ def _hold(step: Step, given: Commanded) -> None:
         raise Refused(*PILOT)
     _refuse_when_down(step, given)
     step.do(CancelWork())
+    _take_from_failsafe(step, given)
     step.do(HoldVehicle())
     step.record(HoldOrdered(by=by, reason="ordered"))
     if state.phase not in TERMINAL:
@@ -185,18 +186,20 @@ def _return(step: Step, given: Commanded) -> None:
     if state.phase == "landing":
         raise Refused("the vehicle is landing at home already", "hold stops the landing")
     step.do(CancelWork())
+    _take_from_failsafe(step, given)
     step.record(ReturnOrdered(by=by, reason="ordered"))
     step.go("returning", f"return ordered by {by}")
     step.do(ReturnHome())
 
 
-def _abort(step: Step, by: str) -> None:
-    state = step.state
+def _abort(step: Step, given: Commanded) -> None:
+    state, by = step.state, given.by
     if state.phase in GROUND:
         raise Refused(*NOT_STARTED)
     if state.phase in TERMINAL:
         raise Refused(*ENDED)
     step.do(CancelWork())
+    _take_from_failsafe(step, given)
     if not state.pilot_has_control:
         step.do(ReturnHome(hold_first=True))
     step.record(AbortOrdered(by=by, reason="ordered"))
@@ -275,6 +278,13 @@ def _exclude(step: Step, command: ExcludeBearing, by: str) -> None:
         go_on(step, f"bearing excluded by {by}")
     else:
         step.do(UpdateBelief())
+
+
+def _take_from_failsafe(step: Step, given: Commanded) -> None:
+    """An explicit deed, as resuming is; a pilot's own control is never released by it."""
+    if given.failsafe_flies and not step.state.pilot_has_control:
+        step.do(ReleasePilotLatch())
+        forget_failsafe(step)
 
 
 def _refuse_when_down(step: Step, given: Commanded) -> None:

@@ -116,7 +116,11 @@ class Runner:
         elif isinstance(command, Resume):
             objections = resume_vetoes(telemetry, self.watch.tolerated_mode)
         on_ground = telemetry.in_air is False
-        return self.give(inputs.Commanded(command_id, by, command, objections, on_ground=on_ground))
+        failsafe_flies = self.watch.failsafe_flies
+        given = inputs.Commanded(
+            command_id, by, command, objections, on_ground=on_ground, failsafe_flies=failsafe_flies
+        )
+        return self.give(given)
 
     def _carry_out(self, effect: effects.Effect) -> None:
         vehicle = self._equipment.vehicle
@@ -153,7 +157,7 @@ class Runner:
                 assert_never(effect)
 
     async def _land(self) -> None:
-        if not self._down:
+        if not (self._down or self.watch.failsafe_flies):
             await self._equipment.vehicle.land()
 
     @property
@@ -163,7 +167,7 @@ class Runner:
 
     async def _return_home(self, hold_first: bool) -> None:
         vehicle = self._equipment.vehicle
-        if self._down:
+        if self._down or self.watch.failsafe_flies:
             return
         if hold_first:
             try:

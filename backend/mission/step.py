@@ -165,6 +165,12 @@ def clear_alerts(step: Step, *topics: Topic | str) -> None:
             step.record(AlertCleared(alert_id=alert_id))
 
 
+def forget_failsafe(step: Step) -> None:
+    """The autopilot is no longer on its own way home. Of a link that is lost the alert stays."""
+    if "vehicle" not in step.state.links_down:
+        clear_alerts(step, "vehicle")
+
+
 def refuse_flight(step: Step, vetoes: tuple[Veto, ...]) -> None:
     """Safety said no: go home when the battery says so, else hold and tell the operator."""
     for veto in vetoes:

@@ -90,6 +90,12 @@ class Watch:
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         return Situation(telemetry, now, self.drain.percent_s, self._heard_since_s)
 
+    @property
+    def failsafe_flies(self) -> bool:
+        """The autopilot is on its own way home or down, begun while it heard nobody: no pilot's doing."""
+        telemetry = self.equipment.vehicle.telemetry()
+        return telemetry.controller == "pilot" and telemetry.mode is not None and telemetry.mode == self.tolerated_mode
+
     async def run(self) -> None:
         while True:
             self.tick()
@@ -121,7 +127,7 @@ class Watch:
             elif just_heard and self.state().phase == "hold":
                 self.tolerated_mode = mode
                 self.give(inputs.FailsafeActs(mode))
-        if mode == self.tolerated_mode and self.state().phase == "hold":
+        if mode == self.tolerated_mode and self.state().phase not in AUTOMATIC | {"manual"}:
             return
         self.tolerated_mode = None
         if telemetry.controller == "pilot" and not self.state().pilot_has_control:

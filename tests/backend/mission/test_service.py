@@ -13,6 +13,7 @@ from doubles import FRAME, HOME, Stage, spec
 from backend import commands
 from backend.commands import Command, CommandReply, CommandRequest
 from backend.events import BeliefUpdated, LinkLost, MissionDrafted, MissionEnded, PhaseChanged, PlanChosen, SafetyVetoed
+from backend.mission import inputs
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.state import fold
 from backend.spec import Place, TimerSpec
@@ -293,6 +294,49 @@ async def test_a_vehicle_that_is_gone_holds_with_an_alert_and_comes_back(stage: 
     assert stage.vehicle.names[-1] == "hold"
     assert (await order(stage, mission_id, commands.Resume())).accepted
     await stage.until(mission_id, "bearing_measured")
+
+
+async def failsafe_flying(stage: Stage) -> str:
+    """The autopilot began its own return while it was not heard."""
+    mission_id = await stuck(stage)
+    stage.vehicle.heard = False
+    await stage.until_phase(mission_id, "hold")
+    stage.vehicle.stuck = False
+    stage.vehicle.state = replace(stage.vehicle.state, controller="pilot", mode="RETURN", held_by_pilot=True)
+    stage.vehicle.heard = True
+    await stage.until(mission_id, "link_restored")
+    return mission_id
+
+
+@pytest.mark.parametrize(
+    ("command", "sent"),
+    [(commands.Hold(), ["hold"]), (commands.Return(), ["return_home"]), (commands.Abort(), ["hold", "return_home"])],
+)
+async def test_an_operator_may_take_the_vehicle_from_its_failsafe_which_is_no_pilot(
+    stage: Stage, command: Command, sent: list[str]
+) -> None:
+    mission_id = await failsafe_flying(stage)
+    assert "on its own way home" in stage.journal.events(mission_id)[-1].text  # type: ignore[union-attr]
+    assert (await order(stage, mission_id, command)).accepted
+    await stage.until_true(lambda: stage.vehicle.names[-len(sent) :] == sent)
+    assert not {"control_taken", "control_released"} & set(stage.journal.kinds(mission_id))
+    assert fold(stage.journal.stored[mission_id]).open_alerts == ()
+
+
+async def test_without_a_console_the_failsafes_own_return_is_left_to_bring_the_vehicle_home() -> None:
+    stage = Stage()
+    await stage.service.start_up()
+    mission_id = await failsafe_flying(stage)
+    runner = stage.service._runner
+    assert runner is not None
+    sent = list(stage.vehicle.commands)
+    runner.give(inputs.TimerExpired("console_return"))
+    await stage.until_phase(mission_id, "landing")
+    assert stage.vehicle.commands == sent
+    stage.vehicle.touch_down()
+    await stage.until_phase(mission_id, "done")
+    assert "control_taken" not in stage.journal.kinds(mission_id)
+    await stage.service.shut_down()
 
 
 async def test_a_lost_console_holds_then_returns(stage: Stage) -> None:
