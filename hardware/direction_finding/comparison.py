@@ -145,6 +145,10 @@ def score(readings: list[BearingReading], truths: list[float]) -> Score:
     )
 
 
+COLUMNS = (
+    *("condition", "bound", "finder", "RMS", "minus least squares' on the same sweeps", "bias"),
+    *("outliers", "rejected", "error/sigma", "in 1", "in 2"),
+)
 FINDERS = {
     "sparse": SparseDirectionFinder,
     "least squares": LeastSquaresDirectionFinder,
@@ -152,16 +156,41 @@ FINDERS = {
 }
 
 
-def compare(condition: Condition, sweeps: int, seed: int) -> dict[str, Score]:
+def paired_deg(
+    readings: list[BearingReading], others: list[BearingReading], truths: list[float]
+) -> tuple[float, float]:
+    """(RMS of `readings` minus that of `others`, its standard error) over the sweeps that both accept without outlier.
+
+    The errors are those of the same sweeps: with D_i = e_i^2 - o_i^2, the difference is mean D / (RMS e + RMS o).
+    """
+    both = [(r, o, t) for r, o, t in zip(readings, others, truths, strict=True) if r.accepted and o.accepted]
+    error = np.array([[(x.bearing_deg - t + 180.0) % 360.0 - 180.0 for x in (r, o)] for r, o, t in both])
+    square = error[(np.abs(error) <= OUTLIER_DEG).all(axis=1)] ** 2
+    scale = float(np.sqrt(square.mean(axis=0)).sum())
+    difference = (square[:, 0] - square[:, 1]) / scale
+    return float(difference.mean()), float(difference.std(ddof=1) / math.sqrt(len(difference)))
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """paired: `paired_deg` against least squares on the same sweeps."""
+
+    score: Score
+    paired: tuple[float, float]
+
+
+def compare(condition: Condition, sweeps: int, seed: int) -> dict[str, Compared]:
     """The same sweeps through every finder."""
     rng = np.random.default_rng(seed)
     pattern = beam(condition.beam_deg)
     truths = [float(b) for b in rng.uniform(0.0, 360.0, sweeps)]
     made = [simulate(condition, pattern, truth, rng) for truth in truths]
-    return {
-        name: score([finder.estimate(sweep, pattern) for sweep in made], truths)
+    readings = {
+        name: [finder.estimate(sweep, pattern) for sweep in made]
         for name, finder in ((name, make()) for name, make in FINDERS.items())
     }
+    plain = readings["least squares"]
+    return {name: Compared(score(ours, truths), paired_deg(ours, plain, truths)) for name, ours in readings.items()}
 
 
 def reliability(sweeps: int, seed: int) -> list[tuple[float, float, int]]:
@@ -207,13 +236,15 @@ def main() -> None:
         "--reliability", metavar="FILE", help="also draw the reliability plot into this file (SVG, PNG)"
     )
     arguments = parser.parse_args()
-    print("| condition | bound | finder | RMS | bias | outliers | rejected | error/sigma | in 1 | in 2 |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    print(f"| {' | '.join(COLUMNS)} |")
+    print("|---" * len(COLUMNS) + "|")
     for condition in (c for c in CONDITIONS if arguments.only in c.name):
         bound = cramer_rao_deg(replace(condition, echo_db=None))
-        for name, s in compare(condition, arguments.sweeps, arguments.seed).items():
+        for name, compared in compare(condition, arguments.sweeps, arguments.seed).items():
+            s, (more, error) = compared.score, compared.paired
+            paired = "" if name == "least squares" else f"{more:+.3f} ± {error:.3f}"
             print(
-                f"| {condition.name} | {bound:.2f} | {name} | {s.rms_deg:.2f} | {s.bias_deg:+.2f} | "
+                f"| {condition.name} | {bound:.2f} | {name} | {s.rms_deg:.2f} | {paired} | {s.bias_deg:+.2f} | "
                 f"{s.outlier_percent:.1f} % | {s.rejected_percent:.1f} % | {s.normalized_rms:.2f} | "
                 f"{s.within_one:.2f} | {s.within_two:.2f} |",
                 flush=True,

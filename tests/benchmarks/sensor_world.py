@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hardware.direction_finding.comparison import score
+from hardware.direction_finding.comparison import paired_deg, score
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -56,7 +56,7 @@ PLACES = (
 
 
 COLUMNS = (
-    *("condition", "RMS", "least squares", "bias", "sigma (median)"),
+    *("condition", "RMS", "minus least squares' on the same sweeps", "bias", "sigma (median)"),
     *("error/sigma", "in 1", "in 2", "outliers", "rejected"),
 )
 
@@ -99,10 +99,10 @@ def main() -> None:
         truths = [truth for truth, _ in taken]
         readings = [finder.estimate(sweep, pattern) for _, sweep in taken]
         s = score(readings, truths)
-        fit = score([plain.estimate(sweep, pattern) for _, sweep in taken], truths)
+        more, error = paired_deg(readings, [plain.estimate(sweep, pattern) for _, sweep in taken], truths)
         sigma = np.median([r.sigma_deg for r in readings if r.accepted])
         print(
-            f"| {place.name} | {s.rms_deg:.2f} | {fit.rms_deg:.2f} | {s.bias_deg:+.2f} | {sigma:.2f} | "
+            f"| {place.name} | {s.rms_deg:.2f} | {more:+.2f} ± {error:.2f} | {s.bias_deg:+.2f} | {sigma:.2f} | "
             f"{s.normalized_rms:.2f} | {s.within_one:.2f} | {s.within_two:.2f} | {s.outlier_percent:.1f} % | "
             f"{s.rejected_percent:.1f} % |",
             flush=True,

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from hardware.direction_finding.comparison import Condition, beam, simulate
+from hardware.direction_finding.comparison import Condition, beam, paired_deg, simulate
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -45,10 +45,10 @@ def test_sigma_is_true_and_least_squares_no_better(condition: Condition) -> None
     truths = [float(b) for b in rng.uniform(0.0, 360.0, 60)]
     sweeps = [simulate(condition, pattern, truth, rng) for truth in truths]
     ours = [FINDER.estimate(sweep, pattern) for sweep in sweeps]
-    plain = errors([LeastSquaresDirectionFinder().estimate(sweep, pattern) for sweep in sweeps], truths)
-    made = errors(ours, truths)
-    assert 0.65 < rms(made / np.array([r.sigma_deg for r in ours])) < 1.6
-    assert rms(made) < 1.05 * rms(plain)
+    plain = [LeastSquaresDirectionFinder().estimate(sweep, pattern) for sweep in sweeps]
+    assert 0.65 < rms(errors(ours, truths) / np.array([r.sigma_deg for r in ours])) < 1.6
+    more_deg, standard_error_deg = paired_deg(ours, plain, truths)
+    assert more_deg < 2.0 * standard_error_deg
 
 
 def world_sweep(rng: np.random.Generator, distance_m: float, power_dbm: float, reflectors: int) -> tuple[float, Sweep]:
