@@ -121,8 +121,11 @@ class WorkVetoed:
 
 @dataclass(frozen=True, slots=True)
 class PilotTookOver:
+    """Somebody took control. perhaps_failsafe: the mode is one that the autopilot's failsafe enters by itself, too."""
+
     mode: str
     detail: str
+    perhaps_failsafe: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,11 +64,13 @@ from backend.mission.inputs import (
 )
 from backend.mission.state import AUTOMATIC, GROUND, HOMEWARD, TERMINAL, MissionState
 from backend.mission.step import (
+    LOCALIZED,
     Step,
     alert,
     clear_alerts,
     end,
     finish,
+    forget_failsafe,
     go_home,
     go_on,
     hold,
@@ -213,7 +215,7 @@ def _belief(step: Step, given: BeliefReady) -> None:
     if state.phase == "planning":
         go_on(step, "belief updated")
     elif fact.localized and state.phase in ("flying", "measuring"):
-        go_home(step, "localized")
+        go_home(step, LOCALIZED)
 
 
 def _failed(step: Step, given: WorkFailed) -> None:
@@ -239,7 +241,12 @@ def _pilot(step: Step, given: PilotTookOver) -> None:
         step.do(CancelTimer(name))
     step.record(ControlTaken(mode=given.mode, detail=given.detail))
     if state.phase not in TERMINAL:
-        alert(step, "pilot", "caution", f"the pilot has control: {given.detail}", "resume when he has given it back")
+        forget_failsafe(step)
+        if given.perhaps_failsafe:
+            text = f"the pilot or the autopilot's own failsafe has control: {given.detail}"
+        else:
+            text = f"the pilot has control: {given.detail}"
+        alert(step, "pilot", "caution", text, "resume when he has given it back")
         step.go("manual", given.detail)
 
 
@@ -327,16 +334,18 @@ def _vehicle(step: Step, given: BatteryLow | BatteryReported | HomeReached | Lan
 
 
 def _on_the_ground(step: Step) -> None:
-    """It landed without being told to (a failsafe, or while the server was away). What it found is kept."""
+    """The mission did not bring it down (a failsafe did, or a return from before a restart). What it found is kept."""
     if step.state.localized:
         step.do(CancelWork())
         finish(step, "the vehicle landed")
         return
+    text = "the vehicle landed while the mission was held"
     if step.state.phase in AUTOMATIC:
-        step.do(CancelWork())
-        step.go("hold", "the vehicle landed without being told to")
-    if not any(alert_id.startswith("ground-") for alert_id in step.state.open_alerts):
         text = "the vehicle landed without being told to"
+        step.do(CancelWork())
+        step.go("hold", text)
+    if not any(alert_id.startswith("ground-") for alert_id in step.state.open_alerts):
+        forget_failsafe(step)
         alert(step, "ground", "warning", text, "resume to take off again, abort to end the mission")
 
 
@@ -370,8 +379,11 @@ def _restarted(step: Step, given: Restarted) -> None:
         step.record(ControlTaken(mode="unknown", detail="the pilot had control when the server came back"))
         step.go("manual", "the pilot had control when the server came back")
     elif given.going_home:
-        _failsafe_flies(step, "its failsafe acted while the server was away")
-        step.go("hold", "the server restarted; the autopilot's failsafe is bringing the vehicle home")
+        if state.phase in HOMEWARD:
+            _failsafe_flies(step, "the return was ordered before the server was away")
+        else:
+            _failsafe_flies(step, "its failsafe acted while the server was away")
+        step.go("hold", "the server restarted; the autopilot is bringing the vehicle home")
     else:
         step.do(HoldVehicle())
         step.go("hold", "the server restarted")

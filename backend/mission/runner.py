@@ -20,10 +20,10 @@ from backend.mission.localization import Localization
 from backend.mission.machine import transition
 from backend.mission.measuring import Measured
 from backend.mission.outbox import Outbox
-from backend.mission.safety import Veto, resume_vetoes
+from backend.mission.safety import Veto, battery_vetoes, resume_vetoes
 from backend.mission.state import TERMINAL, MissionState
 from backend.mission.steps import Steps
-from backend.mission.watch import Watch
+from backend.mission.watch import GOING_HOME, Watch
 from hardware.ports import HardwareError, PilotHasControl
 from planner.types import PlannerError
 
@@ -109,13 +109,16 @@ class Runner:
     def command(self, command_id: str, by: str, command: Command) -> tuple[effects.Effect, ...]:
         """An operator's command; safety's objections to an override or to resuming are found first."""
         telemetry = self._equipment.vehicle.telemetry()
+        on_ground = telemetry.in_air is False
         objections: tuple[Veto, ...] = ()
         if isinstance(command, Override):
             altitude = self.task.limits.home_amsl_m + self.task.mission.flight.altitude_relative_m
             objections = self.steps.override_vetoes(command.place, altitude)
         elif isinstance(command, Resume):
             objections = resume_vetoes(telemetry, self.watch.tolerated_mode)
-        on_ground = telemetry.in_air is False
+            if on_ground and not self._state.localized:
+                limits = self.task.limits
+                objections += battery_vetoes(limits, self.watch.situation(), limits.measurement_time_s)
         failsafe_flies = self.watch.failsafe_flies
         given = inputs.Commanded(
             command_id, by, command, objections, on_ground=on_ground, failsafe_flies=failsafe_flies
@@ -197,7 +200,7 @@ class Runner:
             result = await step
         except PilotHasControl as error:
             mode = self._equipment.vehicle.telemetry().mode or "unknown"
-            result = inputs.PilotTookOver(mode, str(error))
+            result = inputs.PilotTookOver(mode, str(error), mode in GOING_HOME)
         except (HardwareError, PlannerError) as error:
             result = self._failure(name, str(error), "look at the vehicle and resume, or order the return")
         except Exception:

@@ -48,6 +48,13 @@ Topic = Literal[
 ]
 
 
+OF_THE_FLIGHT: tuple[Topic, ...] = (
+    "vehicle", "receiver", "console", "payload", "pilot", "battery", "failure", "safety", "ground",
+)  # fmt: skip
+"""Topics that are over once the vehicle is down."""
+LOCALIZED = "localized"
+
+
 @dataclass(slots=True)
 class Step:
     """State so far and effects so far of one transition; lives no longer than it."""
@@ -80,7 +87,7 @@ def go_on(step: Step, reason: str, accepted: bool = False) -> None:
         step.go("planning", reason)
         step.do(UpdateBelief())
     elif state.localized:
-        go_home(step, "localized")
+        go_home(step, LOCALIZED)
     elif state.chosen is not None and (accepted or state.accepted or state.automatic):
         altitude = state.home_amsl_m + spec.flight.altitude_relative_m
         step.go("flying", reason)
@@ -135,9 +142,12 @@ def end(
 
 
 def finish(step: Step, reason: str) -> None:
-    """The vehicle is down: say honestly what came of the search."""
+    """The vehicle is down: what was to be watched in flight is over; say honestly what came of the search."""
+    clear_alerts(step, *OF_THE_FLIGHT)
     if step.state.localized:
         end(step, "done", "localized", f"the expected error is below the threshold{_against(step.state)}")
+    elif reason == LOCALIZED:
+        end(step, "done", "not_localized", f"no longer localized since a bearing was excluded{why_not_yet(step.state)}")
     else:
         end(step, "done", "not_localized", reason + why_not_yet(step.state))
 
@@ -176,8 +186,9 @@ def refuse_flight(step: Step, vetoes: tuple[Veto, ...]) -> None:
     for veto in vetoes:
         step.record(SafetyVetoed(rule=veto.rule, detail=veto.detail, remedy=veto.remedy))
     first = vetoes[0]
-    alert(step, "battery" if first.rule == "battery" else "safety", "warning", first.detail, first.remedy)
-    if all(veto.rule == "battery" for veto in vetoes):
+    of_battery = [veto.rule.startswith("battery") for veto in vetoes]
+    alert(step, "battery" if of_battery[0] else "safety", "warning", first.detail, first.remedy)
+    if all(of_battery):
         go_home(step, first.detail)
     else:
         hold(step, first.detail)

@@ -131,7 +131,7 @@ class Watch:
             return
         self.tolerated_mode = None
         if telemetry.controller == "pilot" and not self.state().pilot_has_control:
-            self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}"))
+            self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}", mode in GOING_HOME))
 
     def _links(self, telemetry: Telemetry, now: float) -> None:
         heard = telemetry.heard_at_s

@@ -34,6 +34,7 @@ from backend.mission import effects as asked
 from backend.mission import inputs
 from backend.mission.effects import Effect
 from backend.mission.machine import transition
+from backend.mission.safety import Veto
 from backend.mission.state import AUTOMATIC, HOMEWARD, TERMINAL, MissionState, fold
 from hardware.direction_finding.heading_offset import HeadingOffset
 
@@ -198,10 +199,46 @@ def test_the_pilot_in_control_is_never_commanded_not_even_by_hold_return_or_abor
     assert walk.state.outcome == "aborted"
 
 
-def test_a_pilot_landing_ends_the_mission() -> None:
+def test_a_pilot_landing_ends_the_mission_and_what_was_to_be_watched_in_flight() -> None:
     walk = Walk().to("manual")
+    walk.give(inputs.BatteryLow("just enough"))
     walk.give(inputs.Landed())
+    assert not walk.state.open_alerts
     assert (walk.state.phase, walk.state.outcome) == ("done", "not_localized")
+
+
+def test_who_has_control_is_not_claimed_where_it_may_be_the_failsafe() -> None:
+    for perhaps_failsafe, who in ((False, "the pilot has"), (True, "the pilot or the autopilot's own failsafe has")):
+        walk = Walk().to("flying")
+        walk.give(inputs.PilotTookOver("RTL", "the vehicle is in RTL", perhaps_failsafe))
+        (told,) = [r.event for r in walk.recorded if isinstance(r.event, AlertRaised)]
+        assert told.text == f"{who} control: the vehicle is in RTL"
+
+
+def test_a_failsafe_that_landed_or_gave_way_to_the_pilot_is_no_longer_said_to_fly() -> None:
+    for after in (inputs.Landed(), inputs.PilotTookOver("POSCTL", "stick")):
+        walk = Walk().to("hold")
+        walk.give(inputs.FailsafeActs("RETURN"))
+        walk.give(after)
+        assert not any(alert.startswith("vehicle") for alert in walk.state.open_alerts)
+        assert walk.state.open_alerts
+    lost = Walk().to("hold")
+    lost.give(inputs.LinkDown("vehicle", "silent"))
+    lost.give(inputs.PilotTookOver("POSCTL", "stick"))
+    assert any(alert.startswith("vehicle") for alert in lost.state.open_alerts)
+
+
+def test_a_mission_whose_bearing_was_excluded_on_the_way_home_does_not_say_that_it_is_localized() -> None:
+    walk = Walk().to("measuring")
+    walk.give(inputs.SweepTaken(bearing(1)))
+    walk.give(belief_ready(walk.state, localized=True))
+    assert walk.state.phase == "returning"
+    walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    walk.give(belief_ready(walk.state))
+    walk.give(inputs.Landed())
+    (ended,) = [r.event for r in walk.recorded if isinstance(r.event, MissionEnded)]
+    assert ended.outcome == "not_localized"
+    assert ended.reason == "no longer localized since a bearing was excluded (not yet: too few)"
 
 
 def test_a_vehicle_that_landed_by_itself_waits_on_the_ground_and_takes_off_again_on_resume() -> None:
@@ -277,6 +314,10 @@ def test_a_restart_does_not_interrupt_the_failsafe_that_brings_the_vehicle_home(
     effects = walk.give(inputs.Restarted(pilot=False, going_home=True, detail="back"))
     assert walk.state.phase == "hold"
     assert not any(isinstance(e, VEHICLE) for e in effects)
+    homeward = Walk().to("returning")
+    homeward.give(inputs.Restarted(pilot=False, going_home=True, detail="back"))
+    whys = [[r.event.text for r in w.recorded if isinstance(r.event, AlertRaised)] for w in (walk, homeward)]
+    assert ["failsafe" in text for (text,) in whys] == [True, False]
     effects = walk.command(commands.Resume())
     assert asked.ReleasePilotLatch() in effects
     assert not walk.state.open_alerts
@@ -364,7 +405,12 @@ def test_a_silent_receiver_holds_only_a_running_measurement() -> None:
 
 
 def test_a_low_battery_brings_the_vehicle_home() -> None:
-    for given_ in (inputs.BatteryLow("just enough"), inputs.WorkVetoed((BATTERY_VETO,))):
+    stale = Veto("battery_stale", "no longer reported", "look")
+    for given_ in (
+        inputs.BatteryLow("just enough"),
+        inputs.WorkVetoed((BATTERY_VETO,)),
+        inputs.WorkVetoed((stale, BATTERY_VETO)),
+    ):
         walk = Walk().to("flying")
         assert moves(walk.give(given_)) == [asked.ReturnHome()]
         assert walk.state.phase == "returning"

@@ -363,6 +363,20 @@ async def test_a_low_battery_turns_the_vehicle_home(stage: Stage) -> None:
     assert "battery" in (await stage.until(mission_id, "return_ordered")).reason  # type: ignore[union-attr]
 
 
+async def test_a_resume_on_the_ground_is_refused_until_the_battery_was_changed(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    stage.vehicle.touch_down()
+    await stage.until_phase(mission_id, "hold")
+    stage.vehicle.stuck = False
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=20.0)
+    refused = await order(stage, mission_id, commands.Resume())
+    assert "20 % battery" in refused.reason
+    assert stage.service.status().phase == "hold"
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=95.0)
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+    await stage.until(mission_id, "place_reached")
+
+
 async def test_an_override_outside_the_fence_is_refused_and_one_inside_is_flown(stage: Stage) -> None:
     mission_id = await stuck(stage)
     far, near = FRAME.to_geo(1_000, 0), FRAME.to_geo(20, 30)
