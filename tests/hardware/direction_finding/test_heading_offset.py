@@ -28,7 +28,7 @@ def found(places: np.ndarray, bearing_deg: np.ndarray) -> HeadingOffset:
     return offset
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(offset=st.floats(-40.0, 40.0), east=st.floats(-500.0, 500.0), north=st.floats(-500.0, 500.0))
 def test_a_common_offset_is_found_wherever_the_flight_was(offset: float, east: float, north: float) -> None:
     shift = np.array([east, north])
@@ -43,7 +43,7 @@ def test_an_offset_of_the_compass_is_told(offset: float) -> None:
 
 def test_the_standard_error_is_true_and_honest_bearings_raise_no_alarm() -> None:
     rng = np.random.default_rng(3)
-    told = [found(AROUND, bearings(AROUND) + rng.normal(0.0, SIGMA)) for _ in range(150)]
+    told = [found(AROUND, bearings(AROUND) + rng.normal(0.0, SIGMA)) for _ in range(80)]
     score = np.array([t.offset_deg / t.std_error_deg for t in told])
     assert 0.7 < math.sqrt(float(np.mean(score**2))) < 1.3
     assert not any(t.significant for t in told)
@@ -75,7 +75,7 @@ def test_places_on_one_circle_with_the_emitter_cannot_tell() -> None:
     assert told is None or not told.significant
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     st.lists(st.tuples(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(0.0, 360.0)), max_size=6),
     st.floats(0.0, 180.0),
