@@ -60,6 +60,10 @@ class Localization:
     rule: LocalizationRule
     limits: Limits
 
+    @property
+    def home(self) -> Place:
+        return Place(lat=self.frame.origin.lat_deg, lon=self.frame.origin.lon_deg)
+
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
         """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
         return tuple(self._bearing(fact) for fact in measured)

@@ -239,7 +239,7 @@ class MissionService:
                 objections = (Veto("one_mission", detail, "end it and let the vehicle land first"),)
             listening = None if other is None else other.listening
             checks, task = await checklist(state.mission, self._equipment, listening, state.antenna)
-            home, home_amsl_m = home_of(self._equipment.vehicle.telemetry())
+            home, home_amsl_m = (None, None) if task is None else (task.home, task.limits.home_amsl_m)
             facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, self._equipment.software)
             objections += resume_vetoes(self._equipment.vehicle.telemetry())
             given = inputs.Commanded(str(request.command_id), by, request.command, objections, facts)

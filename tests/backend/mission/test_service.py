@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from dataclasses import replace
+from itertools import count
 from uuid import uuid4
 
 import pytest
@@ -17,6 +18,7 @@ from backend.mission import inputs
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.state import fold
 from backend.spec import Place, TimerSpec
+from hardware.readings import Telemetry
 
 
 @pytest.fixture
@@ -268,6 +270,24 @@ async def test_a_start_sent_twice_at_once_starts_once(stage: Stage) -> None:
     assert all(reply.accepted for reply in replies)
     await stage.until(mission_id, "took_off")
     assert stage.journal.kinds(mission_id).count("mission_started") == 1
+
+
+async def test_the_home_of_a_started_mission_is_the_one_its_task_was_made_for(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    telemetry, asked = stage.vehicle.telemetry, count()
+
+    def wandering() -> Telemetry:
+        return replace(telemetry(), home=replace(HOME, lat_deg=HOME.lat_deg + 1e-7 * next(asked)))
+
+    monkeypatch.setattr(stage.vehicle, "telemetry", wandering)
+    mission_id = await stuck(stage)
+    runner = stage.service._runner
+    assert runner is not None
+    home = runner.state.home
+    assert home is not None
+    assert (home.lat, home.lon) == (runner.task.frame.origin.lat_deg, runner.task.frame.origin.lon_deg)
+    assert fold(stage.journal.stored[mission_id]).home == home
 
 
 async def test_rejected_sweeps_are_taken_again_and_kept() -> None:
