@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
+import time
 from collections import deque
 from typing import Literal
 
@@ -18,6 +20,8 @@ KEPT_SAMPLES = 60_000
 REOPEN_S = 1.0
 MISSED_PULSES = 10
 LATE_WALL_S = 2.0
+CATCH_UP_S = 0.005
+"""A receiver that catches up keeps everybody else waiting no longer; a sample a turn of the loop never catches up."""
 
 
 class Listening:
@@ -60,6 +64,7 @@ class Listening:
             try:
                 self._expect()
                 await self._receiver.open(self._frequency_hz)
+                others_due = time.monotonic()
                 async for sample in self._receiver.samples():
                     self._samples.append(sample)
                     self._heard_at_s = self._clock.now()
@@ -67,7 +72,9 @@ class Listening:
                     if sample.detected:
                         self._heard.set()
                     self._fault = None
-                    await asyncio.sleep(0)  # a receiver that catches up must not keep everybody else waiting
+                    if time.monotonic() > others_due:
+                        await asyncio.sleep(0)
+                        others_due = time.monotonic() + CATCH_UP_S
                 self._fault = "the receiver was closed"
             except HardwareError as error:
                 if self._fault is None:
@@ -126,11 +133,16 @@ class Listening:
     async def heard_until(self, at_s: float) -> None:
         """Wait for the samples of the time before `at_s`: a link or a busy machine brings them late.
 
-        No longer than the receiver may be silent.
+        Not when nothing new came for as long as the receiver may be silent.
         """
+        newest_s = -math.inf
         patience = Deadline(self._clock, self._silent_after_s, LATE_WALL_S)
-        while (self.last is None or self.last.at_s < at_s) and not patience.passed:  # noqa: ASYNC110 (patience is polled)
-            await asyncio.sleep(0.02)
+        while newest_s < at_s and not patience.passed:
+            if self.last is not None and self.last.at_s > newest_s:
+                newest_s = self.last.at_s
+                patience = Deadline(self._clock, self._silent_after_s, LATE_WALL_S)
+            else:
+                await asyncio.sleep(0.02)
 
     async def first_sample(self, wall_s: float) -> bool:
         """Whether a carrier's sample or a tag's pulse is heard within so many seconds of the wall."""
