@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import httpx
 import pytest
 from playwright.sync_api import expect
 from screen import OpenScreen, Screen
@@ -50,6 +51,7 @@ def test_an_area_is_drawn_flown_and_the_emitter_localized(server: Server, screen
         rmse = float(screen.part("expected-rmse").get_attribute("data-value") or "nan")
         assert rmse == told["estimate"]["expected_rmse_m"]
     look_back(screen)
+    take_away(server, screen)
 
 
 def fly_quickly(screen: Screen) -> None:
@@ -83,6 +85,16 @@ def look_back(screen: Screen) -> None:
     screen.page.keyboard.press("l")
     expect(screen.part("outcome")).to_be_visible()
     screen.expect_belief(screen.row("bearing_measured").count())
+
+
+def take_away(server: Server, screen: Screen) -> None:
+    """Every file that the list offers is there."""
+    screen.go("#/")
+    links = screen.page.locator("[data-testid=mission-row][data-phase=done]").first.locator("[data-testid^=export-]")
+    expect(links).to_have_count(7)
+    for link in links.all():
+        address = f"{server.url.rstrip('/')}{link.get_attribute('href')}"
+        assert httpx.get(address, timeout=60).status_code == 200, address
 
 
 def suppose_a_worse_sensor(screen: Screen) -> None:

@@ -165,6 +165,7 @@ def test_the_flight_and_its_sheets_are_legible(server: Server, open_screen: Open
     screen = open_screen(server, EXAMPLE)
     screen.map_ready()
     expect(screen.part("sweep-bearing")).to_be_visible()
+    everything_is_on_one_screen(screen)
     legible = Legible(screen)
     legible.check("flying")
     screen.hold()
@@ -177,6 +178,12 @@ def test_the_flight_and_its_sheets_are_legible(server: Server, open_screen: Open
     for sheet in SHEETS:
         _show(screen, sheet)
         legible.check(sheet)
+
+
+def everything_is_on_one_screen(screen: Screen) -> None:
+    """Of 1280 x 800, without scrolling: the first five candidates too."""
+    for part in (*map(screen.part, ("map", "estimate", "sweep", "timeline")), screen.part("candidate").nth(4)):
+        expect(part).to_be_in_viewport(ratio=1)
 
 
 SHOWN_AS = {"alerts": "alerts-panel", "menu": "menu-settings", "keys": "key-sheet"}

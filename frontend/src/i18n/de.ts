@@ -317,6 +317,7 @@ export const de: Record<MessageKey, string> = {
   "missions.open": "Öffnen",
   "missions.copy": "Noch einmal",
   "missions.export": "Mitnehmen",
+  "missions.exportAll": "Alles (zip)",
   "missions.rejected": "{count} verworfen",
   "missions.search": "Mission suchen",
   "missions.openFile": "Aufzeichnung öffnen …",

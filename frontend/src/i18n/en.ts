@@ -316,6 +316,7 @@ export const en = {
   "missions.open": "Open",
   "missions.copy": "Use again",
   "missions.export": "Take away",
+  "missions.exportAll": "All of it (zip)",
   "missions.rejected": "{count} rejected",
   "missions.search": "Find a mission",
   "missions.openFile": "Open a recording …",

@@ -59,8 +59,10 @@ export function FlyPage() {
           </>
         )}
         {!before && <PlanPanel />}
-        {before && missionId && <AntennaCheck missionId={missionId} />}
-        <ImportRecording />
+        <div class="drawers">
+          {before && missionId && <AntennaCheck missionId={missionId} />}
+          <ImportRecording />
+        </div>
       </aside>
       <Timeline />
     </div>

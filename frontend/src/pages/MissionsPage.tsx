@@ -14,16 +14,26 @@ import { formatDuration } from "../units/quantities";
 import type { MissionSummary, Problem } from "../wire";
 
 const REFRESH_MS = 5000;
-const FORMATS: readonly api.ExportFormat[] = ["geojson", "kml", "csv", "json"];
+
+/** What each is called where it is opened; null: everything in one file. */
+const FORMATS: readonly [api.ExportFormat, string | null][] = [
+  ["bundle", null],
+  ["geojson", "GeoJSON"],
+  ["kml", "KML"],
+  ["csv", "CSV"],
+  ["mcap", "MCAP"],
+  ["cot", "TAK"],
+  ["json", "JSON"],
+];
 
 function Export({ id }: { id: string }) {
   return (
     <details class="export">
       <summary class="button">{t("missions.export")}</summary>
       <div class="export-list">
-        {FORMATS.map((format) => (
-          <a class="button" href={api.exportAddress(id, format)} download key={format}>
-            {format === "geojson" ? "GeoJSON" : format.toUpperCase()}
+        {FORMATS.map(([format, name]) => (
+          <a class="button" href={api.exportAddress(id, format)} download data-testid={`export-${format}`} key={format}>
+            {name ?? t("missions.exportAll")}
           </a>
         ))}
       </div>

@@ -82,7 +82,7 @@ export const withBody = (method: string, body: unknown, signal?: AbortSignal): R
   signal: signal ?? null,
 });
 
-export type ExportFormat = "geojson" | "kml" | "csv" | "json";
+export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" | "bundle";
 
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 
