@@ -57,6 +57,11 @@ class PatientVehicle:
                     log.warning("%s", error)
                 self.detail = str(error)
                 await asyncio.sleep(PAUSE_S)
+            except Exception as error:
+                log.exception("connecting to the vehicle on %s failed inside Crossfix", self._where)
+                self.detail = f"connecting to {self._where} failed inside Crossfix and is tried again: {error}"
+                await candidate.close()
+                await asyncio.sleep(PAUSE_S)
             except BaseException:
                 await candidate.close()
                 raise

@@ -43,6 +43,21 @@ async def test_a_vehicle_that_comes_late_is_connected_in_the_background(monkeypa
     await patient.close()
 
 
+class BrokenVehicle(FlatVehicle):
+    async def connect(self, timeout_s: float = 30.0) -> None:
+        raise RuntimeError("a message that nobody expected")
+
+
+async def test_a_fault_of_our_own_does_not_end_the_connecting(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patient_vehicle, "PAUSE_S", 0.01)
+    clock = ScaledClock()
+    kinds = iter((BrokenVehicle, BrokenVehicle))
+    patient = PatientVehicle(lambda: next(kinds, FlatVehicle)(clock), clock, "udpin://somewhere")
+    await patient.connect(5.0)
+    assert patient.telemetry().connected
+    await patient.close()
+
+
 class MendableVehicle(FlatVehicle):
     async def mend_failsafes(self) -> list[str]:
         return ["NAV_DLL_ACT set from 0 to 2"]
