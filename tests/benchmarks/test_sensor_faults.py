@@ -21,6 +21,13 @@ def test_claims_are_true_under_every_fault_that_can_be_noticed(fault: Fault) -> 
     assert fault.name in row(fault, outcomes)
 
 
+@pytest.mark.parametrize(("heading_deg", "least", "most"), [(0.0, 0, 0), (20.0, 2, 3)])
+def test_a_compass_that_is_far_off_is_told_and_a_right_one_not(heading_deg: float, least: int, most: int) -> None:
+    """Three bearings cannot always tell."""
+    outcomes = [fly(seed, Fault("heading", heading_deg=heading_deg), PATTERN, FINDER) for seed in (101, 102, 103)]
+    assert least <= sum(o.offset_told for o in outcomes) <= most
+
+
 def test_overdriven_sweeps_are_taken_again() -> None:
     outcomes = [fly(seed, Fault("too much gain", clipped=0.5), PATTERN, FINDER) for seed in (1, 2, 3)]
     assert sum(o.rejected for o in outcomes) > 0
