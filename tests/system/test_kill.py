@@ -79,7 +79,8 @@ async def test_after_kill_9_in_flight_the_mission_holds_with_the_identical_belie
         await asyncio.sleep(1.0)
         assert after.phases[-1] == "hold"
         assert after.messages["telemetry"][-1]["in_air"]
+        await vehicle.order("battery", percent=100)
         assert (await after.order("resume"))["accepted"]
         ended = await after.until_event("mission_ended", wall_s=120)
-        assert ended["outcome"] == "localized", ended
+        assert ended["outcome"] == "localized", after.story()
         assert ended["mission_time_s"] > 60
