@@ -58,7 +58,7 @@ def test_routes_are_flown_whole_before_the_planner_is_asked_again(case):
             asked.append(belief.bearings)
             return np.array([[20.0, 20.0], [280.0, 20.0]])
 
-        def __call__(self, problem, belief, platform, rng):
+        def __call__(self, problem, belief, platform, rng=None):
             raise AssertionError
 
     fly(
