@@ -10,7 +10,8 @@ from hardware.readings import Controller
 class ControlLatch:
     """Knows the modes that follow from our last command; whatever else the vehicle shows while flying is not ours.
 
-    Between a command and the first sight of its mode the mode before it is tolerated. `calm`: the modes in which an
+    Between a command and the first sight of its mode the mode before it is tolerated, and those of our command before
+    it, which may show only now. `calm`: the modes in which an
     airborne vehicle we never commanded (after a restart) waits for orders.
     """
 
@@ -18,7 +19,7 @@ class ControlLatch:
         self._calm = calm
         self._mode_name = mode_name
         self._expected: frozenset[int] | None = None
-        self._tolerated: int | None = None
+        self._tolerated: frozenset[int] = frozenset()
         self._mode: int | None = None
         self._armed = False
         self._reason: str | None = None
@@ -41,8 +42,9 @@ class ControlLatch:
 
     def command(self, modes: frozenset[int]) -> None:
         """We are about to send a command after which these modes are ours."""
+        before = frozenset() if self._mode is None else frozenset({self._mode})
+        self._tolerated |= before | (self._expected or frozenset())
         self._expected = modes
-        self._tolerated = self._mode
 
     def observe(self, mode: int, armed: bool, in_air: bool) -> str | None:
         """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
@@ -54,14 +56,14 @@ class ControlLatch:
             return None
         if self._reason is not None:
             return None
-        if not in_air and mode in self._calm and self._tolerated is None:
+        if not in_air and mode in self._calm and not self._tolerated:
             ours = True  # an autopilot goes to its waiting mode by itself once it has landed
         elif self._expected is None:
             ours = mode in self._calm or not in_air
         elif mode in self._expected:
-            self._tolerated, ours = None, True
+            self._tolerated, ours = frozenset(), True
         else:
-            ours = mode == self._tolerated
+            ours = mode in self._tolerated
         return (
             None if ours else self.latch(f"the vehicle is in {self._mode_name(mode)}, which Crossfix did not command")
         )
@@ -79,4 +81,4 @@ class ControlLatch:
         """The operator's deed: the mode of this moment is accepted, commands pass again."""
         self._reason = None
         self._expected = frozenset({self._mode}) if self._armed and self._mode is not None else None
-        self._tolerated = None
+        self._tolerated = frozenset()

@@ -28,6 +28,19 @@ def test_the_mode_before_a_command_is_tolerated_until_the_commanded_one_was_seen
     assert control.controller == "pilot"
 
 
+def test_the_mode_of_our_last_command_may_show_after_the_next_was_sent() -> None:
+    control = latch()
+    control.observe(HOLD, armed=False, in_air=False)
+    control.command(frozenset({GUIDED, HOLD}))
+    control.observe(HOLD, armed=True, in_air=False)
+    control.command(frozenset({RETURN}))
+    control.command(frozenset({RETURN}))  # sent again
+
+    assert flying(control, GUIDED) is None
+    assert flying(control, RETURN) is None
+    assert flying(control, GUIDED) is not None
+
+
 def test_a_pilot_between_command_and_its_mode_latches() -> None:
     control = latch()
     flying(control, HOLD)
