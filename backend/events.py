@@ -193,6 +193,7 @@ class BearingMeasured(Fact):
     """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
 
     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
+    heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
     """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
@@ -210,6 +211,7 @@ class BearingMeasured(Fact):
     binned_db: list[Known]
     fitted_db: list[Known]
     measurement_time_s: Known = None
+    heading_sigma_deg: float = 0.0
 
 
 class RecordingImported(Fact):
@@ -237,7 +239,8 @@ class BeliefUpdated(Fact):
     """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
-    against them."""
+    against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
+    significant: then nothing is claimed."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     bearings: int
@@ -246,6 +249,8 @@ class BeliefUpdated(Fact):
     localized: bool
     not_yet: list[str]
     contradicting: list[str] = Field(default_factory=list)
+    heading_offset_deg: Known = None
+    heading_offset_std_error_deg: Known = None
     digest: str
 
 

@@ -292,7 +292,6 @@ async def open_simulation(
                     publisher=hub,
                     clock=clock,
                     software=VERSION,
-                    heading_sigma_deg=settings.heading_sigma_deg,
                     database=lambda: journal.report().state,
                 )
             )

@@ -145,6 +145,7 @@ class BearingReading:
     quality: cosine similarity of the sweep and the pattern shifted to the bearing, [0, 1].
     accepted: False when the sweep must be taken again; `reason` says why in the operator's words.
     binned_db: (180,) mean power a 2-degree bin of antenna heading (NaN: empty); fitted_db: (180,) the fit.
+    heading_sigma_deg: the share of sigma_deg that a flight's bearings have in common, the heading's.
     """
 
     bearing_deg: float
@@ -156,3 +157,4 @@ class BearingReading:
     binned_db: NDArray[np.float64]
     fitted_db: NDArray[np.float64]
     snr_db: float | None = None
+    heading_sigma_deg: float = 0.0

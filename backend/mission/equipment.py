@@ -19,8 +19,7 @@ def _ok() -> Literal["ok", "slow", "lost"]:
 class Equipment:
     """Made by the wiring. watch_consoles: False where nobody is meant to watch (headless demo).
 
-    threads: how many the planner may use. software: version, for the record. heading_sigma_deg: the share of the
-    heading in every bearing's sigma.
+    threads: how many the planner may use. software: version, for the record.
     """
 
     vehicle: Vehicle
@@ -33,5 +32,4 @@ class Equipment:
     software: str
     watch_consoles: bool = True
     threads: int = 2
-    heading_sigma_deg: float = 0.0
     database: Callable[[], Literal["ok", "slow", "lost"]] = _ok

@@ -9,7 +9,6 @@ from backend.commands import Command
 from backend.events import BearingMeasured, BeliefUpdated, CheckFact, PlanChosen, SweepRejected
 from backend.mission.safety import Veto
 from backend.spec import MissionSpec, Place
-from hardware.direction_finding.heading_offset import HeadingOffset
 
 Link = Literal["vehicle", "receiver", "console", "payload"]
 TimerName = Literal["console_hold", "console_return", "landing"]
@@ -94,11 +93,10 @@ class SweepRefused:
 
 @dataclass(frozen=True, slots=True)
 class BeliefReady:
-    """The belief folded from the bearings with these ids, in order. heading_offset: what they are off by together."""
+    """The belief folded from the bearings with these ids, in order."""
 
     bearing_ids: tuple[str, ...]
     fact: BeliefUpdated
-    heading_offset: HeadingOffset | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,7 @@ from planner.types import (
     UniformPrior,
 )
 
+ASKEW = "not yet: all bearings seem to be off by the same angle; check compass and antenna mounting"
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
@@ -99,23 +100,27 @@ class Localization:
         bearings = self.planner_bearings(measured)
         folded = self.belief(bearings)
         said = verdict(self.problem, self.rule, bearings, folded)
+        offset = self.heading_offset(measured)
+        doubt = offset if offset is not None and offset.significant else None
         shown = self.planning_belief(bearings) if folded is None else folded
         fact = BeliefUpdated(
             bearings=len(bearings),
             estimate=None if folded is None or said.estimate is None else self._estimate_fact(folded, said.estimate),
             consistent=said.consistent,
-            localized=said.localized,
-            not_yet=list(said.reasons),
+            localized=said.localized and doubt is None,
+            not_yet=[*said.reasons, *([] if doubt is None else [ASKEW])],
             contradicting=[measured[index].bearing_id for index in said.against],
+            heading_offset_deg=None if doubt is None else doubt.offset_deg,
+            heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
             digest=digest(shown),
         )
         return fact, shown
 
-    def heading_offset(self, measured: Sequence[BearingMeasured], heading_sigma_deg: float) -> HeadingOffset | None:
-        """What the bearings are off by together; heading_sigma_deg: what their sigmas hold of the heading's."""
+    def heading_offset(self, measured: Sequence[BearingMeasured]) -> HeadingOffset | None:
+        """What the bearings are off by together, judged by what their sigmas hold besides the heading's share."""
         places = np.array([self.frame.to_enu(GeoPoint(b.place.lat, b.place.lon)) for b in measured]).reshape(-1, 2)
         bearing = np.array([b.bearing_deg for b in measured])
-        own = np.sqrt(np.maximum(np.array([b.sigma_deg for b in measured]) ** 2 - heading_sigma_deg**2, 0.0))
+        own = np.sqrt([max(b.sigma_deg**2 - b.heading_sigma_deg**2, 0.0) for b in measured])
         return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
 
     def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:

@@ -78,7 +78,6 @@ from backend.mission.step import (
     refuse_flight,
     why_not_yet,
 )
-from hardware.direction_finding.heading_offset import HeadingOffset
 
 LANDING_PATIENCE_S = 120.0
 UNSURE_PLACE_M = 5.0
@@ -194,11 +193,12 @@ def _doubt_place(step: Step, bearing: BearingMeasured) -> None:
         clear_alerts(step, "place")
 
 
-def _doubt_heading(step: Step, offset: HeadingOffset | None) -> None:
-    if offset is not None and offset.significant:
+def _doubt_heading(step: Step, belief: BeliefUpdated) -> None:
+    offset_deg, std_error_deg = belief.heading_offset_deg, belief.heading_offset_std_error_deg
+    if offset_deg is not None and std_error_deg is not None:
         text = (
-            f"the bearings of this flight disagree by a common offset of about {offset.offset_deg:+.0f} "
-            f"± {offset.std_error_deg:.0f} degrees: the place found may be wrong"
+            f"the bearings of this flight disagree by a common offset of about {offset_deg:+.0f} "
+            f"± {std_error_deg:.0f} degrees: the place found may be wrong"
         )
         alert(step, "heading", "caution", text, "check compass and antenna mounting; one wrong place looks alike")
     else:
@@ -211,7 +211,7 @@ def _belief(step: Step, given: BeliefReady) -> None:
         return
     fact: BeliefUpdated = given.fact
     step.record(fact)
-    _doubt_heading(step, given.heading_offset)
+    _doubt_heading(step, fact)
     if state.phase == "planning":
         go_on(step, "belief updated")
     elif fact.localized and state.phase in ("flying", "measuring"):

@@ -122,6 +122,7 @@ def sweep_fact(
         binned_db=binned,
         fitted_db=fitted,
         measurement_time_s=measurement_time_s,
+        heading_sigma_deg=reading.heading_sigma_deg,
     )
 
 

@@ -105,9 +105,7 @@ class Steps:
         ids = tuple(b.bearing_id for b in measured)
         fact, belief = await asyncio.to_thread(self.task.belief_fact, measured)
         self._belief = (ids, belief)
-        heading_sigma_deg = self.equipment.heading_sigma_deg
-        offset = await asyncio.to_thread(self.task.heading_offset, measured, heading_sigma_deg)
-        return inputs.BeliefReady(ids, fact, offset)
+        return inputs.BeliefReady(ids, fact)
 
     def current_belief(self) -> tuple[tuple[str, ...], GridBelief] | None:
         """The last belief computed, with the ids of its bearings."""

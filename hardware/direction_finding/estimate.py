@@ -121,6 +121,7 @@ class SparseDirectionFinder:
         return BearingReading(
             bearing_deg=bearing % 360.0,
             sigma_deg=min(sigma, 180.0),
+            heading_sigma_deg=self.heading_sigma_deg,
             quality=quality,
             accepted=not reason,
             reason=reason,

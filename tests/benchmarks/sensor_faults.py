@@ -190,7 +190,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
         said = verdict(task.problem, task.rule, bearings, folded)
         doubted = doubted or not said.consistent or any("contradict" in reason for reason in said.reasons)
         belief = task.planning_belief(bearings) if folded is None else folded
-        if said.localized:
+        if said.localized and not offset_stands(bearings, finder.heading_sigma_deg):
             localized = True
             break
     offset_told = offset_stands(bearings, finder.heading_sigma_deg)
@@ -198,7 +198,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
 
 
 def offset_stands(bearings: Sequence[Bearing], heading_sigma_deg: float) -> bool:
-    """Whether the mission would caution against an offset common to these bearings."""
+    """Whether the mission would caution against an offset common to these bearings, and claim nothing."""
     places = np.array([(b.x, b.y) for b in bearings]).reshape(-1, 2)
     direction = np.array([angle_to_compass(b.angle) for b in bearings])
     own = np.sqrt(np.maximum(np.degrees([b.sigma for b in bearings]) ** 2 - heading_sigma_deg**2, 0.0))

@@ -184,13 +184,13 @@ export class FixtureSource implements Source {
     const peaks = this.place === 1 ? [{ bearing_deg: (bearing + 118) % 360, weight: 0.31 }] : [];
     this.emit({
       kind: "bearing_measured", bearing_id: `bearing-${this.place}`, sweep_id: sweepId, place_number: this.place, place: at, altitude_amsl_m: 102,
-      bearing_deg: bearing, sigma_deg: SIGMA, quality: 0.86 + 0.1 * this.rand(), peaks, snr_db: 17.2, drift_m: 0.7, binned_db: binned, fitted_db: fitted, measurement_time_s: 30,
+      bearing_deg: bearing, sigma_deg: SIGMA, quality: 0.86 + 0.1 * this.rand(), peaks, snr_db: 17.2, drift_m: 0.7, binned_db: binned, fitted_db: fitted, measurement_time_s: 30, heading_sigma_deg: 4,
     }); // prettier-ignore
     this.belief_.update(this.at, bearing, SIGMA);
     const estimate = this.belief_.estimate();
     const localized = !this.endless && this.place >= 3 && estimate.expected_rmse_m < 14;
     const notYet = localized ? [] : this.place === 1 ? ["not yet: one bearing from one place, 2 places are needed"] : [`not yet: expected error ${estimate.expected_rmse_m.toFixed(0)} m, wanted below 10 m`];
-    this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, contradicting: [], digest: "" });
+    this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, contradicting: [], heading_offset_deg: null, heading_offset_std_error_deg: null, digest: "" });
     this.remember();
     if (localized || (!this.endless && this.place >= 6)) {
       this.goal = this.home;

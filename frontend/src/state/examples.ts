@@ -18,6 +18,7 @@ const bearing: EventOf<"bearing_measured"> = {
   binned_db: Array.from({ length: 180 }, (_, i) => -60 - Math.abs(i - 22) / 4),
   fitted_db: Array.from({ length: 180 }, () => -60),
   measurement_time_s: 30,
+  heading_sigma_deg: 4,
 };
 
 const plan: EventOf<"plan_chosen"> = {

@@ -719,6 +719,7 @@ export interface components {
          * @description binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
          *
          *     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
+         *     heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
          */
         BearingMeasured: {
             /**
@@ -740,12 +741,15 @@ export interface components {
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
             measurement_time_s: number | null;
+            /** @default 0 */
+            heading_sigma_deg: number;
         };
         /**
          * @description The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
          *     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
          *     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
-         *     against them.
+         *     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
+         *     significant: then nothing is claimed.
          */
         BeliefUpdated: {
             /**
@@ -759,6 +763,8 @@ export interface components {
             localized: boolean;
             not_yet: string[];
             contradicting: string[];
+            heading_offset_deg: number | null;
+            heading_offset_std_error_deg: number | null;
             digest: string;
         };
         /** @description One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none. */

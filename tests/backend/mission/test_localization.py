@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from backend.events import BearingMeasured, Peak
 from backend.mission.errors import MissionInputError
-from backend.mission.localization import Localization, localization
+from backend.mission.localization import ASKEW, Localization, localization
 from backend.spec import (
     FlightSpec,
     GaussianPriorSpec,
@@ -94,16 +94,27 @@ AROUND = ((90, -40), (250, 20), (150, 160), (30, 60))
 @pytest.mark.parametrize("off_deg", [0.0, 12.0])
 def test_a_compass_that_is_off_is_told_from_bearings_of_all_sides(off_deg: float) -> None:
     seen = [towards(x, y, (150.0, 60.0), sigma=4.2) for x, y in AROUND]
-    turned = [b.model_copy(update={"bearing_deg": (b.bearing_deg + off_deg) % 360.0}) for b in seen]
-    found = task().heading_offset(turned, heading_sigma_deg=4.0)
+    turned = [
+        b.model_copy(update={"bearing_deg": (b.bearing_deg + off_deg) % 360.0, "heading_sigma_deg": 4.0}) for b in seen
+    ]
+    found = task().heading_offset(turned)
     assert found is not None
     assert found.offset_deg == pytest.approx(off_deg, abs=0.5)
     assert found.significant == (off_deg > 5.0)
+    fact, _ = task().belief_fact(turned)
+    assert fact.localized == (off_deg == 0.0)
+    if off_deg:
+        assert fact.not_yet == [ASKEW]
+        assert fact.heading_offset_deg == found.offset_deg
+        assert fact.heading_offset_std_error_deg == found.std_error_deg
+    else:
+        assert fact.heading_offset_deg is None
 
 
 def test_what_a_heading_may_be_off_by_is_taken_out_of_the_sigma() -> None:
     seen = [towards(x, y, (150.0, 60.0), sigma=5.0) for x, y in AROUND]
-    known, unknown = task().heading_offset(seen, 4.0), task().heading_offset(seen, 0.0)
+    known = task().heading_offset([b.model_copy(update={"heading_sigma_deg": 4.0}) for b in seen])
+    unknown = task().heading_offset(seen)
     assert known is not None
     assert unknown is not None
     assert known.std_error_deg == pytest.approx(0.6 * unknown.std_error_deg, rel=0.02)

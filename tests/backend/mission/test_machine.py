@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -36,7 +34,6 @@ from backend.mission.effects import Effect
 from backend.mission.machine import transition
 from backend.mission.safety import Veto
 from backend.mission.state import AUTOMATIC, HOMEWARD, TERMINAL, MissionState, fold
-from hardware.direction_finding.heading_offset import HeadingOffset
 
 VEHICLE = (*MOVES, asked.HoldVehicle)
 IN_FLIGHT = tuple(AUTOMATIC | HOMEWARD)
@@ -443,7 +440,9 @@ def test_a_failed_take_off_on_the_ground_ends_the_mission_and_in_the_air_holds()
 def test_an_offset_common_to_all_bearings_is_told_until_it_is_none() -> None:
     walk = Walk().to("measuring")
     walk.give(inputs.SweepTaken(bearing(1)))
-    walk.give(replace(belief_ready(walk.state), heading_offset=HeadingOffset(12.4, 1.6, 40.0)))
+    ready = belief_ready(walk.state)
+    doubted = ready.fact.model_copy(update={"heading_offset_deg": 12.4, "heading_offset_std_error_deg": 1.6})
+    walk.give(inputs.BeliefReady(ready.bearing_ids, doubted))
     (told,) = [r.event for r in walk.recorded if isinstance(r.event, AlertRaised)]
     assert told.level == "caution"
     assert "about +12 ± 2 degrees" in told.text
@@ -453,13 +452,6 @@ def test_an_offset_common_to_all_bearings_is_told_until_it_is_none() -> None:
     walk.give(inputs.SweepTaken(bearing(2)))
     walk.give(belief_ready(walk.state))
     assert not walk.state.open_alerts
-
-
-def test_an_offset_that_chance_may_have_made_is_not_told() -> None:
-    walk = Walk().to("measuring")
-    walk.give(inputs.SweepTaken(bearing(1)))
-    walk.give(replace(belief_ready(walk.state), heading_offset=HeadingOffset(7.0, 3.0, 5.0)))
-    assert walk.state.open_alerts == ()
 
 
 def test_a_stale_belief_is_not_recorded() -> None:
