@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check bench long fuzz load page-load sensor-faults codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
+.PHONY: run test check kernel bench long fuzz load page-load sensor-faults codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
@@ -42,8 +42,9 @@ frontend/dist/.built: frontend/node_modules/.installed $(PAGE_SOURCES)
 browser: ## Debian's Chromium, when there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
-test: check unit ## everything CI runs
-	$(MAKE) -j2 -Otarget system stories
+test: check kernel ## everything CI runs; missions wait for the wall's clock, so the unit tests fill their pauses, and no browser does
+	$(MAKE) -j2 -Otarget unit system
+	$(MAKE) stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, page unit tests
 	$(BIN)/ruff check .
@@ -54,9 +55,11 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
-unit: setup-dev ## tests without a vehicle or a browser; the kernel is compiled once before, not by each worker in a test
+kernel: setup-dev ## compiled once, not by each worker in a test
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
-	$(BIN)/pytest -n 2 --hypothesis-profile ci -m "not system and not browser and not long"
+
+unit: kernel ## tests without a vehicle or a browser
+	nice -n 10 $(BIN)/pytest -n 2 --hypothesis-profile ci -m "not system and not browser and not long"
 
 system: setup-dev build ## whole missions over real sockets
 	$(BIN)/pytest -m "system and not browser" --durations 8
