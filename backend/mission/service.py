@@ -79,7 +79,6 @@ class MissionService:
         telemetry = self._equipment.vehicle.telemetry()
         uncommanded = telemetry.controller == "pilot"
         going_home = uncommanded and telemetry.mode in GOING_HOME
-        runner.watch.console_expected = True
         if going_home:
             runner.watch.tolerated_mode = telemetry.mode
         runner.listening.start()

@@ -63,7 +63,7 @@ class Watch:
     """`give` takes the inputs; `state` is asked on every tick. Track points collect in `track` until taken.
 
     tolerated_mode: the autopilot's own return or landing, found after a restart or a lost link; no pilot's, until it
-    changes. console_expected: one was there (or may have been, before a restart), so that its absence is a loss.
+    changes.
     """
 
     equipment: Equipment
@@ -72,10 +72,10 @@ class Watch:
     state: Callable[[], MissionState]
     give: Callable[[inputs.Input], object]
     tolerated_mode: str | None = None
-    console_expected: bool = False
     drain: Drain = field(default_factory=Drain)
     track: list[TrackPoint] = field(default_factory=list)
     _down_since: dict[inputs.Link, float] = field(default_factory=dict)
+    _console_seen: bool = False
     _battery_told: tuple[str, str] = ("", "")
     """The rule that was broken, and who flew then: a change of either is told again."""
     _heard_since_s: float = -math.inf
@@ -141,8 +141,8 @@ class Watch:
         self._link("receiver", not trouble, trouble, now)
         if self.equipment.watch_consoles:
             watching = self.equipment.publisher.watchers() > 0
-            self.console_expected |= watching
-            if self.console_expected:
+            self._console_seen |= watching
+            if self._console_seen:
                 self._link("console", watching, "no console is connected", now)
 
     def _link(self, link: inputs.Link, up: bool, detail: str, now: float) -> None:

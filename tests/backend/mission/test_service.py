@@ -197,18 +197,6 @@ async def test_a_restart_in_flight_is_hold_with_the_identical_belief_until_resum
     assert ended.outcome == "localized"  # type: ignore[union-attr]
 
 
-async def test_after_a_restart_to_which_no_console_comes_back_the_vehicle_is_sent_home(stage: Stage) -> None:
-    mission = spec().model_copy(update={"timers": TimerSpec(console_lost_hold_s=0.1, console_lost_return_s=0.3)})
-    mission_id = await stage.service.create(mission, "anna")
-    assert (await order(stage, mission_id, commands.Start())).accepted
-    await stage.until(mission_id, "took_off")
-    await stage.service.shut_down()
-    stage.service = stage.new_service()
-    await stage.service.start_up()
-    returned = await stage.until(mission_id, "return_ordered")
-    assert returned.reason == "no console came back"  # type: ignore[union-attr]
-
-
 async def test_of_several_unfinished_missions_the_last_comes_back_and_the_others_are_closed_as_interrupted(
     stage: Stage,
 ) -> None:
