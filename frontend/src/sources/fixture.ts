@@ -189,7 +189,10 @@ export class FixtureSource implements Source {
     this.belief_.update(this.at, bearing, SIGMA);
     const estimate = this.belief_.estimate();
     const localized = !this.endless && this.place >= 3 && estimate.expected_rmse_m < 14;
-    const notYet = localized ? [] : this.place === 1 ? ["not yet: one bearing from one place, 2 places are needed"] : [`not yet: expected error ${estimate.expected_rmse_m.toFixed(0)} m, wanted below 10 m`];
+    const tooWide = `not yet: expected error ${estimate.expected_rmse_m.toFixed(0)} m, wanted below 10 m`;
+    const oneSide = "not yet: all bearings from one side, crossing at 24 deg, 30 deg are needed";
+    const doubt = this.place === 1 ? "not yet: one bearing from one place, 2 places are needed" : estimate.expected_rmse_m < 10 ? oneSide : tooWide;
+    const notYet = localized ? [] : [doubt];
     this.emit({ kind: "belief_updated", bearings: this.place, estimate, consistent: true, localized, not_yet: notYet, contradicting: [], heading_offset_deg: null, heading_offset_std_error_deg: null, digest: "" });
     this.remember();
     if (localized || (!this.endless && this.place >= 6)) {
