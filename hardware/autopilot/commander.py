@@ -72,6 +72,7 @@ class Commander:
             result = await self._exchange(outgoing, attempt, allowed)
             self.check(manoeuvre)
             if result == ACCEPTED:
+                self._latch.acknowledged()
                 return
             if result is not None:
                 raise CommandRefused(f"The autopilot refused {what}: {_in_words(result)}.")

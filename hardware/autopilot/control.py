@@ -11,8 +11,8 @@ class ControlLatch:
     """Knows the modes that follow from our last command; whatever else the vehicle shows while flying is not ours.
 
     Between a command and the first sight of its mode the mode before it is tolerated, and those of our command before
-    it, which may show only now. `calm`: the modes in which an
-    airborne vehicle we never commanded (after a restart) waits for orders.
+    it, which may show only now. A mode that was there already is no such sight until the command is acknowledged.
+    `calm`: the modes in which an airborne vehicle we never commanded (after a restart) waits for orders.
     """
 
     def __init__(self, calm: frozenset[int], mode_name: Callable[[int], str]) -> None:
@@ -20,6 +20,7 @@ class ControlLatch:
         self._mode_name = mode_name
         self._expected: frozenset[int] | None = None
         self._tolerated: frozenset[int] = frozenset()
+        self._stale: int | None = None
         self._mode: int | None = None
         self._armed = False
         self._reason: str | None = None
@@ -44,7 +45,11 @@ class ControlLatch:
         """We are about to send a command after which these modes are ours."""
         before = frozenset() if self._mode is None else frozenset({self._mode})
         self._tolerated |= before | (self._expected or frozenset())
-        self._expected = modes
+        self._expected, self._stale = modes, self._mode
+
+    def acknowledged(self) -> None:
+        """The autopilot has taken the last command: what it shows from now on follows from it."""
+        self._stale = None
 
     def observe(self, mode: int, armed: bool, in_air: bool) -> str | None:
         """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
@@ -61,7 +66,9 @@ class ControlLatch:
         elif self._expected is None:
             ours = mode in self._calm or not in_air
         elif mode in self._expected:
-            self._tolerated, ours = frozenset(), True
+            ours = True
+            if mode != self._stale:
+                self._tolerated = frozenset()
         else:
             ours = mode in self._tolerated
         return (

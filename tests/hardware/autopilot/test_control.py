@@ -41,6 +41,18 @@ def test_the_mode_of_our_last_command_may_show_after_the_next_was_sent() -> None
     assert flying(control, GUIDED) is not None
 
 
+def test_a_mode_that_was_there_before_is_no_sight_of_a_command_that_is_not_acknowledged() -> None:
+    control = latch()
+    control.observe(HOLD, armed=False, in_air=False)
+    control.command(frozenset({GUIDED, HOLD}))
+    control.command(frozenset({HOLD}))
+    assert flying(control, HOLD) is None
+    assert flying(control, GUIDED) is None
+    control.acknowledged()
+    assert flying(control, HOLD) is None
+    assert flying(control, GUIDED) is not None
+
+
 def test_a_pilot_between_command_and_its_mode_latches() -> None:
     control = latch()
     flying(control, HOLD)
