@@ -7,7 +7,7 @@ from pathlib import Path
 from starlette.exceptions import HTTPException
 from starlette.responses import HTMLResponse, Response
 from starlette.staticfiles import StaticFiles
-from starlette.types import Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
 NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Crossfix: the page is not built</title>
 <style>body{font:1.1rem/1.5 system-ui,sans-serif;max-width:40rem;margin:15vh auto;padding:0 1rem}</style>
@@ -27,7 +27,10 @@ class Page:
             await send({"type": "websocket.close", "code": 4404, "reason": "no such websocket"})
             return
         response = await self._respond(scope)
-        await response(scope, receive, send)
+        try:
+            await response(scope, receive, _begun_with_its_body(send))
+        except FileNotFoundError as error:
+            raise HTTPException(404, f"The file {scope['path']} was replaced just now; load the page again.") from error
 
     async def _respond(self, scope: Scope) -> Response:
         path = scope["path"]
@@ -53,3 +56,19 @@ class Page:
             if error.status_code == 404:
                 return None
             raise
+
+
+def _begun_with_its_body(send: Send) -> Send:
+    """Holds the start of an answer back until its file has been opened: a page that is being rebuilt loses files
+    between the look at one and its opening."""
+    start: list[Message] = []
+
+    async def send_begun(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            start.append(message)
+            return
+        while start:
+            await send(start.pop())
+        await send(message)
+
+    return send_begun

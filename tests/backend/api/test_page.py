@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 
 import pytest
+from starlette.staticfiles import StaticFiles
 
 
 async def test_the_page_and_its_deep_links_are_asked_for_anew(client):
@@ -40,3 +41,17 @@ async def test_without_a_build_it_says_what_to_do(client, settings):
     assert reply.status_code == 503
     assert "make build" in reply.text
     assert (await client.get("/api/health")).status_code == 200
+
+
+async def test_a_file_that_vanishes_while_it_is_asked_for_is_a_plain_404(client, settings, monkeypatch):
+    lookup = StaticFiles.lookup_path
+
+    def rebuilt_meanwhile(self, path):
+        found = lookup(self, path)
+        (settings.page_dir / path).unlink()
+        return found
+
+    monkeypatch.setattr(StaticFiles, "lookup_path", rebuilt_meanwhile)
+    reply = await client.get("/assets/app-1a2b.js")
+    assert reply.status_code == 404
+    assert reply.json()["detail"] == "The file /assets/app-1a2b.js was replaced just now; load the page again."
