@@ -10,6 +10,7 @@ from backend.mission.errors import MissionInputError
 from backend.mission.fresh import fresh
 from backend.mission.listening import Listening, expected_pulses
 from backend.mission.localization import Localization, localization
+from backend.mission.planning import lay_out_ways
 from backend.mission.safety import Situation, start_vetoes
 from backend.spec import MissionSpec, Place
 from hardware.readings import PreflightCheck, Telemetry
@@ -35,6 +36,7 @@ def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[Localization | 
         task = localization(mission, home, amsl)
     except MissionInputError as error:
         return None, _fact("area", False, str(error), error.remedy)
+    lay_out_ways(task)
     return task, _fact("area", True, f"{task.limits.fence.area:.0f} m2 to fly in", "")
 
 
@@ -86,9 +88,9 @@ async def _receiver(mission: MissionSpec, equipment: Equipment, listening: Liste
 
 
 def _pattern(mission: MissionSpec, equipment: Equipment) -> CheckFact:
-    pattern, frequency = equipment.pattern, mission.emitter.frequency_hz
-    if pattern.frequency_hz is not None and abs(pattern.frequency_hz / frequency - 1.0) > 0.1:
-        detail = f"{pattern.name} was measured at {pattern.frequency_hz / 1e6:.1f} MHz, not {frequency / 1e6:.1f} MHz"
+    pattern = equipment.pattern
+    detail = pattern.other_frequency(mission.emitter.frequency_hz)
+    if detail:
         return _fact("antenna pattern", False, detail, "measure the pattern at the emitter's frequency", False)
     return _fact("antenna pattern", True, pattern.name, "")
 

@@ -24,6 +24,7 @@ SMALL_YAGI = Path(__file__).parent / "patterns" / "small_yagi.json"
 MINIMUM_POINTS = 8
 MAXIMUM_GAP_DEG = 60.0
 MINIMUM_DIRECTIVITY_DB = 3.0
+MAXIMUM_DIRECTIVITY_DB = 200.0
 
 
 class PatternError(ValueError):
@@ -66,40 +67,53 @@ def make_pattern(
             f"{name}: the gain varies by only {np.ptp(gain):.1f} dB around the circle; an antenna with less than "
             f"{MINIMUM_DIRECTIVITY_DB:.0f} dB gives no bearing (is its element broken, or the table in another unit?)"
         )
+    if np.ptp(gain) > MAXIMUM_DIRECTIVITY_DB:
+        raise PatternError(
+            f"{name}: the gain varies by {np.ptp(gain):.3g} dB around the circle; is it in another unit?"
+        )
     return AntennaPattern(name, angle, gain, float(offset_to_nose_deg), frequency_hz, polarization, measured_on)
 
 
 def load_pattern(path: Path | str) -> AntennaPattern:
     """Read a JSON pattern, or a turntable table (.csv, see `read_turntable`). Raises PatternError."""
-    path = Path(path)
-    if path.suffix.lower() in {".csv", ".txt", ".tsv"}:
-        return read_turntable(path)
+    return parse_pattern(str(path), _text_of(path))
+
+
+def parse_pattern(filename: str, text: str) -> AntennaPattern:
+    """The same from a file's text. Raises PatternError naming the file."""
+    if Path(filename).suffix.lower() in {".csv", ".txt", ".tsv"}:
+        return _turntable(filename, text, "dB", 0.0)
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise PatternError(f"{path}: cannot be read ({error.strerror}); check the path") from error
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise PatternError(f"{path}: is not JSON ({error}); a turntable table must end in .csv") from error
-    return _from_json(path, data)
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise PatternError(f"{filename}: is not JSON ({error}); a turntable table must end in .csv") from error
+    return _from_json(filename, data)
 
 
-def _from_json(path: Path, data: Any) -> AntennaPattern:
+def _text_of(path: Path | str) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise PatternError(f"{path}: cannot be read as text ({error}); check the path") from error
+
+
+def _from_json(filename: str, data: Any) -> AntennaPattern:
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise PatternError(f'{path}: is no antenna pattern; the file must hold an object with "format": "{FORMAT}"')
+        raise PatternError(f'{filename}: is no antenna pattern; the file must hold an object with "format": "{FORMAT}"')
     for key in ("relative_bearing_deg", "gain", "unit"):
         if key not in data:
-            raise PatternError(f'{path}: "{key}" is missing; add it')
+            raise PatternError(f'{filename}: "{key}" is missing; add it')
     try:
         angle = np.array(data["relative_bearing_deg"], dtype=np.float64)
         gain = np.array(data["gain"], dtype=np.float64)
         offset = float(data.get("offset_to_nose_deg", 0.0))
         frequency = None if data.get("frequency_hz") is None else float(data["frequency_hz"])
-    except (TypeError, ValueError) as error:
-        raise PatternError(f"{path}: angles, gains, offset and frequency must be numbers ({error})") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise PatternError(f"{filename}: angles, gains, offset and frequency must be numbers ({error})") from error
     return make_pattern(
-        str(data.get("name") or path.stem),
+        str(data.get("name") or Path(filename).stem),
         angle,
-        _to_db(str(path), gain, str(data["unit"])),
+        _to_db(filename, gain, str(data["unit"])),
         offset,
         frequency,
         data.get("polarization"),
@@ -139,27 +153,26 @@ def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float
 
     Several rows at one angle (more than one turn) are averaged. Raises PatternError naming file and line.
     """
-    path = Path(path)
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise PatternError(f"{path}: cannot be read as text ({error}); check the path") from error
+    return _turntable(str(path), _text_of(path), unit, offset_to_nose_deg)
+
+
+def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -> AntennaPattern:
     rows: list[tuple[float, float]] = []
-    for number, line in enumerate(lines, start=1):
-        text = line.split("#")[0].strip()
-        if not text:
+    for number, line in enumerate(text.splitlines(), start=1):
+        row = line.split("#")[0].strip()
+        if not row:
             continue
-        cells = next(csv.reader([text.replace(";", ",").replace("\t", ",")]))
-        cells = cells if len(cells) > 1 else text.split()
+        cells = next(csv.reader([row.replace(";", ",").replace("\t", ",")]))
+        cells = cells if len(cells) > 1 else row.split()
         try:
             rows.append((float(cells[0]) % 360.0, float(cells[1])))
         except (ValueError, IndexError):
             if rows:
-                raise PatternError(f'{path}:{number}: "{line.strip()}" is not "angle_deg, gain"; mend it') from None
+                raise PatternError(f'{filename}:{number}: "{line.strip()}" is not "angle_deg, gain"; mend it') from None
     if not rows:
-        raise PatternError(f'{path}: holds no rows of "angle_deg, gain"')
+        raise PatternError(f'{filename}: holds no rows of "angle_deg, gain"')
     table = np.array(rows)
-    gain = _to_db(str(path), table[:, 1], unit)
+    gain = _to_db(filename, table[:, 1], unit)
     angle, member = np.unique(np.round(table[:, 0], 6), return_inverse=True)
     mean = np.bincount(member, gain) / np.bincount(member)
-    return make_pattern(path.stem, np.asarray(angle, dtype=np.float64), mean, offset_to_nose_deg)
+    return make_pattern(Path(filename).stem, np.asarray(angle, dtype=np.float64), mean, offset_to_nose_deg)
