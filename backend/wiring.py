@@ -282,11 +282,12 @@ async def open_simulation(
             hub = Hub(journal.read, clock.now)
             payload = PayloadHub(settings.payload_tokens, clock.now) if settings.payload_tokens else None
             receiver = _receiver(settings, vehicle, clock, payload)
+            finder = SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg)
             missions = MissionService(
                 Equipment(
                     vehicle=vehicle,
                     receiver=receiver,
-                    finder=SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg),
+                    finder=finder,
                     pattern=pattern,
                     journal=journal,
                     publisher=hub,
@@ -298,7 +299,7 @@ async def open_simulation(
             await missions.start_up()
             if not unfinished:  # a mission in flight needs its page at once
                 await warming
-            services = Services(missions, journal, hub, settings, clock.now, payload)
+            services = Services(missions, journal, hub, settings, clock.now, payload, finder=finder, pattern=pattern)
             yield services, receiver if isinstance(receiver, EmitterAroundHome) else None
         finally:
             await asyncio.gather(warming, return_exceptions=True)

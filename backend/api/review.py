@@ -9,11 +9,12 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path, Query, Response
 
 from backend.api import summary
+from backend.api.another_antenna import another_antenna
 from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
-from backend.api.what_if import what_if
+from backend.api.what_if import SUPPOSED_KINDS, what_if
 from backend.events import Recorded
 from backend.mission.ports import TrackPoint
 from backend.wire import export
@@ -95,11 +96,12 @@ async def get_belief(
 
 @router.post("/what-if")
 async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: ServicesDep) -> WhatIf:
-    """What would have been believed and chosen with another sensor model or planner. Nothing is recorded."""
+    """What would have been believed and chosen with another sensor model, antenna or planner. Nothing is recorded."""
     await stored_mission(services, mission_id)
-    recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
+    recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
+    antenna = await another_antenna(services, mission_id, recorded, request)
     async with services.planning:
-        found = await asyncio.to_thread(what_if, mission_id, recorded, request)
+        found = await asyncio.to_thread(what_if, mission_id, recorded, request, antenna)
     if found is None:
         raise not_found("belief", f"after {request.bearings} bearings", "The mission has fewer bearings.")
     return found

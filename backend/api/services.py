@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 from backend.live.hub import Hub
 from backend.settings import Settings
 from backend.store.journal import SqlJournal
+from hardware.direction_finding.antenna import AntennaPattern
 from hardware.payload.session import PayloadHub
+from hardware.ports import DirectionFinder
 
 if TYPE_CHECKING:
     from backend.mission.service import MissionService
@@ -30,6 +32,8 @@ class Services:
     hub: Hub
     settings: Settings
     now: Callable[[], float]
+    finder: DirectionFinder = field(kw_only=True)
+    pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)

@@ -6,42 +6,56 @@ Rebuilt from the stored facts alone; nothing of it is recorded, and nothing flie
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded
+from backend.api.another_antenna import AnotherAntenna
+from backend.api.beliefs import FOLDED_KINDS
+from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, SweepRejected
 from backend.mission.area import corner_of
 from backend.mission.localization import Localization, localization
 from backend.mission.planning import next_place
 from backend.mission.state import MissionState, evolve
 from backend.spec import MissionSpec, Place
 from backend.wire.belief_frame import encode_belief
-from backend.wire.resources import WhatIf, WhatIfRequest, WhatIfStep
+from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
 from hardware.readings import GeoPoint
 from planner.types import PlannerError
 
+SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected")
+"""The events that the answer depends on: a sweep that was rejected may tell something through another antenna."""
 
-def what_if(mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest) -> WhatIf | None:
+
+def what_if(
+    mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest, antenna: AnotherAntenna | None = None
+) -> WhatIf | None:
     """None when the mission never had so many bearings. Heavy (a plan of one thread): call it off the event loop.
 
-    recorded: of backend.api.beliefs.FOLDED_KINDS, in order.
+    recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken anew, None: they stay as flown.
     """
     state, flown = _flown(recorded, wanted.bearings)
     if state is None:
         return None
     home = state.home or corner_of(state.mission.area)
-    task = localization(changed(state.mission, wanted), home, state.home_amsl_m)
-    measured = [_as_wanted(fact, wanted) for fact in state.bearings]
-    said = [task.belief_fact(measured[:count]) for count in range(wanted.bearings + 1)]
+    mission = changed(state.mission, wanted)
+    task = localization(mission, home, state.home_amsl_m)
+    supposed: list[SweepFact] = []
+    said = [task.belief_fact([])]
+    for sweeps in _sweeps_of_each(recorded, state.bearings):
+        supposed += _taken(sweeps, supposed, mission, wanted, antenna)
+        said.append(task.belief_fact(_bearings(supposed)))
     fact, belief = said[-1]
-    platform = measured[-1].place if measured else home
-    plan, no_plan = _plan(task, measured, platform)
-    frame = encode_belief(mission_id, wanted.bearings, belief.density, task.corners_lon_lat(belief), lite=True)
+    platform = state.bearings[-1].place if state.bearings else home
+    number = max((flown.place_number for flown in state.bearings), default=0) + 1
+    plan, no_plan = _plan(task, _bearings(supposed), platform, number)
+    frame = encode_belief(mission_id, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True)
     return WhatIf(
-        steps=[_step(then, flown.get(then.bearings)) for then, _ in said],
+        steps=[_step(count, then, flown.get(count)) for count, (then, _) in enumerate(said)],
         belief=fact,
         plan=plan,
         no_plan=no_plan,
         frame_base64=base64.b64encode(frame).decode(),
+        sweeps=supposed,
+        antenna=None if antenna is None else antenna.named,
     )
 
 
@@ -69,23 +83,61 @@ def _flown(recorded: Sequence[Recorded], bearings: int) -> tuple[MissionState | 
     return found, said
 
 
-def _as_wanted(fact: BearingMeasured, wanted: WhatIfRequest) -> BearingMeasured:
-    return fact if wanted.sigma_deg is None else fact.model_copy(update={"sigma_deg": wanted.sigma_deg})
+def _sweeps_of_each(recorded: Sequence[Recorded], counted: Sequence[BearingMeasured]) -> Iterator[list[SweepFact]]:
+    """For each counted bearing the sweeps that were rejected since the one before, and its own."""
+    ids = {fact.bearing_id for fact in counted}
+    sweeps: list[SweepFact] = []
+    for record in recorded:
+        match record.event:
+            case SweepRejected() as rejected:
+                sweeps.append(rejected)
+            case BearingMeasured(bearing_id=bearing_id) as measured if bearing_id in ids:
+                yield [*sweeps, measured]
+                sweeps = []
+            case _:
+                pass
 
 
-def _plan(task: Localization, measured: Sequence[BearingMeasured], platform: Place) -> tuple[PlanChosen | None, str]:
+def _taken(
+    flown: Sequence[SweepFact],
+    before: Sequence[SweepFact],
+    mission: MissionSpec,
+    wanted: WhatIfRequest,
+    antenna: AnotherAntenna | None,
+) -> list[SweepFact]:
+    """The sweeps as wanted. A place that already told its bearing would not have been measured again."""
+    told = {fact.place_number for fact in _bearings(before)}
+    taken: list[SweepFact] = []
+    for fact in flown:
+        if antenna is not None and fact.place_number in told:
+            continue
+        heard = fact if antenna is None else antenna.heard(mission, fact)
+        if heard.kind == "bearing_measured":
+            told.add(heard.place_number)
+            if wanted.sigma_deg is not None:
+                heard = heard.model_copy(update={"sigma_deg": wanted.sigma_deg})
+        taken.append(heard)
+    return taken
+
+
+def _bearings(sweeps: Sequence[SweepFact]) -> list[BearingMeasured]:
+    return [fact for fact in sweeps if isinstance(fact, BearingMeasured)]
+
+
+def _plan(
+    task: Localization, measured: Sequence[BearingMeasured], platform: Place, number: int
+) -> tuple[PlanChosen | None, str]:
     belief = task.planning_belief(task.planner_bearings(measured))
     here = task.frame.to_enu(GeoPoint(platform.lat, platform.lon))
-    number = max((fact.place_number for fact in measured), default=0) + 1
     try:
         return next_place(task, belief, measured, here, number, (), threads=1), ""
     except PlannerError as error:
         return None, str(error)
 
 
-def _step(then: BeliefUpdated, flown: BeliefUpdated | None) -> WhatIfStep:
+def _step(bearings: int, then: BeliefUpdated, flown: BeliefUpdated | None) -> WhatIfStep:
     return WhatIfStep(
-        bearings=then.bearings,
+        bearings=bearings,
         expected_rmse_m=None if then.estimate is None else then.estimate.expected_rmse_m,
         localized=then.localized,
         flown_expected_rmse_m=None if flown is None or flown.estimate is None else flown.estimate.expected_rmse_m,

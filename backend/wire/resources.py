@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from backend.events import BeliefUpdated, CandidateFact, CheckFact, EstimateFact, Phase, PlanChosen, Recorded
+from backend.events import (
+    BearingMeasured,
+    BeliefUpdated,
+    CandidateFact,
+    CheckFact,
+    EstimateFact,
+    Phase,
+    PlanChosen,
+    Recorded,
+    SweepRejected,
+)
 from backend.spec import Area, MissionSpec, Model, Place
 
 Outcome = Literal["localized", "not_localized", "aborted", "failed"]
@@ -255,13 +265,26 @@ class RecordingImport(Model):
     last_seq: int
 
 
+SweepFact = Annotated[BearingMeasured | SweepRejected, Field(discriminator="kind")]
+
+
+class PatternUpload(Model):
+    """The text of an antenna pattern: JSON, or a turntable table when `filename` ends in .csv, .tsv or .txt."""
+
+    text: str = Field(min_length=1, max_length=500_000)
+    filename: str = Field(min_length=1, max_length=255)
+
+
 class WhatIfRequest(Model):
     """A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
-    bearing, those taken and those the planner expects."""
+    bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg` (clockwise, instead of the
+    pattern's own): the stored sweeps are taken through this antenna; None of both: their bearings stay."""
 
     bearings: int = Field(ge=0, le=200)
     sigma_deg: float | None = Field(default=None, gt=0, le=60)
     outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
+    pattern: PatternUpload | None = None
+    offset_to_nose_deg: float | None = Field(default=None, ge=-360, le=360, allow_inf_nan=False)
     method: Literal["rollout", "base_policy"] | None = None
     base_policy: Literal["ellipse", "fisher"] | None = None
     selection: Literal["uniform", "sequential_halving"] | None = None
@@ -269,7 +292,7 @@ class WhatIfRequest(Model):
 
 
 class WhatIfStep(Model):
-    """After so many bearings: what would have been said, and what was (None: nothing was said then)."""
+    """After so many flown bearings: what would have been said, and what was (None: nothing was said then)."""
 
     bearings: int
     expected_rmse_m: float | None
@@ -278,12 +301,20 @@ class WhatIfStep(Model):
     flown_localized: bool | None
 
 
+class WhatIfAntenna(Model):
+    name: str
+    offset_to_nose_deg: float
+
+
 class WhatIf(Model):
     """`belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
-    binary frame (lite)."""
+    binary frame (lite). `sweeps`: what each would have told, in order, without those left out or not taken then.
+    `antenna`: through which the sweeps were taken anew, None: they were not."""
 
     steps: list[WhatIfStep]
     belief: BeliefUpdated
     plan: PlanChosen | None
     no_plan: str
     frame_base64: str
+    sweeps: list[SweepFact]
+    antenna: WhatIfAntenna | None

@@ -99,8 +99,8 @@ async def serve_fanout(port: int, folder: str, hertz: float) -> None:
         async with open_journal(settings, time.time) as journal:
             hub = Hub(journal.read, time.time)
             await journal.append("load", [MissionDrafted(spec=SPEC)])
-            missions: Any = None
-            services = Services(missions, journal, hub, settings, time.time)
+            nothing: Any = None
+            services = Services(nothing, journal, hub, settings, time.time, finder=nothing, pattern=nothing)
             publishing = asyncio.create_task(publish(services, hertz))
             yield services
             publishing.cancel()

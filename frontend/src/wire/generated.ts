@@ -283,7 +283,7 @@ export interface paths {
         put?: never;
         /**
          * Ask What If
-         * @description What would have been believed and chosen with another sensor model or planner. Nothing is recorded.
+         * @description What would have been believed and chosen with another sensor model, antenna or planner. Nothing is recorded.
          */
         post: operations["ask_what_if"];
         delete?: never;
@@ -1468,6 +1468,11 @@ export interface components {
             kind: "override";
             place: components["schemas"]["Place"];
         };
+        /** @description The text of an antenna pattern: JSON, or a turntable table when `filename` ends in .csv, .tsv or .txt. */
+        PatternUpload: {
+            text: string;
+            filename: string;
+        };
         /**
          * @description A companion computer with a radio. `age_s`: since it was last heard. `clock_offset_s`: server minus payload; its
          *     samples are corrected by it. `waiting`: samples on its disk that are still to come; `lost`: its disk was full.
@@ -2069,7 +2074,8 @@ export interface components {
         };
         /**
          * @description `belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
-         *     binary frame (lite).
+         *     binary frame (lite). `sweeps`: what each would have told, in order, without those left out or not taken then.
+         *     `antenna`: through which the sweeps were taken anew, None: they were not.
          */
         WhatIf: {
             steps: components["schemas"]["WhatIfStep"][];
@@ -2077,21 +2083,30 @@ export interface components {
             plan: components["schemas"]["PlanChosen"] | null;
             no_plan: string;
             frame_base64: string;
+            sweeps: (components["schemas"]["BearingMeasured"] | components["schemas"]["SweepRejected"])[];
+            antenna: components["schemas"]["WhatIfAntenna"] | null;
+        };
+        WhatIfAntenna: {
+            name: string;
+            offset_to_nose_deg: number;
         };
         /**
          * @description A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
-         *     bearing, those taken and those the planner expects.
+         *     bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg` (clockwise, instead of the
+         *     pattern's own): the stored sweeps are taken through this antenna; None of both: their bearings stay.
          */
         WhatIfRequest: {
             bearings: number;
             sigma_deg?: number | null;
             outlier_probability?: number | null;
+            pattern?: components["schemas"]["PatternUpload"] | null;
+            offset_to_nose_deg?: number | null;
             method?: ("rollout" | "base_policy") | null;
             base_policy?: ("ellipse" | "fisher") | null;
             selection?: ("uniform" | "sequential_halving") | null;
             estimator?: ("map" | "expected_value" | "geometric_median") | null;
         };
-        /** @description After so many bearings: what would have been said, and what was (None: nothing was said then). */
+        /** @description After so many flown bearings: what would have been said, and what was (None: nothing was said then). */
         WhatIfStep: {
             bearings: number;
             expected_rmse_m: number | null;

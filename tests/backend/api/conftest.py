@@ -25,6 +25,8 @@ from backend.spec import MissionSpec
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
+from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.payload.session import PayloadHub
 from hardware.readings import GeoPoint, Telemetry
 
@@ -89,7 +91,16 @@ async def running_services(settings: Settings) -> AsyncIterator[Services]:
     hub = Hub(journal.read, lambda: NOW_S)
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
-        yield Services(PaperMissions(journal, hub), journal, hub, settings, lambda: NOW_S, payload)
+        yield Services(
+            PaperMissions(journal, hub),
+            journal,
+            hub,
+            settings,
+            lambda: NOW_S,
+            payload,
+            finder=SparseDirectionFinder(),
+            pattern=load_pattern(SMALL_YAGI),
+        )
     finally:
         await journal.close()
 

@@ -7,13 +7,15 @@ import json
 import math
 import struct
 
+import numpy as np
 import pytest
 
-from backend.events import BearingExcluded, BearingMeasured, MissionDrafted, MissionStarted
+from backend.events import BearingExcluded, BearingMeasured, MissionDrafted, MissionStarted, SweepRejected
 from backend.mission.localization import localization
 from backend.spec import MissionSpec, Place, Polygon
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import GeoPoint, Sweep
 
 HOME = Place(lat=50.6, lon=7.2)
 FRAME = LocalFrame(GeoPoint(HOME.lat, HOME.lon))
@@ -28,6 +30,7 @@ def corner(x: float, y: float) -> tuple[float, float]:
 RING = [corner(-150, 0), corner(150, 0), corner(150, 200), corner(-150, 200), corner(-150, 0)]
 SPEC = MissionSpec(name="meadow", area=Polygon(coordinates=[RING]))
 TASK = localization(SPEC, HOME, 100.0)
+YAGI = load_pattern(SMALL_YAGI)
 
 
 def bearing(number: int, x: float, y: float) -> BearingMeasured:
@@ -58,6 +61,41 @@ async def flown(services) -> str:
         events += [fact, TASK.belief_fact(BEARINGS[:number])[0]]
     await services.journal.append("m1", events)
     return "m1"
+
+
+def sweep_of(fact: BearingMeasured) -> Sweep:
+    """One turn in a quiet field with an emitter at the fact's bearing, heard by the small Yagi over the nose."""
+    nose = np.arange(0.0, 360.0, 1.0)
+    return Sweep(
+        at_s=nose / 30.0,
+        heading_deg=nose,
+        power_db=-60.0 + YAGI.gain_at(fact.bearing_deg - nose),
+        frequency_hz=SPEC.emitter.frequency_hz,
+        position=GeoPoint(fact.place.lat, fact.place.lon),
+        altitude_amsl_m=140.0,
+        noise_floor_db=-110.0,
+    )
+
+
+@pytest.fixture
+async def heard(flown, services) -> str:
+    """The flight with its power samples."""
+    for fact in BEARINGS:
+        await services.journal.save_sweep(flown, fact.sweep_id, fact.place_number, 1, sweep_of(fact))
+    return flown
+
+
+def turned_deg(told: dict) -> list[float]:
+    """How far each sweep's bearing lies from the flown one, clockwise."""
+    flown = {fact.sweep_id: fact.bearing_deg for fact in BEARINGS}
+    return [(s["bearing_deg"] - flown[s["sweep_id"]] + 180.0) % 360.0 - 180.0 for s in told["sweeps"]]
+
+
+def pattern_file(frequency_hz: float | None, beams: int) -> dict[str, str]:
+    angle = list(range(0, 360, 5))
+    gain = [20.0 * math.log10(0.1 + abs(math.cos(math.radians(beams * a / 2.0)))) for a in angle]
+    content = {"format": "crossfix antenna pattern", "unit": "dB", "relative_bearing_deg": angle, "gain": gain}
+    return {"filename": "mine.json", "text": json.dumps(content | {"name": "mine", "frequency_hz": frequency_hz})}
 
 
 async def ask(client, mission_id: str, **changed) -> dict:
@@ -117,3 +155,59 @@ async def test_what_makes_no_sense_is_refused(client, flown, mission_id, body, s
     answer = await client.post(f"/api/missions/{mission_id}/what-if", json=body)
     assert answer.status_code == status
     assert answer.json()["title"]
+
+
+async def test_the_stored_sweeps_are_heard_anew_through_the_antenna_as_it_was(client, heard):
+    told = await ask(client, heard, bearings=3, offset_to_nose_deg=0.0)
+    assert [s["bearing_id"] for s in told["sweeps"]] == ["b1", "b2", "b3"]
+    assert turned_deg(told) == pytest.approx([0.0, 0.0, 0.0], abs=0.5)
+    assert told["antenna"] == {"name": YAGI.name, "offset_to_nose_deg": 0.0}
+
+
+async def test_another_mounting_turns_every_bearing_and_moves_the_place(client, heard):
+    as_flown, askew = await ask(client, heard), await ask(client, heard, offset_to_nose_deg=-25.0)
+    assert as_flown["antenna"] is None
+    assert turned_deg(askew) == pytest.approx([-25.0, -25.0], abs=0.5)
+    assert askew["belief"]["digest"] != as_flown["belief"]["digest"]
+
+
+async def test_through_an_antenna_that_it_does_not_look_like_a_sweep_tells_nothing(client, heard):
+    told = await ask(client, heard, pattern=pattern_file(None, beams=5))
+    assert [s["kind"] for s in told["sweeps"]] == ["sweep_rejected", "sweep_rejected"]
+    assert [step["bearings"] for step in told["steps"]] == [0, 1, 2]
+    assert told["steps"][2]["flown_expected_rmse_m"] is not None
+    assert told["belief"]["bearings"] == 0
+
+
+async def test_a_rejected_sweep_that_is_heard_now_spares_the_next_attempt(client, services):
+    first, again = BEARINGS[0].model_copy(update={"sweep_id": "s0"}), BEARINGS[0]
+    rejected = SweepRejected(
+        sweep_id="s0", place_number=1, attempt=1, quality=0.5, reason="", place=first.place, binned_db=[], fitted_db=[]
+    )
+    events = [MissionDrafted(spec=SPEC), rejected, again, TASK.belief_fact([again])[0]]
+    await services.journal.append("m1", events)
+    for fact, attempt in ((first, 1), (again, 2)):
+        await services.journal.save_sweep("m1", fact.sweep_id, 1, attempt, sweep_of(fact))
+    as_flown = await ask(client, "m1", bearings=1)
+    assert [(s["kind"], s["sweep_id"]) for s in as_flown["sweeps"]] == [
+        ("sweep_rejected", "s0"),
+        ("bearing_measured", "s1"),
+    ]
+    anew = await ask(client, "m1", bearings=1, offset_to_nose_deg=0.0)
+    assert [(s["kind"], s["sweep_id"]) for s in anew["sweeps"]] == [("bearing_measured", "s0")]
+
+
+@pytest.mark.parametrize(
+    ("changed", "status", "said"),
+    [
+        ({"offset_to_nose_deg": 10.0}, 409, "power samples of place 1 were not stored"),
+        ({"pattern": pattern_file(150e6, beams=1)}, 422, "was measured at 150.0 MHz, not 868.3 MHz"),
+        ({"pattern": {"filename": "mine.json", "text": "[" * 100_000}}, 422, "Mine.json: is not JSON"),
+        ({"pattern": {"filename": "a.csv", "text": "0, 1\n90, 2"}}, 422, "only 2 points"),
+    ],
+)
+async def test_an_antenna_that_cannot_be_tried_is_refused_with_its_reason(client, flown, changed, status, said):
+    answer = await client.post(f"/api/missions/{flown}/what-if", json={"bearings": 2} | changed)
+    assert answer.status_code == status, answer.text
+    assert said in answer.json()["detail"]
+    assert answer.json()["remedy"]
