@@ -144,28 +144,6 @@ def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
     return distance
 
 
-def segments_cross(start: FloatArray, end: FloatArray, region: Region) -> np.ndarray:
-    """Whether each segment start -> end, both (n, 2), properly crosses an edge of the region. (n,) bool."""
-    a, b = edges(region)
-    if len(a) == 0:
-        return np.zeros(len(start), dtype=bool)
-    p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
-    side_a, side_b = _cross(p, q, a), _cross(p, q, b)
-    side_p, side_q = _cross(a, b, p), _cross(a, b, q)
-    return np.asarray(((side_a * side_b < 0) & (side_p * side_q < 0)).any(axis=1))
-
-
-def segments_touch(start: FloatArray, end: FloatArray, region: Region) -> np.ndarray:
-    """Whether each segment start -> end, both (n, 2), has a point in common with an edge of the region. (n,) bool."""
-    a, b = edges(region)
-    if len(a) == 0:
-        return np.zeros(len(start), dtype=bool)
-    p, q = np.asarray(start, dtype=float)[:, None], np.asarray(end, dtype=float)[:, None]
-    apart = (np.maximum(p, q) < np.minimum(a, b)).any(axis=2) | (np.minimum(p, q) > np.maximum(a, b)).any(axis=2)
-    meet = (_cross(p, q, a) * _cross(p, q, b) <= 0) & (_cross(a, b, p) * _cross(a, b, q) <= 0)
-    return np.asarray((meet & ~apart).any(axis=1))
-
-
 def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> np.ndarray:
     """(ny, nx) bool: the square cells of size h from the south-west corner (x0, y0) that the region touches."""
     columns, rows = np.meshgrid(centres(x0 - 0.5 * h, h, nx + 1), centres(y0 - 0.5 * h, h, ny + 1))

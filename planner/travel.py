@@ -5,21 +5,23 @@ The graph's nodes are the corners of no-fly areas and of the flight area, moved 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
-from planner.geometry import edges, segments_cross, segments_touch, signed_area
+from planner.geometry import edges, signed_area
+from planner.kernels.crossing import CROSSES, TOUCHES, meetings
 from planner.policy.actions import may_fly
 from planner.types import FloatArray, PlannerError, Problem, Region
 
 CLEARANCE = 1.0
 
-_KEPT_LATTICES = 4
-_LATTICES: dict[tuple[bytes, ...], FloatArray] = {}
+_KEPT = 4
+"""Areas whose road map, and lattices whose distances, are kept: they stay the same for a mission and take a while."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RoadMap:
     """What may not be crossed, and the corners to fly around. barriers: rings. nodes: (n, 2) m.
 
@@ -32,8 +34,28 @@ class RoadMap:
     before: np.ndarray
 
 
+@dataclass(frozen=True, slots=True)
+class _Air:
+    """Where a problem lets the platform fly; equal for problems that differ in nothing else."""
+
+    flight_area: tuple[bytes, ...]
+    no_fly: tuple[bytes, ...]
+    problem: Problem = field(compare=False)
+
+
+def _air(problem: Problem) -> _Air:
+    regions = (problem.flight_area or (), problem.no_fly)
+    return _Air(*(tuple(ring.tobytes() for ring in region) for region in regions), problem)
+
+
 def road_map(problem: Problem) -> RoadMap:
     """The visibility graph of the problem's flight area and no-fly areas."""
+    return _road_map(_air(problem))
+
+
+@lru_cache(_KEPT)
+def _road_map(air: _Air) -> RoadMap:
+    problem = air.problem
     barriers = (*(problem.flight_area or ()), *problem.no_fly)
     corners = [_corners(ring, side) for ring in barriers for side in (1.0, -1.0)]
     nodes = np.concatenate(corners) if corners else np.empty((0, 2))
@@ -93,67 +115,46 @@ def straight_suffices(problem: Problem) -> bool:
     return bool((turn >= 0).all() or (turn <= 0).all())
 
 
-def lattice_distances(problem: Problem, roads: RoadMap, places: FloatArray) -> FloatArray:
-    """(l, l) m of the shortest free ways between (l, 2) places. Kept for the last few areas, since it takes a while."""
-    key = tuple(ring.tobytes() for ring in (places, *roads.barriers))
-    if key not in _LATTICES:
-        while len(_LATTICES) >= _KEPT_LATTICES:
-            _LATTICES.pop(next(iter(_LATTICES)))
-        _LATTICES[key] = _all_distances(problem, roads, places)
-    return _LATTICES[key]
+def lattice_distances(problem: Problem, places: FloatArray) -> FloatArray:
+    """(l, l) m of the shortest free ways between (l, 2) places."""
+    return _lattice_distances(_air(problem), np.asarray(places, dtype=float).tobytes())
 
 
-def _all_distances(problem: Problem, roads: RoadMap, places: FloatArray) -> FloatArray:
-    direct = np.concatenate([_lengths(problem, roads.barriers, some, places) for some in _portions(places)])
-    if len(roads.nodes) == 0:
-        return direct
+@lru_cache(_KEPT)
+def _lattice_distances(air: _Air, packed: bytes) -> FloatArray:
+    problem, places, roads = air.problem, np.frombuffer(packed).reshape(-1, 2), _road_map(air)
+    direct = _lengths(problem, roads.barriers, places, places)
     to_node = _lengths(problem, roads.barriers, places, roads.nodes)
-    from_node = np.min(to_node[:, :, None] + roads.distances, axis=1)
-    around = np.full_like(direct, np.inf)
+    from_node, around = np.full_like(to_node, np.inf), np.full_like(direct, np.inf)
+    for k in range(len(roads.nodes)):
+        np.minimum(from_node, to_node[:, k, None] + roads.distances[k], out=from_node)
     for k in range(len(roads.nodes)):
         np.minimum(around, from_node[:, k, None] + to_node[:, k], out=around)
     return np.minimum(direct, around)
 
 
-def _portions(places: FloatArray, size: int = 64) -> list[FloatArray]:
-    return [places[first : first + size] for first in range(0, len(places), size)]
-
-
-def may_cross(problem: Problem, start: FloatArray, end: FloatArray) -> bool:
-    """Whether the straight flight start -> end stays inside the flight area and out of every no-fly area."""
-    ends = np.array([start, end], dtype=float)
-    if not may_fly(problem, ends).all():
-        return False
-    return not _blocked(problem, (*(problem.flight_area or ()), *problem.no_fly), ends[:1], ends[1:])[0]
-
-
 def _shortest_ways(lengths: FloatArray) -> tuple[FloatArray, np.ndarray]:
-    """All shortest ways between (n, n) nodes after Floyd and Warshall: lengths and predecessors."""
-    n = len(lengths)
-    distances = lengths.copy()
-    before = np.where(np.isfinite(lengths), np.arange(n)[:, None], -1)
-    for k in range(n):
-        through = distances[:, k, None] + distances[k]
-        shorter = through < distances
-        distances = np.where(shorter, through, distances)
-        before = np.where(shorter, before[k], before)
-    return distances, before
+    """All shortest ways between (n, n) nodes: lengths, infinite without a way, and predecessors, negative for none."""
+    from scipy.sparse.csgraph import shortest_path  # an eighth of a start, for areas with something to fly around
+
+    return shortest_path(np.where(np.isfinite(lengths), lengths, 0.0), return_predecessors=True)
 
 
-def _blocked(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArray) -> np.ndarray:
-    """(n,) bool: straight flights that cross a barrier. One that only touches barriers (a corner, along a side) is held
-    against what may be flown at half way between touches.
+def _lengths(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArray) -> FloatArray:
+    """(n, m) m of straight flights, infinite where a barrier is crossed.
+
+    One that only touches barriers (a corner, along a side) is held against what may be flown between the touches.
     """
-    blocked = segments_cross(starts, ends, barriers)
-    for k in np.flatnonzero(~blocked & segments_touch(starts, ends, barriers)):
-        p, q = starts[k], ends[k]
-        a, _ = edges(barriers)
-        along = q - p
+    met = meetings(starts, ends, barriers)
+    a, _ = edges(barriers)
+    for i, j in zip(*np.nonzero(met == TOUCHES), strict=True):
+        p, along = starts[i], ends[j] - starts[i]
         t = (a - p) @ along / max(float(along @ along), 1e-300)
         stops = np.unique(np.concatenate([[0.0, 1.0], t[(t > 0) & (t < 1)]]))
         middles = p + (0.5 * (stops[1:] + stops[:-1]))[:, None] * along
-        blocked[k] = bool((~_near_free(problem, middles)).any())
-    return blocked
+        if not _near_free(problem, middles).all():
+            met[i, j] = CROSSES
+    return np.where(met == CROSSES, np.inf, np.hypot(*(starts[:, None] - ends).transpose(2, 0, 1)))
 
 
 def _near_free(problem: Problem, places: FloatArray, step: float = 1e-6) -> np.ndarray:
@@ -162,15 +163,6 @@ def _near_free(problem: Problem, places: FloatArray, step: float = 1e-6) -> np.n
     for dx, dy in ((step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)):
         free |= may_fly(problem, places + np.array([dx, dy]))
     return free
-
-
-def _lengths(problem: Problem, barriers: Region, starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """(n, m) m of straight flights, infinite where a barrier is crossed."""
-    if len(starts) == 0 or len(ends) == 0:
-        return np.empty((len(starts), len(ends)))
-    lengths = np.hypot(*(starts[:, None] - ends).transpose(2, 0, 1))
-    p, q = np.repeat(starts, len(ends), axis=0), np.tile(ends, (len(starts), 1))
-    return np.where(_blocked(problem, barriers, p, q).reshape(lengths.shape), np.inf, lengths)
 
 
 def _corners(ring: FloatArray, side: float) -> FloatArray:

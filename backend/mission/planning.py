@@ -21,7 +21,7 @@ from planner.belief.grid import GridBelief
 from planner.plan import expected_time_from, plan
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
-from planner.travel import travel_path
+from planner.travel import road_map, straight_suffices, travel_path
 from planner.types import Decision, FloatArray, PlannerError, Problem, Ring
 
 COST_ROLLOUTS = 200
@@ -123,6 +123,12 @@ def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFac
             )
         )
     return facts
+
+
+def lay_out_ways(task: Localization) -> None:
+    """What flying around no-fly areas needs, before anybody waits for it: seconds for a coast of a thousand corners."""
+    if not straight_suffices(task.problem):
+        road_map(task.problem)
 
 
 def way_to(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:

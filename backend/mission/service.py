@@ -24,6 +24,7 @@ from backend.mission.importing import Upload, import_facts, imported_before
 from backend.mission.localization import Localization, localization
 from backend.mission.machine import transition
 from backend.mission.patient_vehicle import MendsFailsafes, PatientVehicle
+from backend.mission.planning import lay_out_ways
 from backend.mission.ports import Status
 from backend.mission.runner import Runner
 from backend.mission.safety import Veto, battery_to_return_percent, resume_vetoes
@@ -75,6 +76,7 @@ class MissionService:
         except MissionInputError as error:
             await self._close_interrupted(mission_id, f"it can no longer be read: {error}")
             return
+        await asyncio.to_thread(lay_out_ways, task)
         runner = self._runner = Runner(mission_id, state, last_seq, task, self._equipment)
         telemetry = self._equipment.vehicle.telemetry()
         uncommanded = telemetry.controller == "pilot"

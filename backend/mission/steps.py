@@ -59,7 +59,7 @@ class Steps:
         began_s = self.equipment.clock.now()
         end = self.task.frame.to_enu(GeoPoint(effect.place.lat, effect.place.lon))
         try:
-            way = self._way(end)
+            way = await asyncio.to_thread(self._way, end)
         except PlannerError as error:
             return inputs.WorkVetoed((Veto("no_way", str(error), "choose another place"),))
         while way:

@@ -174,7 +174,7 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: Roa
         places = np.ascontiguousarray(places[may_fly(problem, places)])
     travel = np.empty((0, 0))
     if roads is not None and len(places) > 0:
-        travel = np.ascontiguousarray(lattice_distances(problem, roads, places))
+        travel = np.ascontiguousarray(lattice_distances(problem, places))
     ratios, distances = table(problem.sigma)
     motion, speed, constant, turn_rate, acceleration = _motion_numbers(problem)
     return Rules(

@@ -15,8 +15,6 @@ from planner.geometry import (
     convex_hull,
     distance_to_convex,
     region_area,
-    segments_cross,
-    segments_touch,
     signed_area,
     validate_region,
     wedge_polygon,
@@ -97,25 +95,6 @@ def test_distance_to_hull_is_shapelys(cloud, places):
     shape = shapely.MultiPoint(cloud).convex_hull
     expected = [shape.distance(shapely.Point(p)) for p in places]
     assert distance_to_convex(places, hull) == pytest.approx(expected, abs=1e-6)
-
-
-@given(stars, st.tuples(coordinate, coordinate), st.tuples(coordinate, coordinate))
-def test_crossing_the_border_is_seen(ring, p, q):
-    line, border = shapely.LineString([p, q]), shapely.Polygon(ring).exterior
-    start, end = np.array([p]), np.array([q])
-    if shapely.Polygon(ring).contains(shapely.Point(p)) and border.distance(shapely.Point(q)) > 1e-3:
-        leaves = not shapely.Polygon(ring).contains(shapely.Point(q))
-        if leaves:
-            assert segments_touch(start, end, (ring,))[0]
-    if line.distance(border) > 1e-6:
-        assert not segments_cross(start, end, (ring,))[0]
-        assert not segments_touch(start, end, (ring,))[0]
-
-
-def test_flying_through_two_corners_touches_but_does_not_cross():
-    start, end = np.array([[-1.0, -1.0]]), np.array([[11.0, 11.0]])
-    assert not segments_cross(start, end, (SQUARE,))[0]
-    assert segments_touch(start, end, (SQUARE,))[0]
 
 
 @given(stars)

@@ -48,6 +48,7 @@ async def stuck(stage: Stage) -> str:
     await stage.until(mission_id, "took_off")
     stage.vehicle.stuck = True
     await stage.until(mission_id, "flight_started")
+    await stage.until_true(lambda: "goto" in stage.vehicle.names)
     return mission_id
 
 
@@ -339,8 +340,8 @@ async def test_an_operator_may_take_the_vehicle_from_its_failsafe_which_is_no_pi
     assert "on its own way home" in stage.journal.events(mission_id)[-1].text  # type: ignore[union-attr]
     assert (await order(stage, mission_id, command)).accepted
     await stage.until_true(lambda: stage.vehicle.names[-len(sent) :] == sent)
+    await stage.until_true(lambda: fold(stage.journal.stored[mission_id]).open_alerts == ())
     assert not {"control_taken", "control_released"} & set(stage.journal.kinds(mission_id))
-    assert fold(stage.journal.stored[mission_id]).open_alerts == ()
 
 
 async def test_without_a_console_the_failsafes_own_return_is_left_to_bring_the_vehicle_home() -> None:
