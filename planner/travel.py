@@ -44,8 +44,8 @@ class _Air:
 
 
 def _air(problem: Problem) -> _Air:
-    regions = (problem.flight_area or (), problem.no_fly)
-    return _Air(*(tuple(ring.tobytes() for ring in region) for region in regions), problem)
+    flight_area = tuple(ring.tobytes() for ring in problem.flight_area or ())
+    return _Air(flight_area, tuple(ring.tobytes() for ring in problem.no_fly), problem)
 
 
 def road_map(problem: Problem) -> RoadMap:
