@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from planner.belief.grid import GridBelief, prior_belief
+from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
 from planner.policy.rollout import Rollout
 from planner.policy.simulation import HORIZON, BasePolicy, KernelName, TerminalValue, simulate
@@ -147,3 +148,4 @@ def warm_up() -> None:
     square = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]])
     problem = Problem((square,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
     plan(problem, prior_belief(problem), (), (0.0, 0.0), budget=16, threads=1)
+    meetings(square, square, (square,))
