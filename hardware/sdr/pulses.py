@@ -74,9 +74,14 @@ class PulseMeter:
 
     def feed(self, block: IqBlock) -> list[PowerSample]:
         """Pulses found in what has been heard so far, and where a whole period brought none (detected False)."""
-        if block.lost or not math.isfinite(self._start_s):
+        off_s = block.at_s - (self._start_s + self._samples.size / self.sample_rate_hz)
+        if block.lost or not abs(off_s) < self.setting.period_s / 2.0:
             self._samples, self._clipped = np.empty(0, dtype=np.complex64), np.empty(0, dtype=bool)
             self._start_s, self._skip = block.at_s, 0
+            if not block.lost:
+                self._last_pulse_s = None  # the clock was set: the rhythm's old times mean nothing
+        else:
+            self._start_s += off_s
         self._samples = np.concatenate([self._samples, block.samples])
         self._clipped = np.concatenate([self._clipped, block.clipped])
         self._advance()

@@ -18,7 +18,8 @@ DC_OFFSET_HZ = 0.15
 class IqReceiver:
     """Measures the power of carriers (ToneSetting) or pulsed tags (PulseSetting) in an IQ stream.
 
-    `silent_after_s`: samples() raises ReceiverError when the source delivers nothing for so long.
+    `silent_after_s`: samples() raises ReceiverError when the source delivers nothing for so long, or loses more than
+    half of what so long a time holds.
     """
 
     def __init__(
@@ -86,6 +87,7 @@ class IqReceiver:
         if not self._meters:
             raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
         blocks = aiter(self._source.blocks())
+        heard = lost = 0
         while self._meters:
             try:
                 async with asyncio.timeout(self._silent_after_s):
@@ -97,6 +99,14 @@ class IqReceiver:
                     f"the receiver delivered nothing for {self._silent_after_s:.0f} s; check its cable and driver"
                 ) from None
             self.lost_samples += block.lost
+            heard, lost = heard + block.samples.size, lost + block.lost
+            if heard + lost > self._silent_after_s * self._source.sample_rate_hz:
+                if lost > heard:
+                    raise ReceiverError(
+                        f"the receiver lost {100.0 * lost / (heard + lost):.0f} % of its samples: is it still there? "
+                        "If this computer is too slow for it, lower the sample rate"
+                    )
+                heard = lost = 0
             for meter in self._meters:
                 for sample in meter.feed(block):
                     yield sample

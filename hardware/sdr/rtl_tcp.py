@@ -9,11 +9,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import struct
-import time
 from collections.abc import AsyncIterator
 
 from hardware.iq import IqBlock, from_unsigned_bytes
 from hardware.ports import ReceiverError
+from hardware.sdr.sample_clock import SampleClock
 
 SET_FREQUENCY, SET_SAMPLE_RATE, SET_GAIN_MODE, SET_GAIN, SET_PPM, SET_AGC = 0x01, 0x02, 0x03, 0x04, 0x05, 0x08
 GREETING = struct.Struct(">4sII")
@@ -22,7 +22,11 @@ _RATES_HZ = ((225_001, 300_000), (900_001, 3_200_000))
 
 
 class RtlTcpSource:
-    """IQ from an rtl_tcp server. Manual gain; the chip's own AGC is switched off."""
+    """IQ from an rtl_tcp server. Manual gain; the chip's own AGC is switched off.
+
+    settle_s: dropped from the front. The server sends bursts of 131072 samples, begins before it is tuned, and only a
+    whole burst tells how old its first sample is.
+    """
 
     def __init__(
         self,
@@ -32,6 +36,7 @@ class RtlTcpSource:
         gain_db: float = 28.0,
         ppm: int = 0,
         timeout_s: float = 5.0,
+        settle_s: float = 1.0,
     ) -> None:
         if not any(low <= sample_rate_hz <= high for low, high in _RATES_HZ):
             raise ReceiverError(
@@ -39,7 +44,7 @@ class RtlTcpSource:
             )
         self._host, self._port = host, port
         self._rate, self._gain, self._ppm = sample_rate_hz, gain_db, ppm
-        self._timeout_s = timeout_s
+        self._timeout_s, self._settle_s = timeout_s, settle_s
         self._reader: asyncio.StreamReader | None = None
         self._writer: asyncio.StreamWriter | None = None
 
@@ -102,8 +107,8 @@ class RtlTcpSource:
         if reader is None:
             raise ReceiverError("rtl_tcp is not connected: open it first")
         size = 2 * int(self._rate / 50.0)
-        sent = 0
-        first_s = 0.0
+        clock = SampleClock(self._rate)
+        received = 0
         while self._reader is reader:
             try:
                 raw = await reader.readexactly(size)
@@ -114,12 +119,10 @@ class RtlTcpSource:
             except OSError as error:
                 raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
             samples, clipped = from_unsigned_bytes(raw)
-            # time by counting samples, pulled back when the wall clock says that the stream runs late
-            now = time.time() - samples.size / self._rate
-            at_s = now if sent == 0 else min(first_s + sent / self._rate, now)
-            first_s = at_s - sent / self._rate
-            sent += samples.size
-            yield IqBlock(at_s, samples, clipped)
+            at_s = clock.arrived(received, samples.size)
+            received += samples.size
+            if received > self._settle_s * self._rate:
+                yield IqBlock(at_s, samples, clipped)
 
     async def close(self) -> None:
         writer, self._reader, self._writer = self._writer, None, None

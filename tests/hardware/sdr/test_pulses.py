@@ -79,3 +79,18 @@ def test_impossible_pulses_are_refused(bad: dict[str, float]) -> None:
 def test_too_slow_sampling_is_refused() -> None:
     with pytest.raises(SpectrumError, match="raise the sample rate"):
         PulseMeter(CENTRE_HZ, CENTRE_HZ, 500.0, setting=PulseSetting(width_s=0.005, search_hz=100.0))
+
+
+def test_blocks_whose_times_are_corrected_and_a_clock_that_is_set_carry_the_pulses_with_them() -> None:
+    samples, centres = stream(40.0, -40.0)
+    meter = PulseMeter(CENTRE_HZ, CENTRE_HZ, RATE_HZ, setting=SETTING)
+    pulses: list[PowerSample] = []
+    for start in range(0, samples.size, 600):
+        part, at_s = samples[start : start + 600], start / RATE_HZ
+        off_s = 0.4 if at_s < 0.2 else 0.0 if at_s < 20.0 else -86_400.0
+        pulses += [p for p in meter.feed(IqBlock(at_s + off_s, part, clipped_at_full_scale(part))) if p.detected]
+    before = [p.at_s for p in pulses if p.at_s > 0.0]
+    after = [p.at_s + 86_400.0 for p in pulses if p.at_s < 0.0]
+    assert all(np.abs(centres - at).min() < 0.012 for at in before + after)
+    assert len(before) >= 13
+    assert len(after) >= 11

@@ -69,7 +69,7 @@ async def running(server: RtlTcpServer) -> AsyncIterator[RtlTcpServer]:
 
 async def test_power_of_a_tone_through_the_whole_chain() -> None:
     async with running(RtlTcpServer(433_920_000.0)) as server:
-        receiver = IqReceiver(RtlTcpSource("127.0.0.1", server.port, RATE_HZ, gain_db=28.0))
+        receiver = IqReceiver(RtlTcpSource("127.0.0.1", server.port, RATE_HZ, gain_db=28.0, settle_s=0.1))
         await receiver.open(433_920_000.0)
         heard = []
         async for sample in receiver.samples():
