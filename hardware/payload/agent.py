@@ -38,6 +38,8 @@ from hardware.ports import HardwareError, HearsPulses, Receiver, ReceiverError
 from hardware.readings import PowerSample, Pulses
 
 LOG = logging.getLogger("crossfix.payload")
+CLOCK_DRIFT_S = 0.01
+"""Between eight round trips, at 250 ppm."""
 THERMAL_ZONE = Path("/sys/class/thermal/thermal_zone0/temp")
 
 
@@ -264,9 +266,7 @@ class PayloadAgent:
             elif isinstance(message, Tune):
                 self._tune(message.frequency_hz, message.pulses)
             elif isinstance(message, Pong):
-                back_s = self._now()
-                trip_s = max(back_s - message.agent_s, 0.0)
-                self._round_trips.append((trip_s, message.server_s - (message.agent_s + back_s) / 2.0))
+                self._measured(message)
             elif isinstance(message, Refused):
                 raise PayloadProtocolError(message.reason)
 
@@ -281,6 +281,17 @@ class PayloadAgent:
             self._frequency_hz, self._pulses = frequency_hz, wanted
             self._spool.frequency_hz = frequency_hz
             self._retune.set()
+
+    def _measured(self, pong: Pong) -> None:
+        """An offset errs by at most half its round trip: what contradicts the best so far shows a set clock."""
+        back_s = self._now()
+        trip_s = max(back_s - pong.agent_s, 0.0)
+        offset_s = pong.server_s - (pong.agent_s + back_s) / 2.0
+        if self._round_trips:
+            best_s, known_s = min(self._round_trips)
+            if abs(offset_s - known_s) > (trip_s + best_s) / 2.0 + CLOCK_DRIFT_S:
+                self._round_trips.clear()
+        self._round_trips.append((trip_s, offset_s))
 
     def _clock_offset(self) -> float | None:
         return min(self._round_trips)[1] if self._round_trips else None

@@ -17,6 +17,7 @@ import pytest
 from websockets.asyncio.server import ServerConnection, serve
 
 from hardware.payload.agent import AgentSettings, PayloadAgent
+from hardware.payload.messages import Pong
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.payload.spool import Spool
@@ -191,6 +192,27 @@ async def test_receiver_fault_is_told_and_mended(tmp_path: Path) -> None:
         await until(lambda: states["payload"].receiver_ok)
         await until(lambda: states["payload"].clock_offset_s is not None)
         assert abs(states["payload"].clock_offset_s or 1.0) < 0.5
+
+
+def test_a_clock_that_is_set_replaces_the_offset_at_once(tmp_path: Path) -> None:
+    clock = {"agent": 1000.0, "server": 1000.2}
+    spool = Spool(tmp_path / "samples.sqlite")
+    agent = PayloadAgent(AgentSettings((), TOKEN), CountingReceiver(), spool, FREQUENCY_HZ, lambda: clock["agent"])
+
+    def offset_after(trip_s: float, set_by_s: float = 0.0) -> float | None:
+        sent_s = clock["agent"]
+        clock["agent"] += trip_s + set_by_s
+        clock["server"] += trip_s
+        agent._measured(Pong(agent_s=sent_s, server_s=clock["server"] - trip_s / 2.0))
+        return agent._clock_offset()
+
+    assert offset_after(0.010) == pytest.approx(0.2)
+    assert offset_after(0.300) == pytest.approx(0.2)
+    clock["agent"] += 5000.0
+    assert offset_after(0.200) == pytest.approx(0.2 - 5000.0)
+    offset_after(0.050, set_by_s=-40.0)  # set while the answer was under way: half of it is missed ...
+    assert offset_after(0.200) == pytest.approx(0.2 - 4960.0)  # ... and mended by the next
+    spool.close()
 
 
 async def test_samples_the_wire_cannot_carry_are_left_out_and_told(tmp_path: Path) -> None:
