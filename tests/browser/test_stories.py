@@ -230,6 +230,8 @@ def test_the_pilot_takes_over_and_keeps_control_and_the_alert_sounds_where_it_is
         expect(screen.part("alert-banner")).to_contain_text("pilot")
         screen.expect_phase("manual")
         expect(screen.part("control")).to_contain_text("pilot has control")
+        covered, tools = screen.part("alert-banner").bounding_box(), screen.part("map-fit").bounding_box()
+        assert covered and tools and covered["y"] + covered["height"] <= tools["y"], "the alert covers no tool"
     assert loud.evaluate("tones") == [660, 660]
     ((language, text),) = loud.evaluate("spoken")
     assert language == "en"

@@ -37,18 +37,20 @@ const happened = computed<MissionState>(() =>
   cursor.value === null ? liveMission.value : missionAt(events.value, cursor.value),
 );
 
+/** The bearings that count at the moment shown, as they were flown. */
+export const flownBearings = computed(() => happened.value.bearings.filter((b) => !b.excluded).map((b) => b.fact));
+
 /** Only in the review, and only where as many bearings count as it was asked for. */
 export const supposedHere = computed<Supposed | null>(() => {
   const what = supposed.value;
-  const { missionId, bearings } = happened.value;
-  if (!what || cursor.value === null || what.missionId !== missionId) return null;
-  return bearings.filter((b) => !b.excluded).length === what.bearings ? what : null;
+  if (!what || cursor.value === null || what.missionId !== happened.value.missionId) return null;
+  return flownBearings.value.length === what.bearings ? what : null;
 });
 
 export const mission = computed<MissionState>(() => {
   const real = happened.value;
   const answer = supposedHere.value?.answer;
-  return answer ? suppose(real, answer.belief, answer.plan) : real;
+  return answer ? suppose(real, answer) : real;
 });
 
 /** UTC of the event looked at, ms; null while live. */

@@ -44,6 +44,13 @@ it("gives the server's values in the operator's units", () => {
   expect(told("135181 m2 to fly in")).toBe("33.40 acres Flugraum");
 });
 
+it("knows a sentence that the server began with a capital and ended with a dot", () => {
+  tellIn(table);
+  expect(told("The area has only 7 m2.")).toBe("Das Gebiet hat nur 7 m².");
+  expect(told("Draw at least 100 m2.")).toBe("Mindestens 100 m² zeichnen.");
+  expect(told("The moon is in the way.")).toBe("The moon is in the way.");
+});
+
 it("shows a sentence that it does not know as it came", () => {
   tellIn(table);
   expect(told("the moon is in the way")).toBe("the moon is in the way");

@@ -26,14 +26,24 @@ export function tellIn(table: Record<string, string> | null): void {
 /** "...reason (not yet: this; not yet: that)", as the end of a mission is told. */
 const WITH_REASONS = /^(.+?) \((not yet: .+)\)$/s;
 
+/** A sentence that the server began with a capital and ended with a dot, as it stands in the table. */
+const bare = (text: string) => (/^[A-Z].*[^.]\.$/s.test(text) ? text[0]!.toLowerCase() + text.slice(1, -1) : text);
+
 export function translated(text: string, known: readonly Sentence[]): string {
+  const found = inTable(text, known);
+  if (found !== null) return found;
+  const inner = inTable(bare(text), known);
+  return inner === null ? text : `${inner[0]!.toUpperCase()}${inner.slice(1)}.`;
+}
+
+function inTable(text: string, known: readonly Sentence[]): string | null {
   const more = WITH_REASONS.exec(text);
   if (more) return `${translated(more[1]!, known)} (${more[2]!.split("; ").map((part) => translated(part, known)).join("; ")})`;
   for (const { pattern, german } of known) {
     const found = pattern.exec(text);
     if (found) return german.replace(/\{(\d)\}/g, (_, place: string) => value(found[Number(place)]!, known));
   }
-  return text;
+  return null;
 }
 
 const value = (text: string, known: readonly Sentence[]): string =>

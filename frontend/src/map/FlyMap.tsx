@@ -7,6 +7,7 @@ import { settings } from "../app/settings";
 import { cursor, live, mission, nowMs, path, shownBelief, source, vehicle } from "../app/store";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
 import { t, told, type MessageKey } from "../i18n";
+import { bannerPx } from "../panels/AlertsButton";
 import { OLD_AFTER_S } from "../state/age";
 import { boundsOf, lonLat } from "../state/geometry";
 import { inFlight, isHomeward } from "../state/mission";
@@ -188,7 +189,7 @@ function frameAll(map: GlMap, animate: boolean): void {
     ...(at && inFlight(mission.peek().phase) ? [at] : []),
   ];
   const box = boundsOf(points);
-  if (box) fit(map, box, animate);
+  if (box) fit(map, box, animate, bannerPx.peek());
 }
 
 let framedFor: string | null = null;
@@ -285,11 +286,20 @@ export function FlyMap() {
     created.on("click", (event: MapMouseEvent) => {
       if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
     });
+    created.on("mousemove", "candidates", ({ features }) => {
+      highlighted.value = (features?.[0]?.properties["index"] as number | undefined) ?? null;
+    });
+    created.on("mouseleave", "candidates", () => {
+      highlighted.value = null;
+    });
     created.on("movestart", (event) => {
       if ("originalEvent" in event && event.originalEvent) framing = false;
     });
     created.on("resize", () => {
       if (framing) frameAll(created, false);
+    });
+    const stopBanner = bannerPx.subscribe(() => {
+      if (framing && framedFor !== null) frameAll(created, false);
     });
     const stopHover = watchHover(created, (place, aborted) => {
       const id = mission.peek().missionId;
@@ -298,6 +308,7 @@ export function FlyMap() {
     });
     return () => {
       stopFraming();
+      stopBanner();
       stopHover();
       unbind();
       created.remove();

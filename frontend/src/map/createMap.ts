@@ -95,11 +95,18 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
   return map;
 }
 
-/** Pixels that the map's tools and its scale cover along its edges. */
-const COVERED = { top: 60, right: 62, bottom: 44, left: 14 };
+/** Pixels that the map's controls and its scale cover along its edges; its tools stand at the top left. */
+const COVERED = { top: 14, right: 62, bottom: 44, left: 14 };
+const TOOLS = { width: 380, height: 60 };
 
-export function fit(map: GlMap, box: [number, number, number, number], animate: boolean): void {
+/** As large as it can be seen, below the tools or beside them. bannerPx: what an alert covers besides, at the top. */
+export function fit(map: GlMap, box: [number, number, number, number], animate: boolean, bannerPx = 0): void {
   const share = Math.min(1, map.getContainer().clientHeight / 360);
-  const padding = { ...COVERED, top: share * COVERED.top, bottom: share * COVERED.bottom };
-  map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
+  const bottom = share * COVERED.bottom;
+  const ways = [
+    { ...COVERED, bottom, top: share * TOOLS.height + bannerPx },
+    { ...COVERED, bottom, top: COVERED.top + bannerPx, left: TOOLS.width },
+  ];
+  const zoom = ways.map((padding) => map.cameraForBounds(box, { padding })?.zoom ?? -1);
+  map.fitBounds(box, { padding: ways[zoom[1]! > zoom[0]! ? 1 : 0]!, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }

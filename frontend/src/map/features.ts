@@ -4,6 +4,7 @@ import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../stat
 import type { MissionState } from "../state/mission";
 import { marginOutline } from "../state/areas";
 import { polarScale, radius } from "../state/polar";
+import { formatDuration } from "../units/quantities";
 import type { Area, MissionSpec } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 
@@ -131,7 +132,7 @@ export function candidateFeatures(mission: Pick<MissionState, "plan">, lit: numb
           index,
           shade: roundShade(candidate, plan, chosen),
           lit: index === lit,
-          label: `${Math.round(candidate.value_s)} s`,
+          label: formatDuration(candidate.value_s),
         }),
       ),
   );

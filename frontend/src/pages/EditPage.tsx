@@ -177,7 +177,7 @@ export function EditPage({ route }: { route: EditRoute }) {
   const load = () => {
     setProblem(null);
     specFor(route).then(
-      ({ spec, suggested }) => update({ key, spec, hasArea: true, suggested, text: {} }),
+      ({ spec, suggested }) => (draft.value = { key, spec, hasArea: true, suggested, text: {} }), // kept from the first change on
       (error: unknown) => setProblem(asProblem(error)),
     );
   };

@@ -4,7 +4,7 @@ import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { mission, source } from "../app/store";
 import { t } from "../i18n";
-import { AlertBanner } from "../panels/AlertsButton";
+import { AlertBanner, bannerPx } from "../panels/AlertsButton";
 import { AntennaCheck } from "../panels/AntennaCheck";
 import { EstimatePanel } from "../panels/EstimatePanel";
 import { ImportRecording } from "../panels/ImportRecording";
@@ -13,6 +13,8 @@ import { PreflightPanel } from "../panels/PreflightPanel";
 import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
+
+const GAP_PX = 8;
 
 /** The 3D scene instead of the map. */
 const scene = signal(false);
@@ -29,7 +31,7 @@ function MapArea() {
     }, () => setState("none"));
   }, []);
   return (
-    <div class="map-area" data-tour="2">
+    <div class="map-area" data-tour="2" style={{ "--banner": bannerPx.value === 0 ? "0px" : `${bannerPx.value + GAP_PX}px` }}>
       {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
       {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
       {typeof state === "object" && (scene.value ? <Scene /> : <state.Map />)}

@@ -7,6 +7,7 @@ import { overlayIds, showOverlay } from "../map/overlays";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as maps from "../sources/mapsApi";
 import { upload } from "../sources/upload";
+import { formatNumber } from "../units/quantities";
 import type { Problem } from "../wire";
 
 type Target = "maps" | "overlays";
@@ -59,7 +60,7 @@ function Packages({ list, onChange }: { list: maps.MapList; onChange: () => void
             <strong>{map.name}</strong>
           </label>
           <span class="muted">
-            {t("maps.size", { size: (map.size_bytes / 1e6).toFixed(1), minimum: map.min_zoom, maximum: map.max_zoom })} {map.attribution}
+            {t("maps.size", { size: formatNumber(map.size_bytes / 1e6, 1), minimum: map.min_zoom, maximum: map.max_zoom })} {map.attribution}
           </span>
           <button
             onClick={() => {

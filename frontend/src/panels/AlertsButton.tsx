@@ -1,5 +1,6 @@
 // Warning, caution, advisory: how many are open, the list, acknowledgement, mute.
-import { computed } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { overlay, toggle } from "../app/overlay";
 import { change, settings } from "../app/settings";
 import { live, mission, shownTimeMs } from "../app/store";
@@ -84,13 +85,29 @@ export function AlertsButton() {
 
 const sentence = (text: string) => (/[.!?]$/.test(text) ? text : `${text}.`);
 
+/** Pixels that the banner takes from the map's top; 0 without one. The map's tools and its frame keep clear of it. */
+export const bannerPx = signal(0);
+
 /** The most urgent open alert, over the map until somebody acknowledges it. */
 export function AlertBanner() {
   const first = sortAlerts(open.value)[0];
-  if (!first || alertRank(first.level) > alertRank("caution")) return null;
+  const shown = first !== undefined && alertRank(first.level) <= alertRank("caution");
+  const box = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    if (!box.current) return;
+    const measured = new ResizeObserver(([entry]) => {
+      bannerPx.value = Math.ceil(entry!.borderBoxSize[0]!.blockSize);
+    });
+    measured.observe(box.current);
+    return () => {
+      measured.disconnect();
+      bannerPx.value = 0;
+    };
+  }, [shown]);
+  if (!shown) return null;
   const id = live.value.mission.missionId;
   return (
-    <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner">
+    <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner" ref={box}>
       <span>
         <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {sentence(told(first.text))}{" "}
         {first.remedy && t("problem.remedy", { remedy: told(first.remedy) })}

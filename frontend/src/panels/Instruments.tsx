@@ -9,7 +9,7 @@ import { t, type MessageKey } from "../i18n";
 import { Payloads } from "./Payloads";
 import { ageS, freshness } from "../state/age";
 import { emptySeries, extend, type Series } from "../state/series";
-import { formatAge, formatBearing, formatClock, formatLength, formatSpeed } from "../units/quantities";
+import { formatAge, formatBearing, formatClock, formatLength, formatSpeed, formatNumber } from "../units/quantities";
 
 const series = signal<Series>(emptySeries);
 
@@ -37,7 +37,7 @@ function Values() {
     { label: "instruments.speed", value: value?.ground_speed_m_s == null ? null : formatSpeed(value.ground_speed_m_s, units), age: position },
     { label: "instruments.climb", value: value?.climb_m_s == null ? null : formatSpeed(value.climb_m_s, units), age: position },
     { label: "instruments.heading", value: value?.heading_deg == null ? null : formatBearing(value.heading_deg), age: ageS(value?.heading_age_s, at, now) },
-    { label: "instruments.power", value: status?.value.receiver_power_db == null ? null : `${status.value.receiver_power_db.toFixed(1)} dB`, age: heard },
+    { label: "instruments.power", value: status?.value.receiver_power_db == null ? null : `${formatNumber(status.value.receiver_power_db, 1)} dB`, age: heard },
     { label: "instruments.viewers", value: status ? String(status.value.viewers) : null, age: ageS(0, status?.atMs ?? null, now) },
     { label: "instruments.database", value: status ? t(`instruments.database.${status.value.database}`) : null, age: ageS(0, status?.atMs ?? null, now) },
     { label: "instruments.dropped", value: value ? String(value.dropped) : null, age: ageS(0, at, now) },

@@ -26,6 +26,9 @@ function roundWords(candidate: CandidateFact): string {
 
 function CandidateTable({ plan }: { plan: PlanChosen }) {
   const ranked = rankCandidates(plan);
+  const shown = ranked.filter(({ index }, place) => place < SHOWN || index === highlighted.value);
+  const lit = useRef<HTMLTableRowElement>(null);
+  useEffect(() => lit.current?.scrollIntoView({ block: "nearest" }), [highlighted.value]);
   const canPropose = cursor.value === null && !mission.value.ended;
   return (
     <table class="candidates" data-testid="candidates">
@@ -40,9 +43,10 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
         </tr>
       </thead>
       <tbody>
-        {ranked.slice(0, SHOWN).map(({ candidate, index, chosen }) => (
+        {shown.map(({ candidate, index, chosen }) => (
           <tr
             key={index}
+            ref={highlighted.value === index ? lit : null}
             data-testid="candidate"
             data-chosen={chosen}
             class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}

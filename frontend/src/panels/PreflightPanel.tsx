@@ -1,11 +1,12 @@
 // Before the start: the checklist that refuses, with remedies, and the slide that starts.
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import { source } from "../app/store";
-import { mission } from "../app/store";
+import { settings } from "../app/settings";
+import { mission, source } from "../app/store";
 import { asProblem, report, send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { t, told, toldName } from "../i18n";
+import { formatPlace, parsePlace } from "../units/coordinates";
 import { ProblemNote } from "./ProblemNote";
 
 const checking = signal(false);
@@ -22,6 +23,12 @@ export async function runPreflight(missionId: string): Promise<void> {
   } finally {
     checking.value = false;
   }
+}
+
+/** What a check found; a place in the operator's notation. */
+function detailWords(detail: string): string {
+  const place = /^-?\d+\.\d+, -?\d+\.\d+$/.test(detail) ? parsePlace(detail) : null;
+  return place ? formatPlace(place, settings.value.coordinates) : told(detail);
 }
 
 export function PreflightPanel({ missionId }: { missionId: string }) {
@@ -55,7 +62,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
                     {check.ok ? "✓" : check.blocking ? "✕" : "!"}
                   </span>
                   <span>
-                    <strong>{toldName(check.name)}</strong> {told(check.detail)}
+                    <strong>{toldName(check.name)}</strong> {detailWords(check.detail)}
                     {!check.ok && check.remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: told(check.remedy) })}</em>}
                   </span>
                 </li>

@@ -6,10 +6,10 @@ import type { Problem } from "../wire";
 export function ProblemText({ problem }: { problem: Problem }) {
   return (
     <>
-      <strong>{problem.title}.</strong> {told(problem.detail)}
+      <strong>{told(problem.title)}.</strong> {told(problem.detail)}
       {problem.errors.map((e) => (
         <div class="problem-field" key={e.field}>
-          {e.field}: {e.message}
+          {e.field}: {told(e.message)}
         </div>
       ))}
       {problem.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: told(problem.remedy) })}</div>}

@@ -1,7 +1,7 @@
 // The newest sweep, or the one picked: plot, bearing, quality, why it was refused, leave it out.
 import { useState } from "preact/hooks";
 import { settings } from "../app/settings";
-import { cursor, live, mission } from "../app/store";
+import { cursor, live, mission, supposedHere } from "../app/store";
 import { send } from "../commands/send";
 import { t, told } from "../i18n";
 import type { MissionState } from "../state/mission";
@@ -108,6 +108,7 @@ export function SweepPanel() {
     <section class="panel sweep" data-testid="sweep" data-tour="4" aria-label={t("sweep.title")}>
       <h2>
         {t("sweep.title")}
+        {supposedHere.value && <span class="supposed">{t("whatIf.mark")}</span>}
         {sweeps.length > 0 && (
           <select
             aria-label={t("sweep.choose")}

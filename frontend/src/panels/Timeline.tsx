@@ -112,10 +112,14 @@ function Log({ all }: { all: readonly Recorded[] }) {
   useEffect(() => {
     const box = list.current;
     if (!box) return;
-    const row = box.querySelector<HTMLElement>('[aria-current="true"]');
-    if (row) box.scrollTop = row.offsetTop - box.clientHeight / 2;
-    else box.scrollTop = box.scrollHeight;
-  }, [shown.length, current]);
+    const settle = () => {
+      const row = box.querySelector<HTMLElement>('[aria-current="true"]');
+      box.scrollTop = row ? row.offsetTop - box.clientHeight / 2 : box.scrollHeight;
+    };
+    const resized = new ResizeObserver(settle); // tells at once, and whenever the page's size changes
+    resized.observe(box);
+    return () => resized.disconnect();
+  }, [shown.length, current, all.length === 0]);
   if (all.length === 0) return <p class="muted log-empty">{t("timeline.empty")}</p>;
   return (
     <ol class="log" ref={list} data-testid="event-log" aria-label={t("timeline.events")} tabIndex={0}>

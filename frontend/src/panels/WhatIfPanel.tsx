@@ -2,12 +2,12 @@
 import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { settings } from "../app/settings";
-import { mission, supposed, supposedHere } from "../app/store";
+import { flownBearings, mission, supposed, supposedHere } from "../app/store";
 import { asProblem } from "../commands/send";
-import { t, type MessageKey } from "../i18n";
+import { t, told, type MessageKey } from "../i18n";
 import * as api from "../sources/api";
-import { formatLength } from "../units/quantities";
-import type { Problem, WhatIf, WhatIfRequest } from "../wire";
+import { formatBearing, formatLength, formatNumber } from "../units/quantities";
+import type { BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { decodeBeliefFrame } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
 
@@ -23,12 +23,21 @@ type PlannerName = keyof typeof PLANNERS;
 
 const sigma = signal("");
 const outliers = signal("");
+const mounting = signal("");
+const pattern = signal<File | null>(null);
 const planner = signal<PlannerName>("flown");
 
 /** A typed number, null for an empty field; NaN for what is none. */
 const typed = (text: string): number | null => (text.trim() === "" ? null : Number(text.replace(",", ".")));
 
 const bytesOf = (base64: string): ArrayBuffer => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
+
+/** What a sweep tells: its bearing, or that it tells nothing; null when it would not have been taken. */
+function sweepWords(fact: BearingMeasured | WhatIf["sweeps"][number] | undefined): { text: string; why?: string } | null {
+  if (!fact) return null;
+  if (fact.kind === "sweep_rejected") return { text: t("whatIf.rejected"), why: told(fact.reason) };
+  return { text: t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) }) };
+}
 
 function Steps({ answer }: { answer: WhatIf }) {
   const units = settings.value.units;
@@ -44,31 +53,80 @@ function Steps({ answer }: { answer: WhatIf }) {
         </tr>
       </thead>
       <tbody>
-        {answer.steps.slice(1).map((step) => (
-          <tr key={step.bearings}>
-            <td>{step.bearings}</td>
-            <td>{words(step.flown_expected_rmse_m, step.flown_localized)}</td>
-            <td>{words(step.expected_rmse_m, step.localized)}</td>
-          </tr>
-        ))}
+        {answer.steps.slice(1).map((step, index) => {
+          const flown = flownBearings.value[index];
+          const would = answer.sweeps.findLast((s) => s.place_number === flown?.place_number);
+          const [before, then] = [sweepWords(flown), sweepWords(would)];
+          return (
+            <tr key={step.bearings}>
+              <td>{step.bearings}</td>
+              <td>
+                {words(step.flown_expected_rmse_m, step.flown_localized)}
+                <small>{before?.text}</small>
+              </td>
+              <td>
+                {words(step.expected_rmse_m, step.localized)}
+                <small title={then?.why}>{then?.text}</small>
+              </td>
+            </tr>
+          );
+        })}
       </tbody>
     </table>
+  );
+}
+
+function Antenna() {
+  return (
+    <>
+      <label>
+        {t("whatIf.mounting")}
+        <input data-testid="what-if-mounting" inputMode="decimal" placeholder={t("whatIf.asItIs")} value={mounting.value} onInput={(e) => (mounting.value = e.currentTarget.value)} />
+      </label>
+      <div class="what-if-pattern">
+        <label class="button">
+          {pattern.value?.name ?? t("whatIf.pattern")}
+          <input
+            class="visually-hidden"
+            type="file"
+            accept=".json,.csv,.tsv,.txt"
+            data-testid="what-if-pattern"
+            onChange={(e) => {
+              pattern.value = e.currentTarget.files?.[0] ?? null;
+              e.currentTarget.value = "";
+            }}
+          />
+        </label>
+        {pattern.value && (
+          <button class="icon" aria-label={t("whatIf.pattern.remove")} onClick={() => (pattern.value = null)}>
+            ✕
+          </button>
+        )}
+      </div>
+    </>
   );
 }
 
 export function WhatIfPanel() {
   const [asking, setAsking] = useState(false);
   const [problem, setProblem] = useState<Problem | null>(null);
-  const { missionId, bearings, spec } = mission.value;
-  const counted = bearings.filter((b) => !b.excluded).length;
+  const { missionId, spec } = mission.value;
+  const counted = flownBearings.value.length;
   const shown = supposedHere.value;
   if (!missionId || !spec) return null;
   const ask = async () => {
     setAsking(true);
     setProblem(null);
     const share = typed(outliers.value);
-    const wanted = { bearings: counted, sigma_deg: typed(sigma.value), outlier_probability: share === null ? null : share / 100, ...PLANNERS[planner.value] };
     try {
+      const wanted = {
+        bearings: counted,
+        sigma_deg: typed(sigma.value),
+        outlier_probability: share === null ? null : share / 100,
+        offset_to_nose_deg: typed(mounting.value),
+        pattern: pattern.value && { filename: pattern.value.name, text: await pattern.value.text() },
+        ...PLANNERS[planner.value],
+      };
       const answer = await api.whatIf(missionId, wanted as WhatIfRequest);
       supposed.value = { missionId, bearings: counted, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
     } catch (error) {
@@ -77,10 +135,17 @@ export function WhatIfPanel() {
       setAsking(false);
     }
   };
-  const unreadable = [sigma, outliers].some((field) => Number.isNaN(typed(field.value)));
+  const unreadable = [sigma, outliers, mounting].some((field) => Number.isNaN(typed(field.value)));
   return (
     <details class="more what-if" data-testid="what-if" open={shown !== null}>
       <summary>{t("whatIf.title")}</summary>
+      {shown && <Steps answer={shown.answer} />}
+      {shown?.answer.antenna && (
+        <p class="muted" data-testid="what-if-antenna">
+          {t("whatIf.antenna", { name: shown.answer.antenna.name, offset: formatNumber(shown.answer.antenna.offset_to_nose_deg, 0) })}
+        </p>
+      )}
+      {shown?.answer.plan === null && <p class="muted">{t("whatIf.noPlan", { reason: shown.answer.no_plan })}</p>}
       <div class="what-if-fields">
         <label>
           {t("whatIf.sigma")}
@@ -90,6 +155,7 @@ export function WhatIfPanel() {
           {t("whatIf.outliers")}
           <input data-testid="what-if-outliers" inputMode="decimal" placeholder={String(100 * spec.sensor.outlier_probability)} value={outliers.value} onInput={(e) => (outliers.value = e.currentTarget.value)} />
         </label>
+        <Antenna />
         <label>
           {t("whatIf.planner")}
           <select data-testid="what-if-planner" value={planner.value} onChange={(e) => (planner.value = e.currentTarget.value as PlannerName)}>
@@ -112,8 +178,6 @@ export function WhatIfPanel() {
         )}
       </div>
       {problem && <ProblemBox problem={problem} />}
-      {shown && <Steps answer={shown.answer} />}
-      {shown?.answer.plan === null && <p class="muted">{t("whatIf.noPlan", { reason: shown.answer.no_plan })}</p>}
     </details>
   );
 }

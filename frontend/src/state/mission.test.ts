@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { phase, record, someBearing, somePlan, someSpec } from "./examples";
-import { emptyMission, foldMission, inFlight, isOver, missionAt } from "./mission";
-import type { MissionEvent } from "../wire";
+import { emptyMission, foldMission, inFlight, isOver, missionAt, suppose } from "./mission";
+import type { BeliefUpdated, MissionEvent } from "../wire";
 
 const fold = (...events: MissionEvent[]) => missionAt(record(...events), Infinity);
 
@@ -71,4 +71,20 @@ it("a mission flies or is over, never both", () => {
   }
   expect(inFlight("hold")).toBe(true);
   expect(inFlight("ready")).toBe(false);
+});
+
+it("shows what the sweeps would have told in the place of what they told, each at its own moment", () => {
+  const flown = fold(
+    someBearing({ bearing_id: "a", sweep_id: "sa" }),
+    someBearing({ bearing_id: "b", sweep_id: "sb" }),
+    someBearing({ bearing_id: "c", sweep_id: "sc" }),
+    { kind: "bearing_excluded", bearing_id: "c", by: "operator", reason: "" },
+  );
+  const nothing = { kind: "sweep_rejected", sweep_id: "sb", place_number: 2, attempt: 1, quality: 0.1, reason: "x", place: { lat: 1, lon: 2 }, binned_db: [], fitted_db: [] } as const;
+  const belief = { kind: "belief_updated", bearings: 1 } as BeliefUpdated;
+  const state = suppose(flown, { belief, plan: null, sweeps: [someBearing({ sweep_id: "sa", bearing_deg: 70 }), { ...nothing, binned_db: [], fitted_db: [] }] });
+  expect(state.bearings.map((b) => [b.fact.bearing_deg, b.seq, b.excluded])).toEqual([[70, 1, false], [45, 3, true]]); // prettier-ignore
+  expect(state.rejected.map((r) => [r.fact.sweep_id, r.seq])).toEqual([["sb", 2]]);
+  expect(state.belief?.fact).toBe(belief);
+  expect(state.plan).toBeNull();
 });

@@ -12,6 +12,7 @@ import type {
   Place,
   Recorded,
   SweepRejected,
+  WhatIf,
 } from "../wire";
 
 export interface At<T> {
@@ -219,10 +220,19 @@ export function missionAt(events: readonly Recorded[], seq: number): MissionStat
   return state;
 }
 
-/** The same mission with another belief and another choice at its last moment. */
-export function suppose(state: MissionState, belief: BeliefUpdated, plan: PlanChosen | null): MissionState {
+/** The same mission with what its sweeps would have told, another belief and another choice at its last moment. */
+export function suppose(state: MissionState, { belief, plan, sweeps }: Pick<WhatIf, "belief" | "plan" | "sweeps">): MissionState {
   const [seq, at] = [state.lastSeq, state.belief?.at ?? state.startedAt ?? ""];
-  return { ...state, belief: { fact: belief, seq, at }, plan: plan && { fact: plan, seq, at } };
+  const flown = new Map([...state.bearings, ...state.rejected].map((s) => [s.fact.sweep_id, s]));
+  const of = (id: string) => ({ seq: flown.get(id)?.seq ?? seq, at: flown.get(id)?.at ?? at });
+  const told = sweeps.flatMap((fact) => (fact.kind === "bearing_measured" ? [{ ...of(fact.sweep_id), fact, excluded: false }] : []));
+  return {
+    ...state,
+    bearings: [...told, ...state.bearings.filter((b) => b.excluded)],
+    rejected: sweeps.flatMap((fact) => (fact.kind === "sweep_rejected" ? [{ ...of(fact.sweep_id), fact }] : [])),
+    belief: { fact: belief, seq, at },
+    plan: plan && { fact: plan, seq, at },
+  };
 }
 
 const IN_FLIGHT: readonly Phase[] = [

@@ -16,8 +16,10 @@ CATALOGUE: dict[str, str] = json.loads((ROOT / "frontend/src/i18n/told.json").re
 
 ROOMS = [
     "planner/belief/verdict.py",
+    "backend/api/another_antenna.py",
     "backend/api/recordings.py",
     "backend/mission/antenna_check.py",
+    "backend/mission/area.py",
     "backend/mission/checklist.py",
     "backend/mission/importing.py",
     "backend/mission/listening.py",
@@ -38,7 +40,7 @@ ROOMS = [
     "hardware/direction_finding/uavrt.py",
 ]
 
-PIECES = {"the target area", "could not be read", "= {}", "{}, {}", "{} %", "{}{}"}
+PIECES = {"the target area", "could not be read", "= {}", "{}, {}", "{} %", "{}{}", "hole lies outside"}
 """Of which sentences are put together, or that have no words."""
 
 NAMES_OF_MODES = {"POSCTL SLOW", "PRECISION LAND", "RTK float", "RTK fixed"}
