@@ -7,7 +7,7 @@ import pytest
 
 from planner.belief.grid import prior_belief
 from planner.policy.ellipse import ellipse, table
-from planner.policy.ellipse_table import RATIOS, SIGMAS_DEG, TABLE, best_distance, expected_rmse_after
+from planner.policy.ellipse_table import RATIOS, SIGMAS_DEG, TABLE, compute, expected_rmse_after
 from planner.types import GaussianPrior, LinearMotion, Problem
 
 SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
@@ -60,8 +60,10 @@ def test_between_tabulated_noises_the_table_is_linear():
 
 @pytest.mark.long
 def test_the_script_computes_the_shipped_table():
-    stored = json.loads(TABLE.read_text())
-    assert best_distance(2.0, np.deg2rad(15.0)) == pytest.approx(stored["distances"]["15"][RATIOS.index(2.0)], abs=1e-3)
+    stored, computed = json.loads(TABLE.read_text()), compute()
+    assert computed["ratios"] == stored["ratios"]
+    for sigma, distances in stored["distances"].items():
+        assert computed["distances"][sigma] == pytest.approx(distances, abs=1e-3)
 
 
 def test_the_tables_optimum_beats_its_neighbourhood():
