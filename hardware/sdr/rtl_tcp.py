@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import struct
+import time
 from collections.abc import AsyncIterator
 
 from hardware.iq import IqBlock, from_unsigned_bytes
@@ -24,8 +25,8 @@ _RATES_HZ = ((225_001, 300_000), (900_001, 3_200_000))
 class RtlTcpSource:
     """IQ from an rtl_tcp server. Manual gain; the chip's own AGC is switched off.
 
-    settle_s: dropped from the front. The server sends bursts of 131072 samples, begins before it is tuned, and only a
-    whole burst tells how old its first sample is.
+    settle_s: twice so much is dropped from the front. The server streams before it is tuned; then it sends bursts of
+    131072 samples, and only the end of a burst tells how old its samples are.
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class RtlTcpSource:
         gain_db: float = 28.0,
         ppm: int = 0,
         timeout_s: float = 5.0,
-        settle_s: float = 1.0,
+        settle_s: float = 0.6,
     ) -> None:
         if not any(low <= sample_rate_hz <= high for low, high in _RATES_HZ):
             raise ReceiverError(
@@ -108,6 +109,7 @@ class RtlTcpSource:
             raise ReceiverError("rtl_tcp is not connected: open it first")
         size = 2 * int(self._rate / 50.0)
         clock = SampleClock(self._rate)
+        tuned_s = time.monotonic() + self._settle_s
         received = 0
         while self._reader is reader:
             try:
@@ -118,6 +120,8 @@ class RtlTcpSource:
                 raise ReceiverError(f"rtl_tcp at {self._host}:{self._port} ended the stream") from None
             except OSError as error:
                 raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
+            if time.monotonic() < tuned_s:
+                continue
             samples, clipped = from_unsigned_bytes(raw)
             at_s = clock.arrived(received, samples.size)
             received += samples.size

@@ -44,8 +44,8 @@ def _soapy() -> Any:
 
 
 class _Radio:
-    """One device from open to close. Its driver's calls block, and none may run while another does (a stream that is
-    closed while it is read takes the process with it): one thread makes them all, in order."""
+    """One device from open to close. Its driver's calls block, and none may run while another does (a stream must not
+    be closed while it is read): one thread makes them all, in order."""
 
     def __init__(self, device_string: str, arguments: dict[str, str], channel: int) -> None:
         self._thread = ThreadPoolExecutor(1, "soapy")
