@@ -125,6 +125,12 @@ def fly_by_keyboard(screen: Screen, patient: str) -> None:
     screen.map_ready()
 
 
+BANNER_COVERS_NO_TOOL = """() => {
+  const edges = (name) => document.querySelector(`[data-testid=${name}]`).getBoundingClientRect();
+  return edges("alert-banner").bottom <= edges("map-fit").top;
+}"""
+
+
 def test_a_mission_is_planned_started_and_held_by_keyboard_alone(flight: Flight) -> None:
     kinds = flight.kinds()
     assert kinds.count("mission_started") == 1
@@ -230,8 +236,7 @@ def test_the_pilot_takes_over_and_keeps_control_and_the_alert_sounds_where_it_is
         expect(screen.part("alert-banner")).to_contain_text("pilot")
         screen.expect_phase("manual")
         expect(screen.part("control")).to_contain_text("pilot has control")
-        covered, tools = screen.part("alert-banner").bounding_box(), screen.part("map-fit").bounding_box()
-        assert covered and tools and covered["y"] + covered["height"] <= tools["y"], "the alert covers no tool"
+        screen.page.wait_for_function(BANNER_COVERS_NO_TOOL)
     assert loud.evaluate("tones") == [660, 660]
     ((language, text),) = loud.evaluate("spoken")
     assert language == "en"

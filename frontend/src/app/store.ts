@@ -109,7 +109,7 @@ export const path = computed<readonly LonLat[]>(() => {
   const time = reviewTimeMs.value;
   const until = time ?? Infinity;
   const flown = track.value.filter((p) => Date.parse(p.at_utc) <= until).map((p): LonLat => [p.lon, p.lat]);
-  return time === null ? [...flown, ...livePath.value] : flown;
+  return time === null && source.value?.kind !== "replay" ? [...flown, ...livePath.value] : flown;
 });
 
 /** Beliefs by number of bearings; a left-out bearing changes them all. */
@@ -169,7 +169,7 @@ const statusPhase = computed(() => (status.value?.value.phase ?? null) as Phase 
 /** The mission that abort, hold and return act on: the one the vehicle flies, whatever the page shows. */
 export const flying = computed<{ id: string; phase: Phase } | null>(() => {
   const shown = liveMission.value;
-  if (shown.missionId && inFlight(shown.phase)) return { id: shown.missionId, phase: shown.phase };
+  if (source.value?.kind !== "replay" && shown.missionId && inFlight(shown.phase)) return { id: shown.missionId, phase: shown.phase };
   if (statusMission.value && statusPhase.value && inFlight(statusPhase.value)) {
     return { id: statusMission.value, phase: statusPhase.value };
   }

@@ -1,4 +1,5 @@
 // What is usually looked for, and how one listens to it. Only these values change; everything else stays as typed.
+import { t } from "../i18n";
 import type { MissionSpec } from "../wire";
 
 export type PresetName = "wildlife" | "beacon" | "interference";
@@ -6,16 +7,15 @@ export type PresetName = "wildlife" | "beacon" | "interference";
 interface Preset {
   frequencyHz: number;
   kind: "carrier" | "pulsed";
-  label: string;
   sigmaDeg: number;
   measurementS: number;
 }
 
 /** A tag pulses about once a second, so a sweep must be slow; a beacon's homing signal and interference are steady. */
 const presets: Record<PresetName, Preset> = {
-  wildlife: { frequencyHz: 150_000_000, kind: "pulsed", label: "wildlife tag", sigmaDeg: 9, measurementS: 45 },
-  beacon: { frequencyHz: 121_500_000, kind: "carrier", label: "rescue beacon", sigmaDeg: 7, measurementS: 30 },
-  interference: { frequencyHz: 1_575_420_000, kind: "carrier", label: "interference", sigmaDeg: 6, measurementS: 30 },
+  wildlife: { frequencyHz: 150_000_000, kind: "pulsed", sigmaDeg: 9, measurementS: 45 },
+  beacon: { frequencyHz: 121_500_000, kind: "carrier", sigmaDeg: 7, measurementS: 30 },
+  interference: { frequencyHz: 1_575_420_000, kind: "carrier", sigmaDeg: 6, measurementS: 30 },
 };
 
 export const presetNames = Object.keys(presets) as PresetName[];
@@ -24,7 +24,7 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
   const preset = presets[name];
   return {
     ...spec,
-    emitter: { ...spec.emitter, frequency_hz: preset.frequencyHz, kind: preset.kind, label: preset.label },
+    emitter: { ...spec.emitter, frequency_hz: preset.frequencyHz, kind: preset.kind, label: t(`edit.preset.${name}`) },
     sensor: {
       ...spec.sensor,
       sigma_deg: preset.sigmaDeg,
@@ -33,3 +33,15 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
     },
   };
 }
+
+/** The preset that the values are still those of; null when one was changed. */
+export const presetOf = ({ emitter, sensor }: MissionSpec): PresetName | null =>
+  presetNames.find((name) => {
+    const { frequencyHz, kind, sigmaDeg, measurementS } = presets[name];
+    return (
+      emitter.frequency_hz === frequencyHz &&
+      emitter.kind === kind &&
+      sensor.sigma_deg === sigmaDeg &&
+      sensor.measurement_time_s === measurementS
+    );
+  }) ?? null;

@@ -12,7 +12,7 @@ import { FormField, TextField } from "../edit/FormField";
 import { ProfileRow } from "../edit/ProfileRow";
 import { PreviewCard } from "../edit/PreviewCard";
 import { clearPreview } from "../edit/preview";
-import { presetNames, withPreset, type PresetName } from "../edit/presets";
+import { presetNames, presetOf, withPreset, type PresetName } from "../edit/presets";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
@@ -64,7 +64,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
         <select
           id="preset"
           data-testid="preset"
-          value=""
+          value={(draft.value && presetOf(draft.value.spec)) ?? ""}
           onChange={(e) => {
             const now = draft.peek();
             const name = e.currentTarget.value as PresetName | "";

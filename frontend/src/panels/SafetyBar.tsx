@@ -1,6 +1,6 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
 import { useState } from "preact/hooks";
-import { cursor, events, flying, live, mission, nowMs, shownTimeMs, vehicle } from "../app/store";
+import { cursor, events, flying, live, mission, nowMs, shownTimeMs, source, vehicle } from "../app/store";
 import { toggle } from "../app/overlay";
 import { missionAddress } from "../app/route";
 import { send } from "../commands/send";
@@ -19,7 +19,7 @@ import { ProblemNote } from "./ProblemNote";
 function UrgentButton({ kind }: { kind: Urgent }) {
   const target = flying.value;
   const heard = live.value.telemetry?.value;
-  const shown = live.value.mission.missionId;
+  const shown = source.value?.kind === "replay" ? null : live.value.mission.missionId;
   const id = target?.id ?? (heard?.in_air || !heard ? shown : null);
   return (
     <button

@@ -1,8 +1,10 @@
-// A recording: a mission's journal as exported (JSON), shown through the same interface as a live one.
+// A recording: a mission's journal as exported (JSON), shown through the same interface as a live one. The safety bar
+// above it stays the server's: what flies meanwhile is seen, and stopped, from here too.
 import { t } from "../i18n";
-import type { CommandReply, ExpectedTime, PreflightReply, Recorded, Track } from "../wire";
-import { localProblem, RequestFailed } from "./problem";
+import type { Command, CommandReply, ExpectedTime, PreflightReply, Recorded, Track } from "../wire";
 import * as api from "./api";
+import { LiveSource } from "./live";
+import { localProblem, RequestFailed } from "./problem";
 import type { Source, SourceMessage } from "./source";
 
 /** Recordings opened in this tab, by mission id. */
@@ -22,7 +24,7 @@ const isRecorded = (value: unknown): value is Recorded => {
 };
 
 /** Reads the exported journal; says what is missing when it is something else. */
-export function readRecording(text: string): ReplaySource {
+export function readRecording(text: string, server?: Server): ReplaySource {
   let parsed: Exported;
   try {
     parsed = JSON.parse(text) as Exported;
@@ -35,12 +37,15 @@ export function readRecording(text: string): ReplaySource {
   if (bad >= 0) throw new NotARecording(`entry ${bad + 1} is not a recorded event`);
   const recorded = (events as Recorded[]).toSorted((a, b) => a.seq - b.seq);
   const points = Array.isArray(parsed.track) ? (parsed.track as Track["points"]) : ((parsed.track as Track | undefined)?.points ?? []);
-  return new ReplaySource(recorded, points);
+  return new ReplaySource(recorded, points, server);
 }
 
 function refuse(): never {
   throw new RequestFailed(localProblem(t("problem.refused"), t("problem.recording"), 409));
 }
+
+/** What the server tells besides missions: its link, the vehicle, what flies. */
+type Server = Pick<Source, "start" | "stop">;
 
 export class ReplaySource implements Source {
   readonly kind = "replay";
@@ -49,19 +54,22 @@ export class ReplaySource implements Source {
   constructor(
     private readonly recorded: readonly Recorded[],
     private readonly points: Track["points"],
+    private readonly server: Server = new LiveSource(null, false),
   ) {
     this.missionId = recorded[0]!.mission_id;
   }
 
   start(listener: (message: SourceMessage) => void): void {
-    listener({ type: "link", state: "open", attempt: 0 });
     const last = this.recorded.at(-1)!.seq;
     listener({ type: "hello", server_version: "", mission_id: this.missionId, last_seq: last, time_factor: 1 });
     for (const recorded of this.recorded) listener({ type: "event", recorded });
+    this.server.start((message) => {
+      if (message.type === "link" || message.type === "telemetry" || message.type === "status") listener(message);
+    });
   }
 
   stop(): void {
-    return;
+    this.server.stop();
   }
 
   /** The server rebuilds beliefs of missions it knows; for others the picture stays empty. */
@@ -71,8 +79,10 @@ export class ReplaySource implements Source {
   async track(): Promise<Track> {
     return { mission_id: this.missionId, points: this.points };
   }
-  async send(): Promise<CommandReply> {
-    return refuse();
+  /** The recorded mission takes no commands; one that flies meanwhile does, and abort, hold and return always go out. */
+  async send(missionId: string, command: Command, commandId?: string): Promise<CommandReply> {
+    const urgent = command.kind === "abort" || command.kind === "hold" || command.kind === "return";
+    return urgent || missionId !== this.missionId ? api.sendCommand(missionId, command, commandId) : refuse();
   }
   async preflight(): Promise<PreflightReply> {
     return refuse();
