@@ -12,7 +12,6 @@ from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.recorded import RecordedReceiver
 from hardware.sdr.rtl_tcp import RtlTcpSource
-from hardware.sdr.sigmf_playback import SigmfSource
 from hardware.sdr.soapy import SoapySource
 from hardware.sdr.spectrum import ToneSetting
 
@@ -33,7 +32,7 @@ def receiver_from(
     if kind == "soapy" and rest:
         return IqReceiver(SoapySource(rest, sample_rate_hz, gain_db), setting)
     if kind == "rtl_tcp" and rest.startswith("//"):
-        parts = urlsplit(device)
+        parts = urlsplit(rest)  # without the scheme: an underscore is not valid in one
         try:
             port = parts.port or 1234
         except ValueError:
@@ -42,6 +41,8 @@ def receiver_from(
             raise ReceiverError(f'"{device}" names no host; write rtl_tcp://HOST:PORT')
         return IqReceiver(RtlTcpSource(parts.hostname, port, sample_rate_hz, gain_db), setting)
     if kind == "sigmf" and rest:
+        from hardware.sdr.sigmf_playback import SigmfSource  # a quarter of the payload's start, which seldom plays one
+
         return IqReceiver(SigmfSource(Path(rest), clock), setting)
     if kind == "recording" and rest:
         try:

@@ -1,0 +1,46 @@
+"""Receivers by name, as the command line takes them."""
+
+from __future__ import annotations
+
+import asyncio
+import struct
+
+import pytest
+
+from hardware.clock import WallClock
+from hardware.ports import ReceiverError
+from hardware.sdr.device import receiver_from
+
+
+async def test_rtl_tcp_is_opened_where_its_name_says() -> None:
+    tuned = asyncio.Event()
+
+    async def greet(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        writer.write(struct.pack(">4sII", b"RTL0", 5, 29))
+        await reader.readexactly(5)
+        tuned.set()
+        await reader.read(-1)
+        writer.close()
+
+    listening = await asyncio.start_server(greet, "127.0.0.1", 0)
+    receiver = receiver_from(f"rtl_tcp://127.0.0.1:{listening.sockets[0].getsockname()[1]}", WallClock())
+    await receiver.open(433_920_000.0)
+    await tuned.wait()
+    await receiver.close()
+    listening.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("rtl_tcp://", "names no host"),
+        ("rtl_tcp://host:port", "no number"),
+        ("rtl_tcp:host", "not understood"),
+        ("soapy:", "not understood"),
+        ("soapy:serial=1", "names no driver"),
+        ("radio", "not understood"),
+    ],
+)
+def test_a_name_that_is_not_understood_says_what_to_write(name: str, told: str) -> None:
+    with pytest.raises(ReceiverError, match=told):
+        receiver_from(name, WallClock())
