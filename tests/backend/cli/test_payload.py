@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import stat
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_systemd_unit_starts_this_agent_at_boot(tmp_path: Path) -> None:
     result = CliRunner().invoke(APP, ["--config", str(tmp_path / "payload.toml"), "--systemd"])
     assert "Restart=always" in result.stdout
     assert f"payload --config {tmp_path / 'payload.toml'}" in result.stdout
+
+
+def test_systemd_unit_without_crossfix_on_the_path_starts_a_program_that_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.which", lambda program: None)
+    unit = CliRunner().invoke(APP, ["--systemd"]).stdout
+    program = unit.partition("ExecStart=")[2].partition(" --config")[0]
+    assert (
+        "Listen with this computer's radio"
+        in subprocess.run([*program.split(), "--help"], capture_output=True, text=True).stdout
+    )
 
 
 @pytest.mark.parametrize(
