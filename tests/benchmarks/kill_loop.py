@@ -234,11 +234,13 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
         return
     restarts = len(shown.of("server_restarted"))
 
-    def rebuilt() -> bool:
+    def rebuilt_or_over() -> bool:
+        if shown.phases[-1] in ENDED:
+            return True
         kinds = [r["event"]["kind"] for r in shown.events]
         return restarts > 0 and "belief_updated" in kinds[len(kinds) - kinds[::-1].index("server_restarted") :]
 
-    await shown.until(rebuilt, 30)
+    await shown.until(rebuilt_or_over, 30)
     again = last_belief(shown.events)
     if again is not None and again[0] == known[0]:
         found.beliefs_compared += 1
