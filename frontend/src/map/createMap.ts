@@ -95,18 +95,21 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
   return map;
 }
 
-/** Pixels that the map's controls and its scale cover along its edges; its tools stand at the top left. */
+/** Pixels that the map's controls and its scale cover along its edges; tools stand at the top left, a legend at the lower right. */
 const COVERED = { top: 14, right: 62, bottom: 44, left: 14 };
 const TOOLS = { width: 380, height: 60 };
+const LEGEND_WIDTH = 260;
 
 /** As large as it can be seen, below the tools or beside them. bannerPx: what an alert covers besides, at the top. */
 export function fit(map: GlMap, box: [number, number, number, number], animate: boolean, bannerPx = 0): void {
   const share = Math.min(1, map.getContainer().clientHeight / 360);
   const bottom = share * COVERED.bottom;
+  const beside = { ...COVERED, bottom, top: COVERED.top + bannerPx, left: TOOLS.width };
   const ways = [
+    { ...beside, right: LEGEND_WIDTH },
+    beside,
     { ...COVERED, bottom, top: share * TOOLS.height + bannerPx },
-    { ...COVERED, bottom, top: COVERED.top + bannerPx, left: TOOLS.width },
-  ];
-  const zoom = ways.map((padding) => map.cameraForBounds(box, { padding })?.zoom ?? -1);
-  map.fitBounds(box, { padding: ways[zoom[1]! > zoom[0]! ? 1 : 0]!, maxZoom: 18.5, duration: animate ? 400 : 0 });
+  ].map((padding) => ({ padding, zoom: map.cameraForBounds(box, { padding })?.zoom ?? -1 }));
+  const { padding } = ways.reduce((best, way) => (way.zoom > best.zoom + 0.01 ? way : best));
+  map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }
