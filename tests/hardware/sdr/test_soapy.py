@@ -233,3 +233,10 @@ async def test_a_radio_that_cannot_is_told_and_freed(
     with pytest.raises(ReceiverError, match=told):
         await source.open(868e6)
     assert device.opened[0].freed
+
+
+@pytest.mark.parametrize(("driver", "told"), [("null", "no receive channel"), ("no-such-radio", "no match")])
+async def test_the_real_binding_says_what_is_wrong(driver: str, told: str) -> None:
+    pytest.importorskip("SoapySDR")
+    with pytest.raises(ReceiverError, match=told):
+        await SoapySource(f"driver={driver}").open(868e6)
