@@ -318,7 +318,7 @@ export const de: Record<MessageKey, string> = {
   "missions.name": "Name",
   "missions.state": "Stand",
   "missions.drafted": "Entworfen (UTC)",
-  "missions.time": "Flugzeit",
+  "missions.time": "Suchzeit",
   "missions.bearings": "Peilungen",
   "missions.open": "Öffnen",
   "missions.copy": "Noch einmal",

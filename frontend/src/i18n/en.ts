@@ -317,7 +317,7 @@ export const en = {
   "missions.name": "Name",
   "missions.state": "State",
   "missions.drafted": "Drafted (UTC)",
-  "missions.time": "Flight time",
+  "missions.time": "Search time",
   "missions.bearings": "Bearings",
   "missions.open": "Open",
   "missions.copy": "Use again",
