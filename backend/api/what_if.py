@@ -45,7 +45,7 @@ def what_if(
         said.append(task.belief_fact(_bearings(supposed)))
     fact, belief = said[-1]
     platform = state.bearings[-1].place if state.bearings else home
-    number = max((flown.place_number for flown in state.bearings), default=0) + 1
+    number = max((fact.place_number for fact in state.bearings), default=0) + 1
     plan, no_plan = _plan(task, _bearings(supposed), platform, number)
     frame = encode_belief(mission_id, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True)
     return WhatIf(
