@@ -18,7 +18,7 @@ from backend import spec
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
 from backend.mission import area
 from backend.mission.errors import MissionInputError
-from backend.mission.safety import Limits
+from backend.mission.safety import EDGE_TOLERANCE_M, Limits
 from backend.spec import MissionSpec, Place
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
@@ -48,6 +48,9 @@ from planner.types import (
 ASKEW = "not yet: all bearings seem to be off by the same angle; check compass and antenna mounting"
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
+
+KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
+"""The planner's places and ways stay so far off no-fly zones: a little more than safety asks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +173,7 @@ def localization(mission: MissionSpec, home: Place, home_amsl_m: float) -> Local
         measurement_time=sensor.measurement_time_s,
         motion=_motion(planner.motion),
         flight_area=area.region(fence),
-        no_fly=area.region(unary_union(zones)) if zones else (),
+        no_fly=area.region(unary_union(zones).buffer(KEEP_OFF_M, join_style="mitre")),
         standoff=planner.standoff_m,
         action_spacing=planner.action_spacing_m,
         estimator=planner.estimator,

@@ -19,7 +19,8 @@ from hardware.readings import GeoPoint, Telemetry
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
 EDGE_TOLERANCE_M = 2.0
-"""A hovering vehicle wanders about so much; fence and no-fly edges are tested with this much mercy on its own place."""
+"""A hovering vehicle wanders about so much: its own place is judged with this much mercy at the edges of fence and
+no-fly zones, and no place to measure at is nearer to a zone."""
 
 FAR_M = 5_000.0
 """Beyond this the local tangent plane is no longer true to a metre, and a place is more likely a mistake."""
@@ -185,6 +186,10 @@ def standing_vetoes(limits: Limits, place: GeoPoint, altitude_amsl_m: float) -> 
     if math.hypot(*at) > FAR_M:
         detail = f"the place is {math.hypot(*at) / 1000:.1f} km from home, more than {FAR_M / 1000:.0f} km"
         return (*found, Veto("distance", detail, "choose a place nearer to home"))
+    near = min((zone.distance(Point(at)) for zone in limits.no_fly), default=math.inf)
+    if 0.0 < near < EDGE_TOLERANCE_M:
+        detail = f"the place is {near:.1f} m from a no-fly zone, and a hovering vehicle wanders"
+        found.append(Veto("no_fly", detail, f"choose a place {EDGE_TOLERANCE_M:.0f} m or more from the zone"))
     return (*found, *_area_vetoes(limits, at, "the place is"))
 
 
@@ -231,6 +236,7 @@ def _path_vetoes(limits: Limits, path: LineString) -> list[Veto]:
                 "fly by way of a place in between",
             )
         )
-    if any(path.intersection(zone).length > 0.0 for zone in limits.no_fly):
+    flown = path.difference(Point(path.coords[0]).buffer(EDGE_TOLERANCE_M))
+    if any(flown.intersection(zone).length > 0.0 for zone in limits.no_fly):
         found.append(Veto("no_fly", "the way there crosses a no-fly zone", "fly by way of a place beside the zone"))
     return found

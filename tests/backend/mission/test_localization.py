@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from ground import AREA, FRAME, HOME, bearing, towards
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from backend.events import BearingMeasured, Peak
 from backend.mission.errors import MissionInputError
-from backend.mission.localization import ASKEW, Localization, localization
+from backend.mission.localization import ASKEW, KEEP_OFF_M, Localization, localization
 from backend.spec import (
     FlightSpec,
     GaussianPriorSpec,
@@ -173,6 +174,8 @@ def test_flight_area_and_zones_reach_the_planner_and_the_vetoes() -> None:
     assert len(made.problem.no_fly) == 1
     assert made.limits.no_fly[0].area == pytest.approx(450, rel=1e-2)
     assert made.problem.flight_area is not None
+    kept_off = shapely.Polygon(made.problem.no_fly[0]).exterior.distance(made.limits.no_fly[0])
+    assert kept_off == pytest.approx(KEEP_OFF_M)
     assert made.limits.home_amsl_m == 100.0
 
 

@@ -66,6 +66,21 @@ def test_places_outside_inside_a_zone_or_behind_one_are_refused(east: float, nor
     assert rules(east, north, situation(north=50.0)) == [rule]
 
 
+@pytest.mark.parametrize(("east", "refused"), [(99.0, True), (97.5, False), (151.0, True), (153.0, False)])
+def test_a_place_beside_a_zone_is_refused_where_a_hovering_vehicle_would_wander_into_it(
+    east: float, refused: bool
+) -> None:
+    here = situation(east=east - math.copysign(1.0, 125.0 - east), north=50.0)
+    found = place_vetoes(LIMITS, here, FRAME.to_geo(east, 50.0), 140.0)
+    assert [veto.rule for veto in found] == ["no_fly"] * refused
+    assert all("1.0 m from a no-fly zone" in veto.detail for veto in found)
+
+
+@pytest.mark.parametrize(("inside", "rule"), [(0.5 * EDGE_TOLERANCE_M, []), (2.0 * EDGE_TOLERANCE_M, ["no_fly"])])
+def test_a_vehicle_that_wandered_into_a_zone_may_fly_out_of_it(inside: float, rule: list[str]) -> None:
+    assert rules(50, 50, situation(east=100.0 + inside, north=50.0)) == rule
+
+
 def test_the_way_may_not_leave_a_fence_that_is_not_convex() -> None:
     bent = replace(LIMITS, fence=box(0, 0, 20, 200).union(box(0, 0, 200, 20)), no_fly=())
     seen = situation(east=10.0, north=190.0)
