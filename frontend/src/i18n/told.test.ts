@@ -51,6 +51,37 @@ it("knows a sentence that the server began with a capital and ended with a dot",
   expect(told("The moon is in the way.")).toBe("The moon is in the way.");
 });
 
+it("knows what is wrong with a file or a receiver, alone, in an alert and as a refusal's sentence", () => {
+  tellIn(table);
+  expect(told("receiver: turn.sigmf-meta: was recorded at 433.9200 MHz, not near 151.0000 MHz")).toBe(
+    "Empfänger: turn.sigmf-meta: aufgenommen auf 433,9200 MHz, nicht in der Nähe von 151,0000 MHz",
+  );
+  expect(told("preflight: receiver: the receiver delivered nothing for 5 s; check its cable and driver")).toBe(
+    "Prüfung vor dem Start: Empfänger: der Empfänger lieferte 5 s lang nichts; sein Kabel und seinen Treiber prüfen",
+  );
+  expect(told("receiver: the sample rate is 0.0 Hz; it must be greater than zero")).toBe(
+    "Empfänger: die Abtastrate ist 0,0 Hz; sie muss größer als null sein",
+  );
+  expect(told('the receiver "x" is not understood; write soapy:driver=NAME[,key=value], rtl_tcp://HOST[:PORT], sigmf:FILE or recording:FILE')).toBe(
+    "die Angabe „x“ für den Empfänger ist nicht zu verstehen; so schreiben: soapy:driver=NAME[,key=value], rtl_tcp://HOST[:PORT], sigmf:FILE oder recording:FILE",
+  );
+  expect(told("a.sigmf: 433.9200 MHz does not fit into 250 kS/s around 151.0000 MHz; tune closer, or raise the sample rate (core:sample_rate, core:frequency)")).toBe(
+    "a.sigmf: 433,9200 MHz passt nicht in 250 kS/s um 151,0000 MHz; näher daran abstimmen oder die Abtastrate erhöhen (core:sample_rate, core:frequency)",
+  );
+  expect(told("Turn 1.sigmf-meta: is silent: every sample is zero; was the receiver running?.")).toBe(
+    "Turn 1.sigmf-meta: ist stumm: jeder Abtastwert ist null; lief der Empfänger?",
+  );
+  expect(told("2026-05-01.sigmf-meta: the headings run from -9.0 to -1.0 s after its beginning, the samples from 0 to 8.0 s; check the times and the sample rate (8000 Hz).")).toBe(
+    "2026-05-01.sigmf-meta: die Kurse reichen von -9,0 bis -1,0 s nach Beginn der Aufnahme, die Abtastwerte von 0 bis 8,0 s; die Zeiten und die Abtastrate (8000 Hz) prüfen.",
+  );
+  expect(told("A pulse of 0.5 s every 0.1 s cannot be: give 0 < width_s < period_s.")).toBe(
+    "Einen Puls von 0,5 s alle 0,1 s kann es nicht geben: nötig ist 0 < width_s < period_s.",
+  );
+  expect(told("Upload a UAV-RT rotation file, a CSV of heading_deg and power_db, or SigMF.")).toBe(
+    "Hochladen: eine UAV-RT-Datei, ein CSV mit heading_deg und power_db oder SigMF.",
+  );
+});
+
 it("shows a sentence that it does not know as it came", () => {
   tellIn(table);
   expect(told("the moon is in the way")).toBe("the moon is in the way");

@@ -3,19 +3,24 @@
 import { signal } from "@preact/signals";
 import { formatArea, formatLength, formatSpeed, type UnitSystem } from "../units/quantities";
 
-type Sentence = { pattern: RegExp; german: string; literal: number };
+type Sentence = { pattern: RegExp; german: string; opens: boolean; literal: number };
 
 const sentences = signal<readonly Sentence[] | null>(null);
 
 const escaped = (text: string) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 
+/** What is told of something that has a name, "receiver: {}": the rest may itself begin with a value and a colon. */
+const OPENS = /^[^{}]+: /;
+
+/** In the order in which they are tried: those that open with a name, then those with the most words. */
 export function sentencesOf(table: Record<string, string>): Sentence[] {
   return Object.entries(table)
     .map(([english, german]) => {
       const parts = english.split("{}");
-      return { pattern: new RegExp(`^${parts.map(escaped).join("(.+?)")}$`, "s"), german, literal: parts.join("").length };
+      const pattern = new RegExp(`^${parts.map(escaped).join("(.+?)")}$`, "s");
+      return { pattern, german, opens: OPENS.test(english), literal: parts.join("").length };
     })
-    .toSorted((a, b) => b.literal - a.literal);
+    .toSorted((a, b) => Number(b.opens) - Number(a.opens) || b.literal - a.literal);
 }
 
 /** Called by the language table: null for English. */
@@ -26,24 +31,25 @@ export function tellIn(table: Record<string, string> | null): void {
 /** "...reason (not yet: this; not yet: that)", as the end of a mission is told. */
 const WITH_REASONS = /^(.+?) \((not yet: .+)\)$/s;
 
-/** A sentence that the server began with a capital and ended with a dot, as it stands in the table. */
-const bare = (text: string) => (/^[A-Z].*[^.]\.$/s.test(text) ? text[0]!.toLowerCase() + text.slice(1, -1) : text);
+/** A sentence that the server began with a capital and ended with a dot, as it stands in the table; else null. */
+const bare = (text: string) => (/^[^a-z].*[^.]\.$/s.test(text) ? text[0]!.toLowerCase() + text.slice(1, -1) : null);
+
+const sentence = (text: string) => `${text[0]!.toUpperCase()}${text.slice(1)}${text.endsWith("?") ? "" : "."}`;
 
 export function translated(text: string, known: readonly Sentence[]): string {
-  const found = inTable(text, known);
-  if (found !== null) return found;
-  const inner = inTable(bare(text), known);
-  return inner === null ? text : `${inner[0]!.toUpperCase()}${inner.slice(1)}.`;
-}
-
-function inTable(text: string, known: readonly Sentence[]): string | null {
   const more = WITH_REASONS.exec(text);
   if (more) return `${translated(more[1]!, known)} (${more[2]!.split("; ").map((part) => translated(part, known)).join("; ")})`;
+  const inner = bare(text);
+  if (inner !== null && WITH_REASONS.test(inner)) return sentence(translated(inner, known));
+  const put = (german: string, found: RegExpExecArray) =>
+    german.replace(/\{(\d)\}/g, (_, place: string) => value(found[Number(place)]!, known));
   for (const { pattern, german } of known) {
+    const within = inner === null ? null : pattern.exec(inner); // first, or the last value of a vague one takes the dot
+    if (within) return sentence(put(german, within));
     const found = pattern.exec(text);
-    if (found) return german.replace(/\{(\d)\}/g, (_, place: string) => value(found[Number(place)]!, known));
+    if (found) return put(german, found);
   }
-  return null;
+  return text;
 }
 
 const value = (text: string, known: readonly Sentence[]): string =>
