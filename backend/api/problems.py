@@ -116,7 +116,11 @@ async def on_journal_unavailable(_: Request, error: Exception) -> JSONResponse:
 
 
 def _sentence(words: str) -> str:
-    return f"{words[0].upper()}{words[1:].rstrip('.')}." if words else ""
+    """With a capital, unless it opens with a name and a colon (a file's, a field's), and with a mark at its end."""
+    if not words:
+        return ""
+    begun = words if words.split()[0].endswith(":") else words[0].upper() + words[1:]
+    return begun if begun.endswith((".", "?", "!")) else f"{begun}."
 
 
 async def on_http(_: Request, error: Exception) -> JSONResponse:

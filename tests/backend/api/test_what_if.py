@@ -202,7 +202,7 @@ async def test_a_rejected_sweep_that_is_heard_now_spares_the_next_attempt(client
     [
         ({"offset_to_nose_deg": 10.0}, 409, "power samples of place 1 were not stored"),
         ({"pattern": pattern_file(150e6, beams=1)}, 422, "was measured at 150.0 MHz, not 868.3 MHz"),
-        ({"pattern": {"filename": "mine.json", "text": "[" * 100_000}}, 422, "Mine.json: is not JSON"),
+        ({"pattern": {"filename": "mine.json", "text": "[" * 100_000}}, 422, "mine.json: is not JSON"),
         ({"pattern": {"filename": "a.csv", "text": "0, 1\n90, 2"}}, 422, "only 2 points"),
     ],
 )
