@@ -135,7 +135,9 @@ def _lattice_distances(air: _Air, packed: bytes) -> FloatArray:
 
 def _shortest_ways(lengths: FloatArray) -> tuple[FloatArray, np.ndarray]:
     """All shortest ways between (n, n) nodes: lengths, infinite without a way, and predecessors, negative for none."""
-    from scipy.sparse.csgraph import shortest_path  # an eighth of a start, for areas with something to fly around
+    if len(lengths) == 0:
+        return lengths, np.empty((0, 0), dtype=np.int32)
+    from scipy.sparse.csgraph import shortest_path  # takes a while to load: only where there is something to fly around
 
     return shortest_path(np.where(np.isfinite(lengths), lengths, 0.0), return_predecessors=True)
 
