@@ -55,9 +55,16 @@ class Targets:
         self.base_url = base_url
         self.spec = httpx.get(f"{base_url}/api/defaults").json()["spec"]
         self.missions = [httpx.post(f"{base_url}/api/missions", json=self.spec).json()["mission_id"] for _ in range(3)]
-        body = {"command_id": str(uuid4()), "command": {"kind": "start"}}
-        started = httpx.post(f"{base_url}/api/missions/{self.missions[0]}/commands", json=body).json()
-        assert started["accepted"], started
+        self._start(self.missions[0])
+
+    def _start(self, mission_id: str, patience_s: float = 60.0) -> None:
+        """Ordered until it is accepted: a vehicle that was just switched on is not ready at once."""
+        until, answer = time.monotonic() + patience_s, {"accepted": False}
+        while not answer["accepted"]:
+            assert time.monotonic() < until, answer
+            body = {"command_id": str(uuid4()), "command": {"kind": "start"}}
+            answer = httpx.post(f"{self.base_url}/api/missions/{mission_id}/commands", json=body, timeout=30.0).json()
+            time.sleep(0.2)
 
     def aim(self, case: schemathesis.Case, chance: random.Random) -> None:
         """Mostly at something that is there. Plans that are merely large are left out: they take time, no faults."""
