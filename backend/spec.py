@@ -112,7 +112,7 @@ class EmitterSpec(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it."""
 
-    sigma_deg: float = Field(default=7.0, gt=0, le=60)
+    sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
     outlier_probability: float = Field(default=0.1, ge=0, le=0.5)
     """A fielded system's flights had 9 outliers among 93 bearings."""
     measurement_time_s: Positive = 30.0

@@ -281,7 +281,7 @@ class WhatIfRequest(Model):
     pattern's own): the stored sweeps are taken through this antenna; None of both: their bearings stay."""
 
     bearings: int = Field(ge=0, le=200)
-    sigma_deg: float | None = Field(default=None, gt=0, le=60)
+    sigma_deg: float | None = Field(default=None, ge=0.1, le=60)
     outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
     pattern: PatternUpload | None = None
     offset_to_nose_deg: float | None = Field(default=None, ge=-360, le=360, allow_inf_nan=False)
