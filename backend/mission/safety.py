@@ -186,11 +186,12 @@ def standing_vetoes(limits: Limits, place: GeoPoint, altitude_amsl_m: float) -> 
     if math.hypot(*at) > FAR_M:
         detail = f"the place is {math.hypot(*at) / 1000:.1f} km from home, more than {FAR_M / 1000:.0f} km"
         return (*found, Veto("distance", detail, "choose a place nearer to home"))
+    found += _area_vetoes(limits, at, "the place is")
     near = min((zone.distance(Point(at)) for zone in limits.no_fly), default=math.inf)
-    if 0.0 < near < EDGE_TOLERANCE_M:
+    if near < EDGE_TOLERANCE_M and "no_fly" not in [veto.rule for veto in found]:
         detail = f"the place is {near:.1f} m from a no-fly zone, and a hovering vehicle wanders"
         found.append(Veto("no_fly", detail, f"choose a place {EDGE_TOLERANCE_M:.0f} m or more from the zone"))
-    return (*found, *_area_vetoes(limits, at, "the place is"))
+    return tuple(found)
 
 
 def place_vetoes(

@@ -76,6 +76,11 @@ def test_a_place_beside_a_zone_is_refused_where_a_hovering_vehicle_would_wander_
     assert all("1.0 m from a no-fly zone" in veto.detail for veto in found)
 
 
+@pytest.mark.parametrize("east", [99.999_999, 100.0, 100.000_001])
+def test_a_place_on_the_border_of_a_zone_is_refused_once(east: float) -> None:
+    assert rules(east, 50.0, situation(east=90.0, north=50.0)) == ["no_fly"]
+
+
 @pytest.mark.parametrize(("inside", "rule"), [(0.5 * EDGE_TOLERANCE_M, []), (2.0 * EDGE_TOLERANCE_M, ["no_fly"])])
 def test_a_vehicle_that_wandered_into_a_zone_may_fly_out_of_it(inside: float, rule: list[str]) -> None:
     assert rules(50, 50, situation(east=100.0 + inside, north=50.0)) == rule

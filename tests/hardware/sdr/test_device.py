@@ -10,22 +10,23 @@ import pytest
 from hardware.clock import WallClock
 from hardware.ports import ReceiverError
 from hardware.sdr.device import receiver_from
+from hardware.sdr.rtl_tcp import SET_FREQUENCY
 
 
 async def test_rtl_tcp_is_opened_where_its_name_says() -> None:
-    tuned = asyncio.Event()
+    tuned = asyncio.get_running_loop().create_future()
 
     async def greet(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         writer.write(struct.pack(">4sII", b"RTL0", 5, 29))
-        await reader.readexactly(5)
-        tuned.set()
+        orders = list(struct.iter_unpack(">BI", await reader.readexactly(6 * 5)))
+        tuned.set_result(dict(orders)[SET_FREQUENCY])
         await reader.read(-1)
         writer.close()
 
     listening = await asyncio.start_server(greet, "127.0.0.1", 0)
     receiver = receiver_from(f"rtl_tcp://127.0.0.1:{listening.sockets[0].getsockname()[1]}", WallClock())
     await receiver.open(433_920_000.0)
-    await tuned.wait()
+    assert await tuned == pytest.approx(433_920_000, abs=150_000)
     await receiver.close()
     listening.close()
 
