@@ -7,7 +7,7 @@ from uuid import UUID
 
 from pydantic import Field
 
-from backend.spec import Model, Place
+from backend.spec import Model, Place, SearchArea
 
 
 class Start(Model):
@@ -41,6 +41,13 @@ class Override(Model):
     place: Place
 
 
+class ChangeArea(Model):
+    """In hold: search here from now on. The bearings that were taken count on."""
+
+    kind: Literal["change_area"] = "change_area"
+    search: SearchArea
+
+
 class Accept(Model):
     kind: Literal["accept"] = "accept"
 
@@ -72,6 +79,7 @@ Command = Annotated[
     | Return
     | Abort
     | Override
+    | ChangeArea
     | Accept
     | Veto
     | SetAutomatic

@@ -89,8 +89,11 @@ class MissionDrafted(Fact):
 
 
 class MissionEdited(Fact):
+    """Before the start anything may be edited; in hold the search area only. by: who did, None: not told."""
+
     kind: Literal["mission_edited"] = "mission_edited"
     spec: MissionSpec
+    by: str | None = None
 
 
 class PreflightChecked(Fact):

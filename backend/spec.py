@@ -174,8 +174,18 @@ class TimerSpec(Model):
     vehicle_command_s: Positive = 60.0
 
 
+class SearchArea(Model):
+    """Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec."""
+
+    area: Area
+    prior: PriorSpec
+    fence: Area | None
+    fence_margin_m: float = Field(ge=0, le=5000)
+    no_fly: list[Area]
+
+
 class MissionSpec(Model):
-    """Everything needed to fly one search; frozen when the mission starts."""
+    """Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold)."""
 
     name: str = Field(min_length=1, max_length=120)
     area: Area
@@ -186,3 +196,9 @@ class MissionSpec(Model):
     localization: LocalizationSpec = Field(default_factory=LocalizationSpec)
     flight: FlightSpec = Field(default_factory=FlightSpec)
     timers: TimerSpec = Field(default_factory=TimerSpec)
+
+    def searching(self, where: SearchArea) -> MissionSpec:
+        """The same mission elsewhere."""
+        flying = {"fence": where.fence, "fence_margin_m": where.fence_margin_m, "no_fly": where.no_fly}
+        flight = self.flight.model_copy(update=flying)
+        return self.model_copy(update={"area": where.area, "prior": where.prior, "flight": flight})

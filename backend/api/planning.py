@@ -9,8 +9,8 @@ from fastapi import APIRouter
 from backend.api.areas import read_area
 from backend.api.dependencies import MissionId, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
-from backend.spec import MissionSpec
-from backend.wire.resources import AreaImport, AreaUpload, ExpectedTime, ExpectedTimeRequest, Preview
+from backend.spec import MissionSpec, SearchArea
+from backend.wire.resources import AreaImport, AreaOutlook, AreaUpload, ExpectedTime, ExpectedTimeRequest, Preview
 
 router = APIRouter(prefix="/api", tags=["planning"], responses=PROBLEM_RESPONSES)
 
@@ -28,6 +28,22 @@ async def expected_time(mission_id: MissionId, request: ExpectedTimeRequest, ser
         std_error_s=found.std_error_s,
         time_90_s=found.p90_s,
         rollouts=found.rollouts,
+    )
+
+
+@router.post("/missions/{mission_id}/area-outlook")
+async def area_outlook(mission_id: MissionId, search: SearchArea, services: ServicesDep) -> AreaOutlook:
+    """What to expect if a mission in flight searched elsewhere from now on. Nothing is changed."""
+    async with services.planning:
+        found = await services.missions.outlook(mission_id, search)
+    first = found.vetoes[0] if found.vetoes else None
+    return AreaOutlook(
+        allowed=first is None,
+        reason="" if first is None else first.detail,
+        remedy="" if first is None else first.remedy,
+        belief=found.belief,
+        plan=found.plan,
+        no_plan=found.no_plan,
     )
 
 

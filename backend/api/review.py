@@ -83,11 +83,17 @@ async def get_belief(
     mission_id: MissionId,
     services: ServicesDep,
     bearings: Annotated[int, Path(ge=0, le=10_000)],
+    seq: Annotated[int | None, Query(ge=1)] = None,
     lite: bool = False,
 ) -> Response:
-    """The belief after so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm."""
+    """The last belief of so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm.
+
+    `seq`: up to that event only, when a bearing was left out or the search area changed later.
+    """
     await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
+    if seq is not None:
+        recorded = [record for record in recorded if record.seq <= seq]
     frame = await asyncio.to_thread(belief_frame, mission_id, recorded, bearings, lite)
     if frame is None:
         raise not_found("belief", f"after {bearings} bearings", "The mission has fewer bearings.")

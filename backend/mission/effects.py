@@ -37,6 +37,11 @@ class TakeOff:
 
 
 @dataclass(frozen=True, slots=True)
+class SearchElsewhere:
+    """From now on by the specification as it was just edited."""
+
+
+@dataclass(frozen=True, slots=True)
 class UpdateBelief:
     """Fold all counted bearings into the belief. Survives CancelWork: it moves nothing."""
 
@@ -107,6 +112,7 @@ Effect = (
     Record
     | Reply
     | CancelWork
+    | SearchElsewhere
     | UpdateBelief
     | PlanNext
     | HoldVehicle

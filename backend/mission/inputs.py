@@ -28,7 +28,7 @@ class StartFacts:
 @dataclass(frozen=True, slots=True)
 class Commanded:
     """An operator's command. `objections`: vetoes found beforehand (safety of an override, a pilot who has not given
-    control back when it is to be resumed, another mission flying).
+    control back when it is to be resumed, another mission flying, an area that cannot be searched from here).
     `on_ground`: the vehicle says that it stands on the ground. `failsafe_flies`: the autopilot is on its own way home,
     which this order may take it from."""
 
@@ -44,6 +44,7 @@ class Commanded:
 @dataclass(frozen=True, slots=True)
 class Edited:
     spec: MissionSpec
+    by: str
 
 
 @dataclass(frozen=True, slots=True)

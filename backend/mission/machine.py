@@ -93,9 +93,9 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
     match given:
         case Commanded():
             operator.answer(step, given)
-        case Edited(spec=spec):
+        case Edited(spec=spec, by=by):
             if state.phase in GROUND:
-                step.record(MissionEdited(spec=spec))
+                step.record(MissionEdited(spec=spec, by=by))
                 step.go("draft", "edited")
         case PreflightDone():
             _preflight(step, given)

@@ -8,6 +8,7 @@ from backend.commands import (
     Abort,
     Accept,
     AcknowledgeAlert,
+    ChangeArea,
     ExcludeBearing,
     Hold,
     Override,
@@ -26,6 +27,7 @@ from backend.events import (
     CommandRefused,
     ControlReleased,
     HoldOrdered,
+    MissionEdited,
     MissionStarted,
     PlanChosen,
     PlanVetoed,
@@ -41,6 +43,7 @@ from backend.mission.effects import (
     ReleasePilotLatch,
     Reply,
     ReturnHome,
+    SearchElsewhere,
     UpdateBelief,
 )
 from backend.mission.inputs import Commanded
@@ -99,6 +102,8 @@ def _carry_out(step: Step, given: Commanded) -> None:
             _abort(step, given)
         case Override():
             _override(step, given, command)
+        case ChangeArea():
+            _change_area(step, given, command)
         case Accept():
             _accept(step)
         case Veto():
@@ -236,6 +241,22 @@ def _override(step: Step, given: Commanded, command: Override) -> None:
     )
     if state.phase in AUTOMATIC and state.took_off:
         go_on(step, f"place chosen by {given.by}")
+
+
+def _change_area(step: Step, given: Commanded, command: ChangeArea) -> None:
+    state = step.state
+    if state.phase in GROUND:
+        raise Refused(NOT_STARTED[0], "edit the draft")
+    if state.phase in TERMINAL:
+        raise Refused(*ENDED)
+    if state.pilot_has_control:
+        raise Refused(*PILOT)
+    if state.phase != "hold":
+        raise Refused("the search area is changed in hold only", "hold, then change it")
+    _refuse_objections(step, given)
+    step.record(MissionEdited(spec=state.mission.searching(command.search), by=given.by))
+    step.do(SearchElsewhere())
+    step.do(UpdateBelief())
 
 
 def _accept(step: Step) -> None:

@@ -11,7 +11,7 @@ import logging
 from collections.abc import Callable, Coroutine
 from typing import Literal, assert_never
 
-from backend.commands import Command, Override, Resume
+from backend.commands import ChangeArea, Command, Override, Resume
 from backend.events import BeliefUpdated, Event
 from backend.mission import effects, inputs
 from backend.mission.equipment import Equipment
@@ -20,7 +20,7 @@ from backend.mission.localization import Localization
 from backend.mission.machine import transition
 from backend.mission.measuring import Measured
 from backend.mission.outbox import Outbox
-from backend.mission.safety import Veto, battery_vetoes, resume_vetoes
+from backend.mission.safety import Veto, battery_vetoes, resume_vetoes, staying_vetoes
 from backend.mission.state import TERMINAL, MissionState
 from backend.mission.steps import Steps
 from backend.mission.watch import GOING_HOME, Watch
@@ -66,6 +66,7 @@ class Runner:
         self._slots: dict[Slot, asyncio.Task[None]] = {}
         self._timers: dict[inputs.TimerName, asyncio.Task[None]] = {}
         self._background: list[asyncio.Task[None]] = []
+        self._task_elsewhere: Localization | None = None
         self.finished = asyncio.Event()
 
     @property
@@ -125,6 +126,23 @@ class Runner:
         )
         return self.give(given)
 
+    def change_area(
+        self, command_id: str, by: str, command: ChangeArea, task: Localization | Veto
+    ) -> tuple[effects.Effect, ...]:
+        """`task`: of the new area, or why there is none; it takes a thread's time to make."""
+        if isinstance(task, Veto):
+            return self.give(inputs.Commanded(command_id, by, command, (task,)))
+        self._task_elsewhere = task
+        objections = staying_vetoes(task.limits, self.watch.situation())
+        return self.give(inputs.Commanded(command_id, by, command, objections))
+
+    def _adopt(self, task: Localization | None) -> None:
+        if task is None or task.mission != self._state.mission:
+            raise RuntimeError("the search area changed without its task")
+        self.task = task
+        self.watch.limits = task.limits
+        self.steps.adopt(task)
+
     def _carry_out(self, effect: effects.Effect) -> None:
         vehicle = self._equipment.vehicle
         match effect:
@@ -145,6 +163,8 @@ class Runner:
                 self._run("command", "land", self._land())
             case effects.PlanNext():
                 self._run("thinking", "plan", self.steps.plan(effect, self._state.bearings))
+            case effects.SearchElsewhere():
+                self._adopt(self._task_elsewhere)
             case effects.UpdateBelief():
                 self._run("belief", "belief", self.steps.belief(self._state.bearings))
             case effects.ReleasePilotLatch():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from shapely import LineString, Point
 from shapely.geometry.base import BaseGeometry
@@ -162,6 +162,15 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
     if telemetry.position is not None:
         found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "the vehicle stands")
     return tuple(found)
+
+
+def staying_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:
+    """May a vehicle in the air go on within these limits from where it is, and come home?"""
+    remedy = "draw the fence around the vehicle and its home, and the no-fly zones beside them"
+    found = _area_vetoes(limits, (0.0, 0.0), "home is")
+    if situation.telemetry.position is not None:
+        found += _area_vetoes(limits, limits.frame.to_enu(situation.telemetry.position), "the vehicle is")
+    return tuple(replace(veto, remedy=remedy) for veto in found)
 
 
 def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Veto, ...]:

@@ -16,7 +16,7 @@ from backend.mission import effects, inputs
 from backend.mission.antenna_check import check_by_hand
 from backend.mission.area import centre_of, corner_of
 from backend.mission.checklist import checklist, home_of
-from backend.mission.describe import doing, waits_for
+from backend.mission.elsewhere import Outlook, outlook, task_or_veto
 from backend.mission.equipment import Equipment
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.mission.forecast import Forecast, Preview, forecast, preview
@@ -27,10 +27,11 @@ from backend.mission.patient_vehicle import MendsFailsafes, PatientVehicle
 from backend.mission.planning import lay_out_ways
 from backend.mission.ports import Status
 from backend.mission.runner import Runner
-from backend.mission.safety import Veto, battery_to_return_percent, resume_vetoes
+from backend.mission.safety import Veto, resume_vetoes
 from backend.mission.state import GROUND, TERMINAL, MissionState, fold
+from backend.mission.status import status_of
 from backend.mission.watch import GOING_HOME
-from backend.spec import MissionSpec, Place
+from backend.spec import MissionSpec, Place, SearchArea
 from hardware.ports import VehicleUnreachable
 from hardware.readings import Telemetry
 from planner.types import PlannerError
@@ -40,6 +41,7 @@ log = logging.getLogger("crossfix.mission")
 TELEMETRY_S = 0.1
 TICKS_A_STATUS = 10
 CONNECT_AT_START_S = 3.0
+EDITED_IN_FLIGHT = "in hold, change its search area; or draft a new mission"
 
 
 class MissionService:
@@ -129,8 +131,8 @@ class MissionService:
         async with self._lock(mission_id):
             state, _ = await self._load(mission_id)
             if state.phase not in GROUND:
-                raise MissionConflict("the mission has started and can no longer be edited", "draft a new mission")
-            await self._record(mission_id, state, inputs.Edited(spec))
+                raise MissionConflict("the mission has started and can no longer be edited", EDITED_IN_FLIGHT)
+            await self._record(mission_id, state, inputs.Edited(spec, by))
             await self._settle_belief(mission_id)
         log.info("mission %s edited by %s", mission_id, by)
 
@@ -168,6 +170,12 @@ class MissionService:
     async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
         """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
         runner = self._running(mission_id)
+        if runner is not None and isinstance(request.command, commands.ChangeArea):
+            task = await asyncio.to_thread(task_or_veto, runner.state, request.command.search)
+            runner = self._running(mission_id)
+            if runner is not None:
+                asked = runner.change_area(str(request.command_id), by, request.command, task)
+                return await self._answered(runner, request, asked)
         if runner is not None:
             return await self._to_runner(runner, request, by)
         async with self._lock(mission_id):
@@ -225,7 +233,11 @@ class MissionService:
 
     async def _to_runner(self, runner: Runner, request: CommandRequest, by: str) -> CommandReply:
         """At once: what moves or stops the vehicle is under way before the journal is waited for."""
-        asked = runner.command(str(request.command_id), by, request.command)
+        return await self._answered(runner, request, runner.command(str(request.command_id), by, request.command))
+
+    async def _answered(
+        self, runner: Runner, request: CommandRequest, asked: tuple[effects.Effect, ...]
+    ) -> CommandReply:
         await runner.outbox.flushed()
         return _reply(request, asked, runner.outbox.last_seq)
 
@@ -271,6 +283,15 @@ class MissionService:
         situation = runner.watch.situation() if runner else None
         start = self._platform(telemetry, task) if runner else task.place(0.0, 0.0)
         return await asyncio.to_thread(forecast, task, state.bearings, start, place, situation)
+
+    async def outlook(self, mission_id: str, search: SearchArea) -> Outlook:
+        """What to expect of another search area now. Raises MissionNotFound, MissionConflict unless the mission flies,
+        MissionInputError."""
+        runner = self._running(mission_id)
+        if runner is None:
+            await self._load(mission_id)
+            raise MissionConflict("the mission is not flying", "edit the draft, or draft a new mission")
+        return await asyncio.to_thread(outlook, runner.state, search, runner.watch.situation(), self._equipment.threads)
 
     async def preview(self, spec: MissionSpec) -> Preview:
         """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
@@ -319,29 +340,7 @@ class MissionService:
         return None if self._runner is None else self._runner.mission_id
 
     def status(self) -> Status:
-        runner = self._runner
-        if runner is None:
-            detail = "" if self.telemetry().connected else "no vehicle is connected"
-            return Status(
-                None, None, detail or "no mission is flying", None, "off", None, None, None, self._equipment.database()
-            )
-        state, last = runner.state, runner.listening.last
-        situation = runner.watch.situation()
-        position = situation.telemetry.position
-        needed = None
-        if position is not None:
-            needed = battery_to_return_percent(runner.task.limits, position, situation.drain_percent_s)
-        return Status(
-            mission_id=runner.mission_id,
-            phase=state.phase,
-            doing=doing(state),
-            waits_for=waits_for(state),
-            receiver=runner.listening.state,
-            receiver_power_db=None if last is None else last.power_db,
-            receiver_age_s=runner.listening.age_s,
-            battery_to_return_percent=needed,
-            database="lost" if runner.outbox.failing else self._equipment.database(),
-        )
+        return status_of(self._runner, self._equipment)
 
     async def _show(self) -> None:
         """Telemetry ten times, status once a second of the wall."""

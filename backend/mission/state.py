@@ -63,10 +63,10 @@ class Answer:
 class MissionState:
     """`chosen`: the place being proposed, flown to or measured at, None when the next is still to be planned.
 
-    avoid: places vetoed or without a usable sweep since the last bearing. belief_current: no bearing came or went
-    since `belief` was computed. localized_at_s: when the belief was first good enough. homebound: an abort or a return
-    was ordered last, and no hold since. open_alerts: ids raised and not cleared. answered: the first answer to every
-    command id.
+    avoid: places vetoed or without a usable sweep since the last bearing, or since the search area changed.
+    belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: when
+    the belief was first good enough. homebound: an abort or a return was ordered last, and no hold since. open_alerts:
+    ids raised and not cleared. answered: the first answer to every command id.
     """
 
     phase: Phase = "draft"
@@ -125,6 +125,10 @@ class MissionState:
 def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
     """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
     match event:
+        case MissionEdited(spec=spec) if state.started_at_s is not None:
+            return replace(
+                state, spec=spec, chosen=None, accepted=False, avoid=(), belief_current=False, localized_at_s=None
+            )
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(state, spec=spec, automatic=spec.flight.automatic, belief_current=False, antenna=None)
         case MissionStarted():

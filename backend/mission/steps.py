@@ -38,6 +38,10 @@ class Steps:
     keep_sweep: Callable[[Measured, int, int], None]
     _belief: tuple[tuple[str, ...], GridBelief] | None = field(default=None)
 
+    def adopt(self, task: Localization) -> None:
+        """Go on with another task: what was believed in the old one is no belief of it."""
+        self.task, self._belief = task, None
+
     async def take_off(self, effect: effects.TakeOff) -> inputs.Input:
         vehicle, now = self.equipment.vehicle, await fresh(self.situation)
         position = now.telemetry.position

@@ -223,6 +223,18 @@ class Preview(Model):
     plan_ms: float
 
 
+class AreaOutlook(Model):
+    """Another search area in flight: what the bearings so far would say there, and the next place (None: `no_plan` says
+    why). allowed False: it cannot be searched from where the vehicle is, `reason` and `remedy` say why."""
+
+    allowed: bool
+    reason: str
+    remedy: str
+    belief: BeliefUpdated
+    plan: PlanChosen | None
+    no_plan: str
+
+
 class AreaUpload(Model):
     """The text of a GeoJSON or KML file that holds one or more polygons."""
 

@@ -261,7 +261,9 @@ export interface paths {
         };
         /**
          * Get Belief
-         * @description The belief after so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm.
+         * @description The last belief of so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm.
+         *
+         *     `seq`: up to that event only, when a bearing was left out or the search area changed later.
          */
         get: operations["get_belief"];
         put?: never;
@@ -367,6 +369,26 @@ export interface paths {
          * @description The expected time to localization when the vehicle measured at this place next.
          */
         post: operations["expected_time"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/area-outlook": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Area Outlook
+         * @description What to expect if a mission in flight searched elsewhere from now on. Nothing is changed.
+         */
+        post: operations["area_outlook"];
         delete?: never;
         options?: never;
         head?: never;
@@ -689,6 +711,18 @@ export interface components {
             vertices: number;
             notes: string[];
         };
+        /**
+         * @description Another search area in flight: what the bearings so far would say there, and the next place (None: `no_plan` says
+         *     why). allowed False: it cannot be searched from where the vehicle is, `reason` and `remedy` say why.
+         */
+        AreaOutlook: {
+            allowed: boolean;
+            reason: string;
+            remedy: string;
+            belief: components["schemas"]["BeliefUpdated"];
+            plan: components["schemas"]["PlanChosen"] | null;
+            no_plan: string;
+        };
         /** @description The text of a GeoJSON or KML file that holds one or more polygons. */
         AreaUpload: {
             text: string;
@@ -776,6 +810,24 @@ export interface components {
             rollouts: number;
             dropped_in_round: number | null;
         };
+        /** @description In hold: search here from now on. The bearings that were taken count on. */
+        ChangeArea: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "change_area";
+            search: components["schemas"]["SearchArea"];
+        };
+        /** @description In hold: search here from now on. The bearings that were taken count on. */
+        ChangeAreaInput: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "change_area";
+            search: components["schemas"]["SearchAreaInput"];
+        };
         CheckFact: {
             name: string;
             ok: boolean;
@@ -783,7 +835,7 @@ export interface components {
             remedy: string;
             blocking: boolean;
         };
-        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
+        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["ChangeArea"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
         /** @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. */
         CommandAccepted: {
             /**
@@ -820,7 +872,7 @@ export interface components {
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
-            command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
+            command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
         };
         ControlReleased: {
             /**
@@ -1324,6 +1376,7 @@ export interface components {
             kind: "mission_drafted";
             spec: components["schemas"]["MissionSpec"];
         };
+        /** @description Before the start anything may be edited; in hold the search area only. by: who did, None: not told. */
         MissionEdited: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1331,6 +1384,7 @@ export interface components {
              */
             kind: "mission_edited";
             spec: components["schemas"]["MissionSpec"];
+            by: string | null;
         };
         MissionEnded: {
             /**
@@ -1347,7 +1401,7 @@ export interface components {
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
         };
-        /** @description Everything needed to fly one search; frozen when the mission starts. */
+        /** @description Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold). */
         MissionSpec: {
             name: string;
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
@@ -1359,7 +1413,7 @@ export interface components {
             flight: components["schemas"]["FlightSpec"];
             timers: components["schemas"]["TimerSpec"];
         };
-        /** @description Everything needed to fly one search; frozen when the mission starts. */
+        /** @description Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold). */
         MissionSpecInput: {
             name: string;
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
@@ -1825,6 +1879,22 @@ export interface components {
             seq: number | null;
             shown_seq: number;
             watchers: number;
+        };
+        /** @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec. */
+        SearchArea: {
+            area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
+            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
+            fence: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"]) | null;
+            fence_margin_m: number;
+            no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
+        };
+        /** @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec. */
+        SearchAreaInput: {
+            area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
+            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
+            fence: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"]) | null;
+            fence_margin_m: number;
+            no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
         };
         /** @description The bearing sensor as the planner and the localizer assume it. */
         SensorSpec: {
@@ -2567,6 +2637,7 @@ export interface operations {
     get_belief: {
         parameters: {
             query?: {
+                seq?: number | null;
                 lite?: boolean;
             };
             header?: never;
@@ -2762,6 +2833,42 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ExpectedTime"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    area_outlook: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SearchAreaInput"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AreaOutlook"];
                 };
             };
             /** @description What went wrong and how to mend it */

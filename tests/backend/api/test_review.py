@@ -16,6 +16,7 @@ from backend.events import (
     BearingExcluded,
     BearingMeasured,
     MissionDrafted,
+    MissionEdited,
     MissionEnded,
     MissionStarted,
     PhaseChanged,
@@ -113,6 +114,25 @@ async def test_a_past_belief_is_rebuilt_as_it_was(client, flown, counted):
         reply = await client.get(f"{flown}/beliefs/{len(counted)}", params={"lite": lite})
         corners = TASK.corners_lon_lat(belief)
         assert reply.content == encode_belief("flown", len(counted), belief.density, corners, lite=lite)
+
+
+async def test_a_belief_from_before_a_bearing_was_left_out_or_the_area_changed_is_rebuilt_too(client, services, flown):
+    _, earlier = TASK.belief_fact(BEARINGS[:2])
+    recorded = await services.journal.read("flown")
+    excluded = next(r.seq for r in recorded if r.event.kind == "bearing_excluded")
+    reply = await client.get(f"{flown}/beliefs/2", params={"seq": excluded})
+    assert reply.content == encode_belief("flown", 2, earlier.density, TASK.corners_lon_lat(earlier), lite=False)
+
+    west = Polygon(coordinates=[[corner(-150, 0), corner(50, 0), corner(50, 200), corner(-150, 200), corner(-150, 0)]])
+    task = localization(SPEC.model_copy(update={"area": west}), HOME, 100.0)
+    fact, later = task.belief_fact(COUNTED)
+    await services.journal.append("flown", [MissionEdited(spec=task.mission), fact])
+    frames = [(await client.get(f"{flown}/beliefs/2", params=q)).content for q in ({"seq": recorded[-1].seq}, {})]
+    _, before = TASK.belief_fact(COUNTED)
+    assert frames == [
+        encode_belief("flown", 2, before.density, TASK.corners_lon_lat(before), lite=False),
+        encode_belief("flown", 2, later.density, task.corners_lon_lat(later), lite=False),
+    ]
 
 
 async def test_there_is_no_belief_beyond_the_last_bearing(client, flown):

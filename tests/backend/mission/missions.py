@@ -13,7 +13,16 @@ from backend.mission.effects import Effect, Record
 from backend.mission.machine import transition
 from backend.mission.safety import Veto
 from backend.mission.state import MissionState, evolve
-from backend.spec import FlightSpec, LocalizationSpec, MissionSpec, Place, Polygon, SensorSpec
+from backend.spec import (
+    FlightSpec,
+    LocalizationSpec,
+    MissionSpec,
+    Place,
+    Polygon,
+    SearchArea,
+    SensorSpec,
+    UniformPriorSpec,
+)
 
 HOME = Place(lat=50.0, lon=7.0)
 AREA = Polygon(coordinates=[[(7.0, 50.0), (7.004, 50.0), (7.004, 50.001), (7.0, 50.001), (7.0, 50.0)]])
@@ -22,6 +31,13 @@ SPEC = MissionSpec(
     area=AREA,
     sensor=SensorSpec(maximum_retakes=1),
     localization=LocalizationSpec(maximum_bearings=4),
+)
+ELSEWHERE = SearchArea(
+    area=Polygon(coordinates=[[(7.0, 50.001), (7.004, 50.001), (7.004, 50.002), (7.0, 50.002), (7.0, 50.001)]]),
+    prior=UniformPriorSpec(),
+    fence=None,
+    fence_margin_m=200.0,
+    no_fly=[],
 )
 WAITING_SPEC = SPEC.model_copy(update={"flight": FlightSpec(automatic=False)})
 CHECK = CheckFact(name="link", ok=True, detail="ok", remedy="", blocking=True)
@@ -212,6 +228,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
         commands.Return(),
         commands.Abort(),
         commands.Override(place=HOME),
+        commands.ChangeArea(search=ELSEWHERE),
         commands.Accept(),
         commands.Veto(),
         commands.SetAutomatic(automatic=True),
@@ -225,10 +242,11 @@ def every_input(state: MissionState) -> list[inputs.Input]:
     return [
         *(commanded(c, f"every-{i}") for i, c in enumerate(ordered)),
         commanded(commands.Override(place=HOME), "vetoed", objections=(VETO,)),
+        commanded(commands.ChangeArea(search=ELSEWHERE), "area", objections=(VETO,)),
         commanded(commands.Resume(), "on-ground", on_ground=True),
         commanded(commands.Resume(), "not given back", objections=(VETO,)),
         commanded(commands.Start(), "refused", objections=(VETO,)),
-        inputs.Edited(SPEC),
+        inputs.Edited(SPEC, "anna"),
         inputs.PreflightDone((CHECK,)),
         inputs.PreflightDone((FAILED_CHECK,)),
         inputs.InTheAir(HOME, 40.0),

@@ -47,6 +47,11 @@ def check_rules(before: MissionState, given_: inputs.Input, after: MissionState,
     if isinstance(command, commands.Resume) and given_.objections:  # type: ignore[union-attr]
         assert not any(isinstance(e, (*VEHICLE, asked.ReleasePilotLatch)) for e in effects)
         assert (after.phase, after.pilot_has_control) == (before.phase, before.pilot_has_control)
+    if isinstance(command, commands.ChangeArea):
+        assert not any(isinstance(e, VEHICLE) for e in effects), "an edit sent something to the vehicle"
+    if before.started_at_s is not None and after.spec != before.spec:
+        assert isinstance(command, commands.ChangeArea)
+        assert before.phase == "hold"
     if before.phase in TERMINAL:
         assert after.phase == before.phase
         assert after.outcome == before.outcome
