@@ -23,6 +23,7 @@ class ControlLatch:
         self._stale: int | None = None
         self._mode: int | None = None
         self._armed = False
+        self._landed = False
         self._reason: str | None = None
 
     @property
@@ -33,7 +34,7 @@ class ControlLatch:
     @property
     def controller(self) -> Controller:
         if self._reason is not None:
-            return "pilot"
+            return "nobody" if self._landed else "pilot"
         return "nobody" if self._expected is None else "crossfix"
 
     @property
@@ -55,6 +56,7 @@ class ControlLatch:
         """The vehicle's mode as heard. Returns the reason when this closes the latch now."""
         self._mode = mode
         was_armed, self._armed = self._armed, armed
+        self._landed = not armed and (was_armed or self._landed)
         if was_armed and not armed:
             self._expected = None  # the flight has ended; a new one starts with a command
         if not armed and self._expected is None:
@@ -81,7 +83,7 @@ class ControlLatch:
 
     def latch(self, reason: str) -> str:
         """Close it for a reason other than the mode (the autopilot's own word that the pilot moved the sticks)."""
-        self._reason = reason
+        self._reason, self._landed = reason, False
         return reason
 
     def release(self) -> None:

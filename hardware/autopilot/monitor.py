@@ -91,8 +91,9 @@ class Monitor:
         self.announce(f"connected to {dialect.name} on {self.link.url}")
         await self._request_streams()
         first = Deadline(self.clock, 5.0, 3.0)
-        while self.snapshot.position is None and not first.passed:
+        while (self.snapshot.position is None or self.snapshot.in_air is None) and not first.passed:
             await self.news.wait()
+        self._on_mode()  # before anything is commanded it is known whether a pilot flies
         self._tasks = [
             asyncio.create_task(self._watch_link(), name="vehicle-link-watch"),
             asyncio.create_task(self._keep_streams(), name="vehicle-streams"),
@@ -124,7 +125,7 @@ class Monitor:
             if self.snapshot.reboots != reboots:
                 reboots = self.snapshot.reboots
                 self.announce("the autopilot has started anew")
-            elif not (self.connected and ceased):
+            elif not ceased or self.silence.seconds > LINK_LOST_WALL_S:
                 continue
             await self._request_streams()
 
@@ -133,22 +134,27 @@ class Monitor:
         while True:
             await asyncio.sleep(0.1)
             before, looked = looked, time.monotonic()
-            self.silence.look(looked - before)
-            lost = self.silence.seconds > LINK_LOST_WALL_S
-            if lost and self.connected:
-                self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
-                self.announce("vehicle link lost")
-                self.news.tell()
-            elif not lost and not self.connected and self._mode_heard_again:
-                self.connected = True
-                outage = self.clock.now() - (self._lost_at_s or self.clock.now())
-                self.announce(f"vehicle link restored after {outage:.1f} s")
-                self.news.tell()
+            self.look_at_link(looked - before)
+
+    def look_at_link(self, elapsed_s: float) -> None:
+        """Is the vehicle still heard? So many seconds of the wall after the look before."""
+        self.silence.look(elapsed_s)
+        lost = self.silence.seconds > LINK_LOST_WALL_S
+        if lost and self.connected:
+            self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
+            self.snapshot.forget_landed()
+            self.announce("vehicle link lost")
+            self.news.tell()
+        elif not lost and not self.connected and self._heartbeat_heard_again:
+            self.connected = True
+            outage = self.clock.now() - (self._lost_at_s or self.clock.now())
+            self.announce(f"vehicle link restored after {outage:.1f} s")
+            self.news.tell()
 
     @property
-    def _mode_heard_again(self) -> bool:
-        """Before anything is commanded after a silence, what the vehicle did meanwhile is known."""
-        return (self.snapshot.mode_at_s or -math.inf) > (self._lost_at_s or -math.inf)
+    def _heartbeat_heard_again(self) -> bool:
+        """Before anything is commanded after a silence, what the vehicle did meanwhile is known: mode and arming."""
+        return (self.snapshot.heartbeat_at_s or -math.inf) > (self._lost_at_s or -math.inf)
 
     def _on_message(self, name: str, fields: Fields) -> None:
         now = self.clock.now()
@@ -175,12 +181,14 @@ class Monitor:
     def _on_mode(self) -> None:
         snapshot = self.snapshot
         mode = snapshot.custom_mode
-        if mode is None or snapshot.armed is None:
+        if mode is None or snapshot.armed is None or self._dialect is None:
             return
         if mode != self._shown_mode:
             if self._shown_mode is not None:
                 self.announce(f"mode {self.mode_name(mode)}")
             self._shown_mode = mode
+        if not self.connected and mode in self._dialect.calm and not self._heartbeat_heard_again:
+            return  # an autopilot goes there by itself when it has landed, as it may have done unheard
         reason = self.latch.observe(mode, snapshot.armed, bool(snapshot.in_air))
         if reason is not None:
             self._take_over(reason)

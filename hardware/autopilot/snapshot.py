@@ -122,6 +122,10 @@ class Snapshot:
             case "EXTENDED_SYS_STATE":
                 self.landed_state = int(fields["landed_state"])
 
+    def forget_landed(self) -> None:
+        """After a silence it may stand or fly: until the autopilot says so again, arming and height tell."""
+        self.landed_state = _UNDEFINED
+
     def _attitude(self, fields: Fields, heard_at_s: float) -> None:
         yaw = fields["yaw"]
         if yaw is None or not math.isfinite(yaw):

@@ -155,3 +155,26 @@ def test_a_mode_selected_on_the_ground_during_our_take_off_latches() -> None:
     assert control.observe(POSCTL, armed=False, in_air=False) is not None
     control.release()
     assert control.observe(HOLD, armed=False, in_air=False) is None
+
+
+def test_after_the_landing_nobody_has_control_though_only_an_operator_opens_the_latch() -> None:
+    control = latch()
+    flying(control, RETURN)
+    assert control.controller == "pilot"
+    control.observe(HOLD, armed=True, in_air=False)
+    assert control.controller == "pilot"
+    control.observe(HOLD, armed=False, in_air=False)
+    assert control.controller == "nobody"
+    assert control.reason is not None
+    control.observe(POSCTL, armed=True, in_air=False)
+    assert control.controller == "pilot"
+
+
+def test_who_selects_a_mode_on_the_ground_during_a_later_take_off_is_a_pilot() -> None:
+    control = latch()
+    flying(control, POSCTL)
+    control.observe(POSCTL, armed=False, in_air=False)
+    control.release()
+    control.command(frozenset({GUIDED}))
+    control.observe(RETURN, armed=False, in_air=False)
+    assert control.controller == "pilot"
