@@ -116,13 +116,20 @@ def near(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
     return float((np.abs(picture - np.array(colour)).max(axis=2) < 12).mean())
 
 
-def test_pictures_of_a_package_lie_under_the_mission(server: Server, browser: Browser) -> None:
+def middle(picture: np.ndarray) -> np.ndarray:
+    """Inside the area, where nothing but the map and the belief is drawn before the start."""
+    height, width, _ = picture.shape
+    return picture[int(0.3 * height) : int(0.7 * height), int(0.28 * width) : int(0.72 * width)]
+
+
+def test_pictures_of_a_package_lie_under_the_mission_and_its_belief(server: Server, browser: Browser) -> None:
     map_id = upload(server, archive(green_tile, (13, 14, 15, 16), vector=False))
     tab = MapTab(browser, server, map_id)
     try:
         tab.screen.open(server.draft())
         tab.screen.map_ready()
         tab.wait_for(lambda: near(tab.picture(), GREEN) > 0.3, "the picture tiles")
+        tab.wait_for(lambda: near(middle(tab.picture()), GREEN) < 0.1, "the belief over them")
         assert tab.foreign == []
         assert any(url.endswith("/tiles.pmtiles") for url in tab.asked)
     finally:
@@ -130,10 +137,7 @@ def test_pictures_of_a_package_lie_under_the_mission(server: Server, browser: Br
 
 
 def dark_pixels(picture: np.ndarray) -> int:
-    """In the middle of the map, inside the area, where nothing but the map is drawn before the start."""
-    height, width, _ = picture.shape
-    middle = picture[int(0.3 * height) : int(0.7 * height), int(0.28 * width) : int(0.72 * width)]
-    return int((middle.max(axis=2) < 130).sum())
+    return int((middle(picture).max(axis=2) < 130).sum())
 
 
 @pytest.mark.parametrize("names", [True, False])

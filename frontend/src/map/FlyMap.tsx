@@ -130,7 +130,7 @@ function bind(map: GlMap): () => void {
     effect(() => paintBelief(map)),
     effect(() => putMeasured(map)),
     effect(() => {
-      for (const layer of missionLayers(palettes[settings.value.theme])) {
+      for (const layer of missionLayers(palettes[settings.value.theme], basemap.value !== null)) {
         const by = layer.metadata?.switch;
         if (by) map.setLayoutProperty(layer.id, "visibility", hidden.value.has(by) ? "none" : "visible");
       }
@@ -277,10 +277,10 @@ export function FlyMap() {
     });
     created.on("load", () => {
       addSources(created);
-      for (const layer of missionLayers(palettes[theme])) created.addLayer(layer);
+      for (const layer of missionLayers(palettes[theme], basemap.peek() !== null)) created.addLayer(layer);
       addBelief(created);
       unbind = bind(created);
-      void addBasemap(created, theme === "indoor" ? "dark" : "light", "no-fly").catch(() => undefined);
+      void addBasemap(created, theme === "indoor" ? "dark" : "light", "belief").catch(() => undefined);
       box.current?.setAttribute("data-ready", "true");
     });
     created.on("click", (event: MapMouseEvent) => {

@@ -22,8 +22,17 @@ const FONT = ["sans-serif"];
 
 const of = (what: string): ExpressionSpecification => ["==", ["get", "what"], what];
 
+/** What keeps the borders apart from a photograph under them. */
+function borderHalos(colours: Palette): Drawn[] {
+  const paint = { "line-color": colours.halo, "line-width": 6, "line-opacity": 0.7 };
+  return [
+    { id: "fence-halo", type: "line", source: "plan", filter: ["any", of("fence"), of("no_fly")], paint, metadata: { switch: "fence" } },
+    { id: "area-halo", type: "line", source: "plan", filter: of("area"), paint },
+  ];
+}
+
 /** Layers of one source stand together: at each change of the source the map draws its tiles' outlines over the whole screen. */
-export function missionLayers(colours: Palette): Drawn[] {
+export function missionLayers(colours: Palette, overMap = false): Drawn[] {
   const quality: ExpressionSpecification = [
     "interpolate-lab", ["linear"], ["get", "quality"], 0.6, colours.bearingLow, 0.95, colours.bearingHigh,
   ]; // prettier-ignore
@@ -33,6 +42,7 @@ export function missionLayers(colours: Palette): Drawn[] {
   const shade: ExpressionSpecification = ["match", ["get", "shade"], 0, colours.rounds[0], 1, colours.rounds[1], 2, colours.rounds[2], 3, colours.rounds[3], 4, colours.rounds[4], colours.rounds[5]]; // prettier-ignore
   return [
     { id: "no-fly", type: "fill", source: "plan", filter: of("no_fly"), paint: { "fill-color": colours.noFly, "fill-opacity": 0.25 }, metadata: { switch: "fence" } },
+    ...(overMap ? borderHalos(colours) : []),
     { id: "no-fly-line", type: "line", source: "plan", filter: of("no_fly"), paint: { "line-color": colours.noFly, "line-width": 2 }, metadata: { switch: "fence" } },
     { id: "fence", type: "line", source: "plan", filter: of("fence"), paint: { "line-color": colours.fence, "line-width": 2.5, "line-dasharray": [1, 1.5] }, metadata: { switch: "fence" } },
     { id: "area", type: "line", source: "plan", filter: of("area"), paint: { "line-color": colours.area, "line-width": 2, "line-dasharray": [5, 3] } },
