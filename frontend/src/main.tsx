@@ -11,10 +11,15 @@ import "./style.css";
 /** The example needs this long until there is something to show. */
 const TOUR_AFTER_MS = 4000;
 
-applySettings();
-watchKeys();
-watchAlerts();
-if (isFixture) await prepareFixture();
-render(<App />, document.getElementById("app")!);
-if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
-followRoute();
+/** No top-level await: the pages import from this file and would wait for it for ever. */
+async function start(): Promise<void> {
+  applySettings();
+  watchKeys();
+  watchAlerts();
+  if (isFixture) await prepareFixture();
+  render(<App />, document.getElementById("app")!);
+  if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
+  followRoute();
+}
+
+void start();

@@ -1,7 +1,6 @@
 // A MapLibre map that needs nothing from outside: plain grid, or an offline package from this server.
 import { addProtocol, AttributionControl, Map as GlMap, NavigationControl, ScaleControl, setWorkerUrl, type GeoJSONSource, type StyleSpecification } from "maplibre-gl";
 import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
-import "maplibre-gl/dist/maplibre-gl.css";
 import { signal } from "@preact/signals";
 import { t } from "../i18n";
 import type { UnitSystem } from "../units/quantities";
@@ -76,7 +75,7 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
   map.keyboard.disableRotation();
   map.addControl(new NavigationControl({ showCompass: false }), "top-right");
   map.addControl(new ScaleControl({ maxWidth: 140, unit: units }), "bottom-right");
-  map.addControl(new AttributionControl({ compact: true, customAttribution: "" }), "bottom-right");
+  map.addControl(new AttributionControl({ compact: false, customAttribution: "" }), "bottom-right");
   const anchor: LonLat = lastCamera?.center ?? start;
   const redrawGrid = () => {
     const { lng, lat } = map.getCenter();

@@ -1,15 +1,13 @@
 // Vehicle and receiver in full: every value with its age, and the last five minutes as lines.
 import { signal } from "@preact/signals";
-import { useEffect, useRef } from "preact/hooks";
-import uPlot from "uplot";
-import "uplot/dist/uPlot.min.css";
 import { settings } from "../app/settings";
 import { live, nowMs, serverNowMs } from "../app/store";
 import { t, type MessageKey } from "../i18n";
+import { Chart } from "./Chart";
 import { Payloads } from "./Payloads";
 import { ageS, freshness } from "../state/age";
 import { emptySeries, extend, type Series } from "../state/series";
-import { formatAge, formatBearing, formatClock, formatLength, formatSpeed, formatNumber } from "../units/quantities";
+import { formatAge, formatBearing, formatLength, formatSpeed, formatNumber } from "../units/quantities";
 
 const series = signal<Series>(emptySeries);
 
@@ -59,46 +57,6 @@ function Values() {
   );
 }
 
-function style(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-}
-
-/** At least ten units high, so that a steady value is a steady line and not noise over the whole height. */
-function spread(low: number, high: number): [number, number] {
-  const more = Math.max(1, (10 - (high - low)) / 2);
-  return [low - more, high + more];
-}
-
-function Chart({ pick, label }: { pick: (s: Series) => (number | null)[]; label: MessageKey }) {
-  const box = useRef<HTMLDivElement>(null);
-  const plot = useRef<uPlot | null>(null);
-  const theme = settings.value.theme;
-  useEffect(() => {
-    const axis = { stroke: style("--muted"), grid: { stroke: style("--line"), width: 0.5 }, ticks: { show: false }, font: "11px system-ui" };
-    plot.current = new uPlot(
-      {
-        width: box.current!.clientWidth,
-        height: 120,
-        legend: { show: false },
-        cursor: { show: false },
-        axes: [{ ...axis, values: (_plot, at) => at.map((s) => formatClock(new Date(s * 1000).toISOString())) }, { ...axis, size: 44 }],
-        scales: { y: { range: (_plot, low, high) => spread(low, high) } },
-        series: [{}, { stroke: style("--power"), width: 2, spanGaps: false }],
-      },
-      [series.peek().t, pick(series.peek())],
-      box.current!,
-    );
-    return () => plot.current?.destroy();
-  }, [theme]);
-  useEffect(() => plot.current?.setData([series.value.t, pick(series.value)]), [series.value]);
-  return (
-    <figure class="chart">
-      <figcaption>{t(label)}</figcaption>
-      <div ref={box} role="img" aria-label={t(label)} />
-    </figure>
-  );
-}
-
 /** Called once the chunk is there: the lines begin with the first look. */
 export function collect(): void {
   const { telemetry, status } = live.peek();
@@ -112,13 +70,14 @@ export function collect(): void {
 setInterval(collect, 1000);
 
 export function Instruments() {
+  const { t: times, powerDb, altitudeM, batteryPercent } = series.value;
   return (
     <>
       <Values />
       <Payloads />
-      <Chart label="instruments.chart.power" pick={(s) => s.powerDb} />
-      <Chart label="instruments.chart.altitude" pick={(s) => s.altitudeM} />
-      <Chart label="instruments.chart.battery" pick={(s) => s.batteryPercent} />
+      <Chart t={times} values={powerDb} label={t("instruments.chart.power")} />
+      <Chart t={times} values={altitudeM} label={t("instruments.chart.altitude")} />
+      <Chart t={times} values={batteryPercent} label={t("instruments.chart.battery")} />
     </>
   );
 }
