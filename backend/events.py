@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from backend.spec import Area, MissionSpec, Model, Place
+from backend.spec import Area, MissionSpec, Model, Place, SearchArea
 
 Phase = Literal[
     "draft",  # editable, nothing flown
@@ -89,11 +89,16 @@ class MissionDrafted(Fact):
 
 
 class MissionEdited(Fact):
-    """Before the start anything may be edited; in hold the search area only. by: who did, None: not told."""
-
     kind: Literal["mission_edited"] = "mission_edited"
     spec: MissionSpec
-    by: str | None = None
+
+
+class AreaChanged(Fact):
+    """In hold, in flight: from here on this is searched. The bearings taken before count on."""
+
+    kind: Literal["area_changed"] = "area_changed"
+    search: SearchArea
+    by: str
 
 
 class PreflightChecked(Fact):
@@ -370,6 +375,7 @@ class MissionEnded(Fact):
 Event = Annotated[
     MissionDrafted
     | MissionEdited
+    | AreaChanged
     | PreflightChecked
     | AntennaChecked
     | MissionStarted

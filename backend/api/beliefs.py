@@ -13,6 +13,7 @@ from backend.wire.belief_frame import encode_belief
 FOLDED_KINDS = (
     "mission_drafted",
     "mission_edited",
+    "area_changed",
     "mission_started",
     "bearing_measured",
     "bearing_excluded",

@@ -9,14 +9,29 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 
-from backend.events import BeliefUpdated, MissionDrafted, MissionEdited, MissionEnded, MissionStarted, Recorded
+from backend.events import (
+    AreaChanged,
+    BeliefUpdated,
+    MissionDrafted,
+    MissionEdited,
+    MissionEnded,
+    MissionStarted,
+    Recorded,
+)
 from backend.mission.ports import TrackPoint
 from backend.mission.state import GROUND
 from backend.store.digest import EPOCH, MissionDigest
 from backend.store.entries import SweepEntry
 from backend.wire.resources import Mission, MissionSummary, SweepRecord, TrackFact
 
-DETAIL_KINDS = ("mission_drafted", "mission_edited", "mission_started", "belief_updated", "mission_ended")
+DETAIL_KINDS = (
+    "mission_drafted",
+    "mission_edited",
+    "area_changed",
+    "mission_started",
+    "belief_updated",
+    "mission_ended",
+)
 """The events that `mission` needs."""
 
 
@@ -51,6 +66,8 @@ def mission(digest: MissionDigest, recorded: Sequence[Recorded]) -> Mission:
         match record.event:
             case MissionDrafted(spec=given) | MissionEdited(spec=given):
                 spec = given
+            case AreaChanged(search=search) if spec is not None:
+                spec = spec.searching(search)
             case MissionStarted(home=place):
                 home = place
             case BeliefUpdated() as updated:

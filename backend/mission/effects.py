@@ -38,7 +38,7 @@ class TakeOff:
 
 @dataclass(frozen=True, slots=True)
 class SearchElsewhere:
-    """From now on by the specification as it was just edited."""
+    """From now on in the area that was just changed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,6 @@ class Commanded:
 @dataclass(frozen=True, slots=True)
 class Edited:
     spec: MissionSpec
-    by: str
 
 
 @dataclass(frozen=True, slots=True)

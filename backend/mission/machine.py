@@ -93,9 +93,9 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
     match given:
         case Commanded():
             operator.answer(step, given)
-        case Edited(spec=spec, by=by):
+        case Edited(spec=spec):
             if state.phase in GROUND:
-                step.record(MissionEdited(spec=spec, by=by))
+                step.record(MissionEdited(spec=spec))
                 step.go("draft", "edited")
         case PreflightDone():
             _preflight(step, given)

@@ -21,13 +21,13 @@ from backend.commands import (
 from backend.events import (
     AbortOrdered,
     AlertAcknowledged,
+    AreaChanged,
     AutomaticChanged,
     BearingExcluded,
     CommandAccepted,
     CommandRefused,
     ControlReleased,
     HoldOrdered,
-    MissionEdited,
     MissionStarted,
     PlanChosen,
     PlanVetoed,
@@ -254,7 +254,7 @@ def _change_area(step: Step, given: Commanded, command: ChangeArea) -> None:
     if state.phase != "hold":
         raise Refused("the search area is changed in hold only", "hold, then change it")
     _refuse_objections(step, given)
-    step.record(MissionEdited(spec=state.mission.searching(command.search), by=given.by))
+    step.record(AreaChanged(search=command.search, by=given.by))
     step.do(SearchElsewhere())
     step.do(UpdateBelief())
 

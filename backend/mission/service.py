@@ -132,7 +132,7 @@ class MissionService:
             state, _ = await self._load(mission_id)
             if state.phase not in GROUND:
                 raise MissionConflict("the mission has started and can no longer be edited", EDITED_IN_FLIGHT)
-            await self._record(mission_id, state, inputs.Edited(spec, by))
+            await self._record(mission_id, state, inputs.Edited(spec))
             await self._settle_belief(mission_id)
         log.info("mission %s edited by %s", mission_id, by)
 

@@ -15,6 +15,7 @@ from backend.events import (
     AlertCleared,
     AlertRaised,
     AntennaChecked,
+    AreaChanged,
     AutomaticChanged,
     BearingExcluded,
     BearingMeasured,
@@ -125,7 +126,8 @@ class MissionState:
 def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
     """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
     match event:
-        case MissionEdited(spec=spec) if state.started_at_s is not None:
+        case AreaChanged(search=search):
+            spec = state.mission.searching(search)
             return replace(
                 state, spec=spec, chosen=None, accepted=False, avoid=(), belief_current=False, localized_at_s=None
             )

@@ -119,19 +119,28 @@ class Watch:
         """Ask the vehicle who has control; also called the moment it says that something changed."""
         telemetry = self.equipment.vehicle.telemetry()
         mode = telemetry.mode or "unknown"
-        unheard = "vehicle" in self._down_since or not telemetry.connected
         if telemetry.controller == "pilot" and mode in GOING_HOME and mode != self.tolerated_mode:
-            just_heard = self._heard_again is not None and not self._heard_again.passed
+            unheard = "vehicle" in self._down_since or not telemetry.connected
             if unheard or self.tolerated_mode is not None:
                 self.tolerated_mode = mode
-            elif just_heard and self.state().phase == "hold":
+            elif self._just_heard and self.state().phase in AUTOMATIC | {"hold"}:
                 self.tolerated_mode = mode
                 self.give(inputs.FailsafeActs(mode))
-        if mode == self.tolerated_mode and self.state().phase not in AUTOMATIC | {"manual"}:
+        if self._failsafes_doing(telemetry, mode):
             return
         self.tolerated_mode = None
         if telemetry.controller == "pilot" and not self.state().pilot_has_control:
             self.give(inputs.PilotTookOver(mode, line or f"the vehicle is in {mode}", mode in GOING_HOME))
+
+    @property
+    def _just_heard(self) -> bool:
+        return self._heard_again is not None and not self._heard_again.passed
+
+    def _failsafes_doing(self, telemetry: Telemetry, mode: str) -> bool:
+        """Not a pilot's: the autopilot's own way home, and the mode it goes to once it has landed."""
+        if self.tolerated_mode is None or self.state().phase in AUTOMATIC | {"manual"}:
+            return False
+        return mode == self.tolerated_mode or telemetry.in_air is False
 
     def _links(self, telemetry: Telemetry, now: float) -> None:
         heard = telemetry.heard_at_s
@@ -153,7 +162,7 @@ class Watch:
             if link == "vehicle":
                 self._heard_since_s = now
                 self._heard_again = Deadline(self.equipment.clock, HEARD_AGAIN_S, HEARD_AGAIN_WALL_S)
-            going_home = link == "vehicle" and self.tolerated_mode is not None
+            going_home = link == "vehicle" and self.failsafe_flies
             self.give(inputs.LinkUp(link, now - self._down_since.pop(link), going_home))
 
     def _battery(self, telemetry: Telemetry, now: float) -> None:

@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape
 import pymap3d.vincenty
 
 from backend.events import (
+    AreaChanged,
     BearingMeasured,
     BeliefUpdated,
     MissionDrafted,
@@ -125,6 +126,8 @@ def _features(
         match record.event:
             case MissionDrafted(spec=given) | MissionEdited(spec=given):
                 spec = given
+            case AreaChanged(search=search) if spec is not None:
+                spec = spec.searching(search)
             case BearingMeasured() as fact:
                 measured.append((record, fact))
             case BeliefUpdated() as updated:

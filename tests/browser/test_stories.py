@@ -193,6 +193,39 @@ def test_the_operator_sends_it_elsewhere_and_resumes(flight: Flight) -> None:
     screen.expect_phase("hold")
 
 
+def test_the_search_area_is_changed_by_a_slide_and_the_bearings_count_on(flight: Flight) -> None:
+    screen, before = flight.screen, flight.kinds()
+    screen.part("change-area").click()
+    screen.map_ready("edit-map")
+    screen.draw([(0.8, 0.3), (0.95, 0.3), (0.95, 0.6), (0.8, 0.6)])
+    expect(screen.part("area-size")).to_contain_text("8 corners")
+    screen.part("outlook-ask").click()
+    expect(screen.part("outlook-time")).to_contain_text("Localized in about")
+    expect(screen.part("outlook-error")).to_contain_text("expected error")
+    assert "area_changed" not in flight.kinds(), "nothing changes before the slide"
+    screen.slide("area-slider")
+    screen.map_ready()
+    expect(screen.row("area_changed")).to_be_visible()
+    flight.recorded_again("belief_updated", before.count("belief_updated"))
+    assert flight.kinds().count("bearing_measured") == before.count("bearing_measured")
+    assert screen.phase() == "hold"
+
+
+def test_an_area_away_from_the_vehicle_is_refused_before_it_can_be_slid_to(flight: Flight) -> None:
+    screen = flight.screen
+    screen.part("change-area").click()
+    screen.map_ready("edit-map")
+    screen.part("area-clear").click()
+    expect(screen.part("outlook-ask")).to_be_disabled()
+    screen.draw([(0.02, 0.02), (0.1, 0.02), (0.1, 0.1)])
+    screen.part("outlook-ask").click()
+    expect(screen.part("outlook-refused")).to_contain_text("outside the fence")
+    expect(screen.part("area-slider")).to_have_count(0)
+    screen.part("area-cancel").click()
+    screen.map_ready()
+    assert flight.kinds().count("area_changed") == 1
+
+
 def test_a_second_browser_sees_the_same(flight: Flight, second: Screen) -> None:
     screen = flight.screen
     flying = second.page.locator(f"[data-testid=mission-row][data-mission='{screen.mission_id}']")

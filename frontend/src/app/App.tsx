@@ -14,6 +14,7 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   new: () => import("../pages/EditPage").then((m) => m.EditPage),
   edit: () => import("../pages/EditPage").then((m) => m.EditPage),
   mission: () => import("../pages/FlyPage").then((m) => m.FlyPage),
+  area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
   sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
 };

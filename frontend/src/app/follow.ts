@@ -6,7 +6,8 @@ import { open, source } from "./store";
 
 export function followRoute(): () => void {
   return effect(() => {
-    const wanted = route.value.page === "mission" ? route.value.missionId : null;
+    const { value } = route;
+    const wanted = value.page === "mission" || value.page === "area" ? value.missionId : null;
     const now = source.peek();
     if (now === null || now.missionId !== wanted) open(sourceFor(wanted));
   });

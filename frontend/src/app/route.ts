@@ -6,6 +6,7 @@ export type Route =
   | { page: "new"; from: string | null }
   | { page: "edit"; missionId: string }
   | { page: "mission"; missionId: string }
+  | { page: "area"; missionId: string }
   | { page: "maps" };
 
 export function parseRoute(hash: string): Route {
@@ -13,7 +14,9 @@ export function parseRoute(hash: string): Route {
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
   if (parts[0] === "maps") return { page: "maps" };
-  if (parts[0] === "mission" && id) return parts[2] === "edit" ? { page: "edit", missionId: id } : { page: "mission", missionId: id };
+  if (parts[0] === "mission" && id) {
+    return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };
+  }
   return { page: "missions" };
 }
 
@@ -22,6 +25,7 @@ addEventListener("hashchange", () => {
   route.value = parseRoute(location.hash);
 });
 
+export const areaAddress = (id: string) => `${missionAddress(id)}/area`;
 export const missionAddress = (id: string) => `#/mission/${encodeURIComponent(id)}`;
 
 export function go(hash: string): void {

@@ -112,19 +112,14 @@ export const path = computed<readonly LonLat[]>(() => {
   return time === null && source.value?.kind !== "replay" ? [...flown, ...livePath.value] : flown;
 });
 
-/** Beliefs by number of bearings; a left-out bearing changes them all. */
+/** Beliefs by the event that told of them, the prior by the event since which it is the specification's. */
 const beliefs = new Map<number, BeliefFrame>();
 export const belief = signal<BeliefFrame | null>(null);
 
+const liveBelief = computed(() => live.value.belief);
+const liveBeliefSeq = computed(() => live.value.beliefSeq);
 effect(() => {
-  const frame = live.value.belief;
-  if (frame) beliefs.set(frame.bearings, frame);
-});
-
-const excludedCount = computed(() => mission.value.bearings.filter((b) => b.excluded).length);
-effect(() => {
-  excludedCount.value;
-  beliefs.clear();
+  if (liveBelief.value && liveBeliefSeq.value !== null) beliefs.set(liveBeliefSeq.value, liveBelief.value);
 });
 
 /** In flight the belief follows its event on the same socket: only when it does not is it asked for. */
@@ -133,32 +128,32 @@ const PUSHED_WITHIN_MS = 1_500;
 /** The picture to draw: what is supposed, else what happened. */
 export const shownBelief = computed(() => supposedHere.value?.frame ?? belief.value);
 
-const liveBelief = computed(() => live.value.belief);
 const beliefIsPushed = computed(() => cursor.value === null && source.value?.kind === "live" && inFlight(liveMission.value.phase));
-const beliefWanted = computed(() => (mission.value.spec ? (mission.value.belief?.fact.bearings ?? 0) : null));
+const shownMission = computed(() => happened.value.missionId);
+const beliefBearings = computed(() => happened.value.belief?.fact.bearings ?? 0);
+const beliefSeq = computed(() => (happened.value.spec ? (happened.value.belief?.seq ?? happened.value.specSeq) : null));
 
 effect(() => {
-  const wanted = beliefWanted.value;
-  const newest = liveBelief.value;
+  const seq = beliefSeq.value;
   const from = source.value;
-  const id = mission.value.missionId;
-  if (wanted === null || !from || !id) {
+  const id = shownMission.value;
+  if (seq === null || !from || !id) {
     belief.value = null;
     return;
   }
-  const known = newest?.bearings === wanted && cursor.value === null ? newest : beliefs.get(wanted);
+  const known = seq === liveBeliefSeq.value ? liveBelief.value : beliefs.get(seq);
   if (known) {
     belief.value = known;
     return;
   }
-  const timer = setTimeout(() => void ask(from, id, wanted), beliefIsPushed.value ? PUSHED_WITHIN_MS : 0);
+  const timer = setTimeout(() => void ask(from, id, seq), beliefIsPushed.value ? PUSHED_WITHIN_MS : 0);
   return () => clearTimeout(timer);
 });
 
-async function ask(from: Source, id: string, wanted: number): Promise<void> {
-  const frame = await from.belief(id, wanted).catch(() => null);
-  if (source.peek() !== from || beliefWanted.peek() !== wanted) return;
-  if (frame) beliefs.set(wanted, frame);
+async function ask(from: Source, id: string, seq: number): Promise<void> {
+  const frame = await from.belief(id, beliefBearings.peek(), seq).catch(() => null);
+  if (source.peek() !== from || beliefSeq.peek() !== seq) return;
+  if (frame) beliefs.set(seq, frame);
   belief.value = frame;
 }
 

@@ -6,7 +6,7 @@ import { localProblem, RequestFailed, unreachable } from "../sources/problem";
 import type { Command, CommandReply, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
-export type Desk = "bar" | "plan" | "proposal" | "start" | "sweep" | "alerts";
+export type Desk = "bar" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area";
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
 

@@ -16,8 +16,8 @@ import { FormField, PlaceField } from "./FormField";
 
 const MARGIN: NumberField = { kind: "number", path: "flight.fence_margin_m", label: "edit.fence.marginValue", unit: "m", min: 0 };
 
-/** Reads a dropped or chosen file into the draft; returns what to tell. Throws a sentence when it cannot be read. */
-export async function importFile(file: File, kind: What): Promise<string[]> {
+/** Reads a file into the draft; returns what to tell. Throws when it cannot be read. */
+async function importFile(file: File, kind: What): Promise<string[]> {
   const text = await file.text();
   if (/\.plan$/i.test(file.name)) {
     const { inclusions, exclusions } = readPlan(text);
@@ -30,10 +30,15 @@ export async function importFile(file: File, kind: What): Promise<string[]> {
   return imported.notes;
 }
 
-export const importProblem = (name: string, error: unknown): string => {
+const importProblem = (name: string, error: unknown): string => {
   const reason = error instanceof RequestFailed ? `${error.problem.detail} ${error.problem.remedy}`.trim() : error instanceof NotAPlan ? error.message : String(error);
   return t("edit.importFailed", { name, reason });
 };
+
+/** A dropped or chosen file goes into what is being drawn; what was left out or wrong is told. */
+export async function takeFile(file: File, onTold: (lines: string[]) => void): Promise<void> {
+  onTold(await importFile(file, what.peek()).catch((error: unknown) => [importProblem(file.name, error)]));
+}
 
 function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
   const [text, setText] = useState("");
@@ -118,7 +123,7 @@ const KINDS: readonly { what: What; label: "edit.draw.area" | "edit.draw.fence" 
   { what: "noFly", label: "edit.draw.noFly" },
 ];
 
-function DrawTools({ onFile }: { onFile: (file: File) => void }) {
+function DrawTools({ onTold }: { onTold: (lines: string[]) => void }) {
   const flip = (chosen: typeof tool.value) => (tool.value = tool.value === chosen ? "none" : chosen);
   return (
     <div class="draw-tools">
@@ -154,7 +159,7 @@ function DrawTools({ onFile }: { onFile: (file: File) => void }) {
           onChange={(e) => {
             const file = e.currentTarget.files?.[0];
             e.currentTarget.value = "";
-            if (file) onFile(file);
+            if (file) void takeFile(file, onTold);
           }}
         />
       </label>
@@ -166,17 +171,16 @@ interface Properties {
   failed: RequestFailed | null;
   told: readonly string[];
   onTold: (lines: string[]) => void;
-  onFile: (file: File) => void;
 }
 
-export function AreaSection({ failed, told, onTold, onFile }: Properties) {
+export function AreaSection({ failed, told, onTold }: Properties) {
   const now = draft.value!;
   const units = settings.value.units;
   const fence = now.spec.flight.fence as Area | null;
   return (
     <fieldset class="panel" data-testid="area-section">
       <legend>{t("edit.section.area")}</legend>
-      <DrawTools onFile={onFile} />
+      <DrawTools onTold={onTold} />
       <p class="muted">{tool.value === "none" ? t("edit.area.importHint") : t("edit.area.drawing")}</p>
       {told.map((line) => (
         <p class="field-message" role="alert" data-testid="area-message" key={line}>

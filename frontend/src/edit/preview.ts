@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import * as api from "../sources/api";
 import { asProblem } from "../commands/send";
-import type { MissionSpec, Preview, Problem } from "../wire";
+import type { MissionSpec, PlanChosen, Preview, Problem } from "../wire";
 
 export interface PreviewState {
   running: boolean;
@@ -31,6 +31,15 @@ export async function askPreview(spec: MissionSpec): Promise<void> {
     if (!aborted.aborted) preview.value = { running: false, found: null, problem: asProblem(error) };
   }
 }
+
+export const firstPlan = ({ first_place, start: _start, times_s: _times, ...found }: Preview): PlanChosen => ({
+  ...found,
+  kind: "plan_chosen",
+  place_number: 1,
+  place: first_place,
+  source: "planner",
+  by: null,
+});
 
 /** Counts of `times` in equal classes from the least to the largest. */
 export function histogram(times: readonly number[], classes: number): { fromS: number; toS: number; counts: number[] } {

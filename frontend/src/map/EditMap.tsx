@@ -5,21 +5,23 @@ import { useEffect, useRef } from "preact/hooks";
 import { TerraDraw, TerraDrawPolygonMode, TerraDrawRectangleMode, TerraDrawSelectMode, type GeoJSONStoreFeatures } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
 import { settings } from "../app/settings";
-import { vehicle } from "../app/store";
+import { mission, vehicle } from "../app/store";
 import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
 import { draft } from "../edit/draft";
-import { preview } from "../edit/preview";
+import { outlook } from "../edit/outlook";
+import { firstPlan, preview } from "../edit/preview";
 import { t } from "../i18n";
-import { boundsOf } from "../state/geometry";
-import { emptyMission } from "../state/mission";
+import { boundsOf, lonLat } from "../state/geometry";
+import type { At } from "../state/mission";
 import { ringsApart, ringsTogether, type Rings } from "../state/areas";
-import type { MissionSpec } from "../wire";
+import type { MissionSpec, PlanChosen } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { createMap, fit } from "./createMap";
-import { areaPoints, candidateFeatures, collection, flightPoints, planFeatures } from "./features";
+import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, planFeatures } from "./features";
 import { addSources, missionLayers } from "./layers";
 import { palettes, type Palette } from "./palette";
+import { showVehicle } from "./vehicleMarker";
 
 type Hex = `#${string}`;
 
@@ -102,6 +104,19 @@ function bindTools(draw: TerraDraw): () => void {
 
 const FALLBACK_START: LonLat = [7.1, 50.73];
 
+/** Of a mission in flight: what its bearings say helps to draw where to search on. */
+const flownSpec = computed(() => mission.value.spec);
+const bearings = computed(() => mission.value.bearings);
+const belief = computed(() => mission.value.belief);
+const home = computed(() => mission.value.home);
+
+/** What the planner would do: of a mission before its start, or of one that would search elsewhere. */
+const proposed = computed<At<PlanChosen> | null>(() => {
+  const found = preview.value?.found;
+  const fact = found ? firstPlan(found) : outlook.value?.found?.plan;
+  return fact ? { seq: 0, at: "", fact } : null;
+});
+
 /** To the metre, so that the map is not drawn again with every telemetry value. */
 const parked = computed(() => vehicle.value.at?.map((degrees) => degrees.toFixed(5)).join() ?? null);
 
@@ -137,39 +152,16 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
           put("plan", now?.hasArea ? shown : collection(shown.features.filter((f) => f.properties?.["what"] !== "area")));
         }),
         effect(() => {
-          const at = parked.value?.split(",").map(Number);
+          const start = home.value;
+          const at = start ? lonLat(start) : parked.value?.split(",").map(Number);
           put("home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: at } }] : []));
         }),
         effect(() => {
-          const found = preview.value?.found;
-          put(
-            "candidates",
-            found
-              ? candidateFeatures(
-                  {
-                    ...emptyMission,
-                    plan: {
-                      seq: 0,
-                      at: "",
-                      fact: {
-                        kind: "plan_chosen",
-                        place_number: 1,
-                        place: found.first_place,
-                        source: "planner",
-                        reason: found.reason,
-                        expected_time_s: found.expected_time_s,
-                        time_90_s: found.time_90_s,
-                        candidates: found.candidates,
-                        rollouts: found.rollouts,
-                        plan_ms: found.plan_ms,
-                        by: null,
-                      },
-                    },
-                  },
-                  null,
-                )
-              : collection([]),
-          );
+          put("measured", measuredFeatures({ spec: flownSpec.value, bearings: bearings.value, belief: belief.value }));
+        }),
+        effect(() => (home.value ? showVehicle(map) : undefined)),
+        effect(() => {
+          put("candidates", candidateFeatures({ plan: proposed.value }, null));
         }),
       );
       const draw = makeDraw(map, colours);

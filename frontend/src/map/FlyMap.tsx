@@ -4,11 +4,10 @@ import { Marker, type GeoJSONSource, type ImageSource, type Map as GlMap, type M
 import { useEffect, useRef } from "preact/hooks";
 import { highlighted } from "../app/highlight";
 import { settings } from "../app/settings";
-import { cursor, live, mission, nowMs, path, shownBelief, source, vehicle } from "../app/store";
+import { cursor, mission, path, shownBelief, source, vehicle } from "../app/store";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
 import { t, told, type MessageKey } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
-import { OLD_AFTER_S } from "../state/age";
 import { boundsOf, lonLat } from "../state/geometry";
 import { inFlight, isHomeward } from "../state/mission";
 import { formatPlace } from "../units/coordinates";
@@ -22,6 +21,7 @@ import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, SWITCHES, type SourceName, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
 import { palettes } from "./palette";
+import { showVehicle } from "./vehicleMarker";
 
 const hidden = signal<ReadonlySet<Switch>>(new Set());
 const follow = signal(false);
@@ -58,15 +58,6 @@ function addBelief(map: GlMap): void {
     { id: "belief", type: "raster", source: "belief", paint: { "raster-fade-duration": 0, "raster-resampling": "linear" } },
     "no-fly",
   );
-}
-
-function vehicleElement(): HTMLElement {
-  const element = document.createElement("div");
-  element.className = "vehicle";
-  element.dataset["testid"] = "vehicle";
-  element.innerHTML =
-    '<svg viewBox="-16 -16 32 32" width="36" height="36" aria-hidden="true"><path d="M0 -14 L9 11 L0 6 L-9 11 Z"/></svg>';
-  return element;
 }
 
 function nextElement(): HTMLElement {
@@ -110,15 +101,14 @@ const canPropose = () =>
 
 /** Everything that follows a signal, each in its own effect so that telemetry never redraws the plan. */
 function bind(map: GlMap): () => void {
-  const vehicleMarker = new Marker({ element: vehicleElement(), rotationAlignment: "map" });
   const nextMarker = new Marker({ element: nextElement(), draggable: true });
   nextMarker.on("dragend", () => {
     const { lng, lat } = nextMarker.getLngLat();
     propose({ lat, lon: lng });
   });
-  let vehicleShown = false;
   let nextShown = false;
   const stops = [
+    showVehicle(map),
     effect(() => put(map, "plan", planFeatures(spec.value))),
     effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
@@ -136,22 +126,8 @@ function bind(map: GlMap): () => void {
       }
     }),
     effect(() => {
-      const { at, headingDeg } = vehicle.value;
-      if (!at) {
-        vehicleMarker.remove();
-        vehicleShown = false;
-        return;
-      }
-      vehicleMarker.setLngLat(at).setRotation(headingDeg ?? 0);
-      if (!vehicleShown) vehicleMarker.addTo(map);
-      vehicleShown = true;
-      if (follow.value) map.easeTo({ center: at, duration: 300 });
-    }),
-    effect(() => {
-      nowMs.value;
-      const received = live.peek().telemetry;
-      const age = cursor.value !== null || !received ? 0 : (nowMs.value - received.atMs) / 1000 + (received.value.position_age_s ?? 0);
-      vehicleMarker.getElement().classList.toggle("old", age > OLD_AFTER_S);
+      const { at } = vehicle.value;
+      if (follow.value && at) map.easeTo({ center: at, duration: 300 });
     }),
     effect(() => {
       const proposed = proposal.value;
@@ -170,7 +146,6 @@ function bind(map: GlMap): () => void {
   ];
   return () => {
     stops.forEach((stop) => stop());
-    vehicleMarker.remove();
     nextMarker.remove();
   };
 }

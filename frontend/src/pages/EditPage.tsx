@@ -1,13 +1,12 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
-import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { go, missionAddress, type Route } from "../app/route";
 import { asProblem } from "../commands/send";
-import { AreaSection, importFile, importProblem } from "../edit/AreaSection";
+import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { what } from "../edit/drawing";
 import { sections, type NumberField } from "../edit/fields";
+import { EditMapArea } from "../edit/EditMapArea";
 import { FormField, TextField } from "../edit/FormField";
 import { ProfileRow } from "../edit/ProfileRow";
 import { PreviewCard } from "../edit/PreviewCard";
@@ -27,29 +26,6 @@ async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested
   if (route.page === "edit") return { spec: (await api.mission(route.missionId)).spec as MissionSpec, suggested: false };
   if (route.from !== null) return { spec: (await api.mission(route.from)).spec as MissionSpec, suggested: false };
   return { spec: (await api.defaults()).spec as MissionSpec, suggested: true };
-}
-
-function EditMapArea({ onFile }: { onFile: (file: File) => void }) {
-  const [state, setState] = useState<"loading" | "none" | { Map: ComponentType<{ onFile: (file: File) => void }> }>("loading");
-  useEffect(() => {
-    void import("../map/createMap").then(
-      async ({ hasWebgl }) => {
-        if (!hasWebgl()) setState("none");
-        else {
-          const { EditMap } = await import("../map/EditMap");
-          setState({ Map: EditMap });
-        }
-      },
-      () => setState("none"),
-    );
-  }, []);
-  return (
-    <div class="map-area">
-      {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
-      {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
-      {typeof state === "object" && <state.Map onFile={onFile} />}
-    </div>
-  );
 }
 
 const FREQUENCY: NumberField = { kind: "number", path: "emitter.frequency_hz", label: "edit.frequency", unit: "MHz", scale: 1e6 };
@@ -197,13 +173,6 @@ export function EditPage({ route }: { route: EditRoute }) {
     };
   }, [key, from]);
 
-  const onFile = (file: File) => {
-    importFile(file, what.peek()).then(
-      (notes) => setTold(notes),
-      (error: unknown) => setTold([importProblem(file.name, error)]),
-    );
-  };
-
   const save = async () => {
     const now = draft.peek();
     if (!now) return;
@@ -230,7 +199,7 @@ export function EditPage({ route }: { route: EditRoute }) {
   const now = draft.value;
   return (
     <div class="edit" data-testid="edit-page">
-      <EditMapArea onFile={onFile} />
+      <EditMapArea onTold={setTold} />
       <form class="side" onSubmit={(e) => {
         e.preventDefault();
         void save();
@@ -258,7 +227,7 @@ export function EditPage({ route }: { route: EditRoute }) {
           {now && (
             <>
               <NameSection failed={failed} />
-              <AreaSection failed={failed} told={told} onTold={setTold} onFile={onFile} />
+              <AreaSection failed={failed} told={told} onTold={setTold} />
               <PreviewCard />
               <Sections failed={failed} />
             </>

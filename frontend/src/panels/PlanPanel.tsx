@@ -1,5 +1,6 @@
 // Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
 import { useEffect, useRef } from "preact/hooks";
+import { areaAddress } from "../app/route";
 import { settings } from "../app/settings";
 import { cursor, live, mission, source, supposedHere, vehicle } from "../app/store";
 import { send } from "../commands/send";
@@ -179,7 +180,7 @@ function Decision({ id }: { id: string }) {
 }
 
 export function PlanPanel() {
-  const { plan, missionId, startedAt } = mission.value;
+  const { plan, missionId, phase, startedAt } = mission.value;
   const proposed = proposal.value;
   const isLive = cursor.value === null && !isHomeward(mission.value);
   const fact = plan?.fact;
@@ -201,6 +202,11 @@ export function PlanPanel() {
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
       {missionId && isLive && startedAt && live.value.mission.missionId === missionId && <Decision id={missionId} />}
+      {missionId && isLive && startedAt && phase === "hold" && (
+        <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
+          {t("area.change")}
+        </a>
+      )}
       {cursor.value !== null && source.value?.kind === "live" && <WhatIfPanel />}
       {!fact && <p class="muted">{t("plan.none")}</p>}
       {fact && (

@@ -1,6 +1,7 @@
 // REST, one function an endpoint. Every failure becomes a RequestFailed with a sentence to show.
 import type {
   AreaImport,
+  AreaOutlook,
   CheckFact,
   Command,
   CommandReply,
@@ -19,6 +20,7 @@ import type {
   Problem,
   Recorded,
   RecordingImport,
+  SearchArea,
   Track,
   WhatIf,
   WhatIfRequest,
@@ -105,6 +107,9 @@ export const sendCommand = (id: string, command: Command, commandId = newCommand
   return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
 };
 
+export const areaOutlook = (id: string, search: SearchArea, signal?: AbortSignal) =>
+  json<AreaOutlook>(`${missionPath(id)}/area-outlook`, withBody("POST", search, signal));
+
 export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
   json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place }, signal));
 
@@ -130,9 +135,9 @@ export async function events(id: string): Promise<Recorded[]> {
   }
 }
 
-export async function belief(id: string, bearings: number): Promise<BeliefFrame | null> {
+export async function belief(id: string, bearings: number, seq: number): Promise<BeliefFrame | null> {
   try {
-    const response = await request(`${missionPath(id)}/beliefs/${bearings}`);
+    const response = await request(`${missionPath(id)}/beliefs/${bearings}?seq=${seq}`);
     return decodeBeliefFrame(await response.arrayBuffer());
   } catch (error) {
     if (error instanceof RequestFailed && error.problem.status === 404) return null;

@@ -73,9 +73,7 @@ export class ReplaySource implements Source {
   }
 
   /** The server rebuilds beliefs of missions it knows; for others the picture stays empty. */
-  belief(missionId: string, bearings: number) {
-    return api.belief(missionId, bearings);
-  }
+  belief = api.belief;
   async track(): Promise<Track> {
     return { mission_id: this.missionId, points: this.points };
   }

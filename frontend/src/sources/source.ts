@@ -28,7 +28,8 @@ export interface Source {
   stop(): void;
   /** `commandId` given again means the same command again: it is carried out once. */
   send(missionId: string, command: Command, commandId?: string): Promise<CommandReply>;
-  belief(missionId: string, bearings: number): Promise<BeliefFrame | null>;
+  /** The last belief of so many bearings up to the event `seq`. */
+  belief(missionId: string, bearings: number, seq: number): Promise<BeliefFrame | null>;
   track(missionId: string): Promise<Track>;
   preflight(missionId: string): Promise<PreflightReply>;
   expectedTime(missionId: string, place: Place, signal?: AbortSignal): Promise<ExpectedTime>;

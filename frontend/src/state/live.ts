@@ -22,6 +22,8 @@ export interface LiveState {
   sweep: Received<SweepProgress> | null;
   path: readonly LonLat[];
   belief: BeliefFrame | null;
+  /** The event that the frame belongs to; null when another one came in between. */
+  beliefSeq: number | null;
   /** Messages of other kinds that could not be read. */
   unreadable: number;
 }
@@ -37,6 +39,7 @@ export const emptyLive: LiveState = {
   sweep: null,
   path: [],
   belief: null,
+  beliefSeq: null,
   unreadable: 0,
 };
 
@@ -75,8 +78,10 @@ export function reduceLive(state: LiveState, message: SourceMessage, nowMs: numb
       return { ...heard, sweep: { value: message, atMs: nowMs } };
     case "status":
       return { ...heard, status: { value: message, atMs: nowMs } };
-    case "belief":
-      return { ...heard, belief: message.frame };
+    case "belief": {
+      const told = state.mission.belief;
+      return { ...heard, belief: message.frame, beliefSeq: told?.fact.bearings === message.frame.bearings ? told.seq : null };
+    }
     case "unreadable":
       return { ...heard, unreadable: heard.unreadable + 1 };
   }

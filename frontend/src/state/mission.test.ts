@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { phase, record, someBearing, somePlan, someSpec } from "./examples";
 import { emptyMission, foldMission, inFlight, isOver, missionAt, suppose } from "./mission";
-import type { BeliefUpdated, MissionEvent } from "../wire";
+import type { BeliefUpdated, MissionEvent, Polygon } from "../wire";
 
 const fold = (...events: MissionEvent[]) => missionAt(record(...events), Infinity);
 
@@ -62,6 +62,16 @@ describe("the mission as a fold of its events", () => {
     const edited = { kind: "mission_edited", spec: someSpec() } as const;
     expect(fold(checked).preflightPassed).toBe(true);
     expect(fold(checked, edited).preflightPassed).toBeNull();
+  });
+
+  it("keeps the bearings and forgets the plan when the search area changes in flight", () => {
+    const spec = someSpec();
+    const area: Polygon = { type: "Polygon", coordinates: [[[7.1, 50.7], [7.2, 50.7], [7.2, 50.8], [7.1, 50.7]]] }; // prettier-ignore
+    const search = { area, prior: spec.prior, fence: null, fence_margin_m: 99, no_fly: [area] };
+    const state = fold({ kind: "mission_drafted", spec }, someBearing(), somePlan(), { kind: "area_changed", search, by: "o" });
+    expect(state.spec).toEqual({ ...spec, area, flight: { ...spec.flight, fence: null, fence_margin_m: 99, no_fly: [area] } });
+    expect(state).toMatchObject({ specSeq: 4, plan: null });
+    expect(state.bearings).toHaveLength(1);
   });
 });
 

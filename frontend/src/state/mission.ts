@@ -11,6 +11,7 @@ import type {
   PlanChosen,
   Place,
   Recorded,
+  SearchArea,
   SweepRejected,
   WhatIf,
 } from "../wire";
@@ -51,6 +52,8 @@ export interface MissionState {
   missionId: string | null;
   lastSeq: number;
   spec: MissionSpec | null;
+  /** Since this event the specification stands as it is. */
+  specSeq: number;
   phase: Phase;
   phaseReason: string;
   phaseSince: string | null;
@@ -79,6 +82,7 @@ export const emptyMission: MissionState = {
   missionId: null,
   lastSeq: 0,
   spec: null,
+  specSeq: 0,
   phase: "draft",
   phaseReason: "",
   phaseSince: null,
@@ -108,6 +112,14 @@ export function pausedMs({ plan, phase, phaseSince, pausedMs: before }: MissionS
   return before + Math.max(0, nowMs - Math.max(Date.parse(phaseSince), Date.parse(plan.at)));
 }
 
+/** The same mission elsewhere. */
+const searching = (spec: MissionSpec, { area, prior, ...flying }: SearchArea): MissionSpec => ({
+  ...spec,
+  area,
+  prior,
+  flight: { ...spec.flight, ...flying },
+});
+
 function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): MissionState {
   switch (event.kind) {
     case "mission_drafted":
@@ -115,10 +127,13 @@ function foldEvent(state: MissionState, { event, at_utc: at, seq }: Recorded): M
       return {
         ...state,
         spec: event.spec,
+        specSeq: seq,
         automatic: event.spec.flight.automatic,
         checks: null,
         preflightPassed: null,
       };
+    case "area_changed":
+      return { ...state, spec: state.spec && searching(state.spec, event.search), specSeq: seq, plan: null };
     case "preflight_checked":
       return { ...state, checks: event.checks, preflightPassed: event.passed };
     case "mission_started":

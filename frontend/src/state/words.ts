@@ -92,6 +92,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "return_ordered":
     case "abort_ordered":
     case "automatic_changed":
+    case "area_changed":
     case "mission_started":
     case "mission_ended":
       return "mode";
@@ -106,6 +107,8 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
       return t("event.mission_drafted");
     case "mission_edited":
       return t("event.mission_edited");
+    case "area_changed":
+      return t("event.area_changed", { by: told(event.by) });
     case "preflight_checked":
       return event.passed
         ? t("event.preflight_passed")

@@ -13,10 +13,10 @@ import pytest
 from shapely.geometry import shape
 
 from backend.events import (
+    AreaChanged,
     BearingExcluded,
     BearingMeasured,
     MissionDrafted,
-    MissionEdited,
     MissionEnded,
     MissionStarted,
     PhaseChanged,
@@ -24,7 +24,7 @@ from backend.events import (
 )
 from backend.mission.localization import localization
 from backend.mission.ports import TrackPoint
-from backend.spec import MissionSpec, Place, Polygon
+from backend.spec import MissionSpec, Place, Polygon, SearchArea
 from backend.wire.belief_frame import encode_belief
 from hardware.frame import LocalFrame
 from hardware.readings import GeoPoint, Sweep
@@ -126,7 +126,9 @@ async def test_a_belief_from_before_a_bearing_was_left_out_or_the_area_changed_i
     west = Polygon(coordinates=[[corner(-150, 0), corner(50, 0), corner(50, 200), corner(-150, 200), corner(-150, 0)]])
     task = localization(SPEC.model_copy(update={"area": west}), HOME, 100.0)
     fact, later = task.belief_fact(COUNTED)
-    await services.journal.append("flown", [MissionEdited(spec=task.mission), fact])
+    search = SearchArea(area=west, prior=SPEC.prior, fence=None, fence_margin_m=60.0, no_fly=[])
+    changed = AreaChanged(search=search, by="operator")
+    await services.journal.append("flown", [changed, fact])
     frames = [(await client.get(f"{flown}/beliefs/2", params=q)).content for q in ({"seq": recorded[-1].seq}, {})]
     _, before = TASK.belief_fact(COUNTED)
     assert frames == [

@@ -246,7 +246,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
         commanded(commands.Resume(), "on-ground", on_ground=True),
         commanded(commands.Resume(), "not given back", objections=(VETO,)),
         commanded(commands.Start(), "refused", objections=(VETO,)),
-        inputs.Edited(SPEC, "anna"),
+        inputs.Edited(SPEC),
         inputs.PreflightDone((CHECK,)),
         inputs.PreflightDone((FAILED_CHECK,)),
         inputs.InTheAir(HOME, 40.0),

@@ -12,7 +12,7 @@ from missions import ELSEWHERE, PHASES, SPEC, VETO, Walk, answer, bearing, belie
 
 from backend import commands
 from backend.commands import CommandRequest
-from backend.events import BeliefUpdated, MissionEdited, PlanChosen
+from backend.events import AreaChanged, BeliefUpdated, PlanChosen
 from backend.mission import effects as asked
 from backend.mission import inputs
 from backend.mission.errors import MissionConflict, MissionInputError, MissionNotFound
@@ -101,8 +101,7 @@ async def test_the_next_place_is_sought_in_the_new_area_and_a_restart_finds_it_a
     assert (await order(stage, mission_id, commands.ChangeArea(search=NORTHWARD))).accepted
     after = await stage.until(mission_id, "belief_updated", beliefs + 1)
     assert isinstance(after, BeliefUpdated)
-    edited = next(e for e in stage.journal.events(mission_id) if isinstance(e, MissionEdited))
-    assert (edited.spec, edited.by) == (spec().searching(NORTHWARD), "anna")
+    assert AreaChanged(search=NORTHWARD, by="anna") in stage.journal.events(mission_id)
 
     await stage.service.shut_down()
     stage.service = stage.new_service()
@@ -145,7 +144,7 @@ async def test_an_area_that_cannot_be_searched_from_here_is_refused_and_nothing_
     assert not reply.accepted
     assert reason in reply.reason
     assert reply.remedy
-    assert "mission_edited" not in stage.journal.kinds(mission_id)
+    assert "area_changed" not in stage.journal.kinds(mission_id)
     resumed = await order(stage, mission_id, commands.Resume())
     assert resumed.accepted
 
@@ -166,7 +165,7 @@ async def test_the_same_change_ordered_again_gets_the_first_answer(stage: Stage)
     request = CommandRequest(command_id=uuid4(), command=commands.ChangeArea(search=NORTHWARD))
     first = await stage.service.command(mission_id, request, "anna")
     assert (await stage.service.command(mission_id, request, "anna")).accepted == first.accepted is True
-    assert stage.journal.kinds(mission_id).count("mission_edited") == 1
+    assert stage.journal.kinds(mission_id).count("area_changed") == 1
 
 
 async def test_the_outlook_tells_what_the_bearings_say_there_and_changes_nothing(stage: Stage) -> None:

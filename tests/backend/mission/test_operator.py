@@ -163,10 +163,10 @@ def test_editing_takes_readiness_back() -> None:
     walk = Walk()
     walk.give(inputs.PreflightDone((CHECK,)))
     assert walk.state.phase == "ready"
-    walk.give(inputs.Edited(WAITING_SPEC, "anna"))
+    walk.give(inputs.Edited(WAITING_SPEC))
     assert walk.state.phase == "draft"
     assert walk.state.spec == WAITING_SPEC
     started = Walk().to("flying")
-    started.give(inputs.Edited(WAITING_SPEC, "anna"))
+    started.give(inputs.Edited(WAITING_SPEC))
     assert started.state.spec == SPEC
     assert START.home == HOME

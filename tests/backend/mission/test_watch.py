@@ -207,11 +207,36 @@ def test_a_return_right_after_the_vehicle_was_heard_again_is_the_failsafes_a_lat
     scene.tick(20)
     scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
     assert scene.tick(3) == [inputs.FailsafeActs("RETURN")]
-    assert scene.watch.tolerated_mode == "RETURN"
+    assert scene.watch.failsafe_flies
     scene.see(controller="crossfix", mode="HOLD", held_by_pilot=False)
     assert scene.tick(80) == []
     scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
     assert isinstance(scene.tick()[0], inputs.PilotTookOver)
+
+
+def test_the_mode_after_a_failsafes_landing_is_no_pilots_but_who_takes_off_by_hand_is_one(scene: Scene) -> None:
+    scene.state = Walk().to("hold").state
+    scene.watch.tolerated_mode = "RETURN"
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    assert scene.tick(3) == []
+    scene.see(in_air=False, mode="HOLD")
+    assert set(scene.tick(10)) == {inputs.Landed()}
+    scene.see(controller="nobody", armed=False, held_by_pilot=False)
+    assert set(scene.tick(10)) == {inputs.Landed()}
+    scene.see(controller="pilot", armed=True, in_air=True, mode="POSCTL", held_by_pilot=True)
+    assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
+
+
+def test_a_link_that_comes_back_after_the_failsafe_has_landed_says_no_way_home(scene: Scene) -> None:
+    scene.state = Walk().to("hold").state
+    scene.watch.tolerated_mode = "RETURN"
+    scene.see(controller="nobody", mode="HOLD", armed=False, in_air=False)
+    scene.tick()
+    scene.vehicle.heard = False
+    scene.tick()
+    scene.vehicle.heard = True
+    (up,) = (told for told in scene.tick() if isinstance(told, inputs.LinkUp))
+    assert not up.going_home
 
 
 def test_home_and_ground_are_told_when_they_are_reached(scene: Scene) -> None:

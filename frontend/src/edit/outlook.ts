@@ -1,0 +1,56 @@
+// What to expect when a mission in flight searches elsewhere from now on, asked of the planner before the slide.
+import { effect, signal } from "@preact/signals";
+import { asProblem } from "../commands/send";
+import * as api from "../sources/api";
+import { RequestFailed } from "../sources/problem";
+import type { AreaOutlook, MissionSpec, Problem, SearchArea } from "../wire";
+import { draft } from "./draft";
+
+export interface OutlookState {
+  search: SearchArea;
+  /** Both null while it is asked. */
+  found: AreaOutlook | null;
+  problem: Problem | null;
+  failed: RequestFailed | null;
+}
+
+export const outlook = signal<OutlookState | null>(null);
+
+let asking: AbortController | null = null;
+
+export function clearOutlook(): void {
+  asking?.abort();
+  outlook.value = null;
+}
+
+export const searchOf = ({ area, prior, flight }: MissionSpec): SearchArea => ({
+  area,
+  prior,
+  fence: flight.fence,
+  fence_margin_m: flight.fence_margin_m,
+  no_fly: flight.no_fly,
+});
+
+export async function askOutlook(missionId: string, spec: MissionSpec): Promise<void> {
+  asking?.abort();
+  asking = new AbortController();
+  const { signal: aborted } = asking;
+  const search = searchOf(spec);
+  const nothing: OutlookState = { search, found: null, problem: null, failed: null };
+  outlook.value = nothing;
+  try {
+    const found = await api.areaOutlook(missionId, search, aborted);
+    if (!aborted.aborted) outlook.value = { ...nothing, found };
+  } catch (error) {
+    if (!aborted.aborted) outlook.value = { ...nothing, problem: asProblem(error), failed: error instanceof RequestFailed ? error : null };
+  }
+}
+
+/** What was said of an area holds for that area only. */
+export function forgetOutlookOfOthers(): () => void {
+  let before = draft.peek();
+  return effect(() => {
+    if (draft.value !== before) clearOutlook();
+    before = draft.value;
+  });
+}

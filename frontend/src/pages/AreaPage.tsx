@@ -1,0 +1,93 @@
+// The search area of a mission in flight: drawn anew while it holds, judged by the planner, changed by a slide.
+import { useEffect, useState } from "preact/hooks";
+import { go, missionAddress, type Route } from "../app/route";
+import { mission } from "../app/store";
+import { asProblem, send } from "../commands/send";
+import { SlideToConfirm } from "../commands/SlideToConfirm";
+import { AreaSection } from "../edit/AreaSection";
+import { watchCoverage } from "../edit/coverage";
+import { draft, forget, storedDraft, update } from "../edit/draft";
+import { EditMapArea } from "../edit/EditMapArea";
+import { OutlookCard } from "../edit/OutlookCard";
+import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
+import { t } from "../i18n";
+import { ProblemBox, ProblemNote } from "../panels/ProblemNote";
+import * as api from "../sources/api";
+import type { MissionSpec, Problem } from "../wire";
+
+type AreaRoute = Extract<Route, { page: "area" }>;
+
+export function AreaPage({ route }: { route: AreaRoute }) {
+  const id = route.missionId;
+  const key = `area:${id}`;
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const [told, setTold] = useState<readonly string[]>([]);
+
+  const load = () => {
+    draft.value = null;
+    api.mission(id).then(
+      ({ spec }) => (draft.value = { key, spec: spec as MissionSpec, hasArea: true, suggested: false, text: {} }),
+      (error: unknown) => setProblem(asProblem(error)),
+    );
+  };
+  useEffect(() => {
+    const kept = storedDraft(key);
+    if (kept) update(kept);
+    else load();
+    const stops = [watchCoverage(), forgetOutlookOfOthers(), clearOutlook];
+    return () => stops.forEach((stop) => stop());
+  }, [key]);
+
+  const leave = () => {
+    forget(key);
+    go(missionAddress(id));
+  };
+  const judged = outlook.value;
+  const isAsking = judged !== null && !judged.found && !judged.problem;
+  const isReadable = draft.value?.hasArea && Object.keys(draft.value.text).length === 0;
+  const held = mission.value.phase === "hold";
+  return (
+    <div class="edit" data-testid="area-page">
+      <EditMapArea onTold={setTold} />
+      <div class="side">
+        <div class="panel edit-head">
+          <h1>{t("area.title")}</h1>
+        </div>
+        <div class="edit-scroll">
+          <p class="panel">{t("area.what")}</p>
+          {draft.value?.key === key && <AreaSection failed={judged?.failed ?? null} told={told} onTold={setTold} />}
+          {problem && <ProblemBox problem={problem} />}
+        </div>
+        <div class="panel edit-foot">
+          {judged && <OutlookCard judged={judged} />}
+          {!held && (
+            <p role="status" data-testid="area-not-held">
+              <strong>{t("area.notHeld")}</strong>
+            </p>
+          )}
+          <ProblemNote desk="area" />
+          {judged?.found?.allowed && held ? (
+            <SlideToConfirm
+              label={t("area.slide")}
+              testId="area-slider"
+              expiresS={60}
+              onCancel={clearOutlook}
+              onConfirm={() => void send("area", id, { kind: "change_area", search: judged.search }).then((accepted) => accepted && leave())}
+            />
+          ) : (
+            <div class="start-row">
+              <button data-testid="area-cancel" onClick={leave}>
+                {t("area.keep")}
+              </button>
+              {!judged?.found && (
+                <button class="primary" data-testid="outlook-ask" disabled={isAsking || !isReadable} onClick={() => void askOutlook(id, draft.peek()!.spec)}>
+                  {t(isAsking ? "area.asking" : "area.ask")}
+                </button>
+              )}
+            </div>
+          )}
+        </div>
+      </div>
+    </div>
+  );
+}
