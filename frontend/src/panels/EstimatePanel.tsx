@@ -14,6 +14,12 @@ import { formatArea, formatBearing, formatDuration, formatLength } from "../unit
 
 const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
 
+const CopyIcon = () => (
+  <svg class="copy-icon" viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
+    <path d="M7 7H17V17H7ZM13 7V3H3V13H7" />
+  </svg>
+);
+
 function Coordinates({ lat, lon }: { lat: number; lon: number }) {
   const [copied, setCopied] = useState(false);
   const format = settings.value.coordinates;
@@ -35,7 +41,10 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
         ))}
       </select>
       <button
+        class="icon"
         data-testid="copy"
+        aria-label={t(copied ? "estimate.copied" : "estimate.copy")}
+        title={t("estimate.copy")}
         onClick={() => {
           void copyText(text).then((done) => {
             setCopied(done);
@@ -43,7 +52,7 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
           });
         }}
       >
-        {t(copied ? "estimate.copied" : "estimate.copy")}
+        {copied ? "✓" : <CopyIcon />}
       </button>
     </div>
   );

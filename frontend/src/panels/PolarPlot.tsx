@@ -18,7 +18,10 @@ function wedgePath(deg: number, sigma: number): string {
   return `M0 0L${x0} ${y0}A1 1 0 0 1 ${x1} ${y1}Z`;
 }
 
-function Rings({ scale }: { scale: PolarScale | null }) {
+/** Where the levels stand, degrees: not on the main lobe. */
+const labelsAt = (bearingDeg: number | undefined) => (bearingDeg !== undefined && bearingDeg > 0 && bearingDeg < 90 ? 135 : 45);
+
+function Rings({ scale, labelsDeg }: { scale: PolarScale | null; labelsDeg: number }) {
   const steps = scale ? [0, Math.round(scale.spanDb / 2)] : [];
   return (
     <g class="polar-rings">
@@ -35,7 +38,7 @@ function Rings({ scale }: { scale: PolarScale | null }) {
       })}
       {scale &&
         steps.map((down) => {
-          const [x, y] = polarPoint(62, radius(scale.topDb - down, scale) * (down ? 1 : 1.2));
+          const [x, y] = polarPoint(labelsDeg, radius(scale.topDb - down, scale) * (down ? 1 : 1.2));
           return (
             <text class="polar-db" x={x} y={y} key={down}>
               {(scale.topDb - down).toFixed(0)} dB
@@ -53,7 +56,7 @@ export function PolarPlot({ data }: { data: PolarData }) {
     : t("sweep.plotEmpty");
   return (
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
-      <Rings scale={scale} />
+      <Rings scale={scale} labelsDeg={labelsAt(data.bearing?.deg)} />
       {data.bearing && <path class="polar-wedge" d={wedgePath(data.bearing.deg, data.bearing.sigmaDeg)} />}
       {scale && data.fittedDb.length > 0 && (
         <path class="polar-fit" d={binnedPath(data.fittedDb, scale)} data-testid="polar-fit" />

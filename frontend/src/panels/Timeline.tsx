@@ -114,7 +114,7 @@ function Log({ all }: { all: readonly Recorded[] }) {
     if (!box) return;
     const settle = () => {
       const row = box.querySelector<HTMLElement>('[aria-current="true"]');
-      box.scrollTop = row ? row.offsetTop - box.clientHeight / 2 : box.scrollHeight;
+      box.scrollTop = row ? row.offsetTop - (box.clientHeight - row.offsetHeight) / 2 : box.scrollHeight;
     };
     const resized = new ResizeObserver(settle); // tells at once, and whenever the page's size changes
     resized.observe(box);
