@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import pymap3d
+from numpy.typing import NDArray
 
 from hardware.readings import GeoPoint
 
@@ -26,6 +28,12 @@ class LocalFrame:
     def to_geo(self, east: float, north: float) -> GeoPoint:
         lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0)
         return GeoPoint(float(lat), float(lon))
+
+    def to_lon_lat(self, points: NDArray[np.float64]) -> list[tuple[float, float]]:
+        """(n, 2) east, north in metres -> n times (lon, lat) in degrees."""
+        east, north = points.T
+        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0)
+        return list(zip(lon.tolist(), lat.tolist(), strict=True))
 
 
 def compass_to_angle(bearing_deg: float) -> float:

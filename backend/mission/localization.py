@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import reduce
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from shapely import Polygon as ShapelyPolygon
@@ -49,6 +48,9 @@ ASKEW = "not yet: all bearings seem to be off by the same angle; check compass a
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
 
+FOLDS_KEPT = 64
+"""Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
+
 KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
 """The planner's places and ways stay so far off no-fly zones: a little more than safety asks."""
 
@@ -63,6 +65,7 @@ class Localization:
     prior: GridBelief
     rule: LocalizationRule
     limits: Limits
+    _folds: dict[tuple[Bearing, ...], GridBelief] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def home(self) -> Place:
@@ -86,9 +89,21 @@ class Localization:
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
         """None when the bearings have no common point and none may be an outlier."""
         try:
-            return reduce(update, bearings, self.prior)
+            return self._folded(tuple(bearings))
         except InconsistentBearings:
             return None
+
+    def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
+        """Bearing by bearing, in order: what was folded for one bearing less is gone on from."""
+        if not bearings:
+            return self.prior
+        found = self._folds.get(bearings)
+        if found is None:
+            found = update(self._folded(bearings[:-1]), bearings[-1])
+            if len(self._folds) >= FOLDS_KEPT:
+                self._folds.clear()
+            self._folds[bearings] = found
+        return found
 
     def planning_belief(self, bearings: Sequence[Bearing]) -> GridBelief:
         """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart."""
@@ -96,7 +111,7 @@ class Localization:
         if found is not None:
             return found
         doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)
-        return reduce(update, doubted, self.prior)
+        return self._folded(tuple(doubted))
 
     def belief_fact(self, measured: Sequence[BearingMeasured]) -> tuple[BeliefUpdated, GridBelief]:
         """The fact to record, and the belief to show and to plan with."""
@@ -145,14 +160,12 @@ class Localization:
 
     def polygon(self, ring: Ring) -> spec.Polygon:
         """Ring in ENU to GeoJSON, closed."""
-        corners = [self.frame.to_geo(float(x), float(y)) for x, y in (*ring, ring[0])]
-        return spec.Polygon(coordinates=[[(c.lon_deg, c.lat_deg) for c in corners]])
+        return spec.Polygon(coordinates=[self.frame.to_lon_lat(np.vstack([ring, ring[:1]]))])
 
     def corners_lon_lat(self, belief: GridBelief) -> list[tuple[float, float]]:
         """SW, SE, NE, NW of the grid's outer edge."""
         west, south, east, north = belief.bounds
-        places = [self.frame.to_geo(x, y) for x, y in ((west, south), (east, south), (east, north), (west, north))]
-        return [(p.lon_deg, p.lat_deg) for p in places]
+        return self.frame.to_lon_lat(np.array([(west, south), (east, south), (east, north), (west, north)]))
 
     def place(self, x: float, y: float) -> Place:
         point = self.frame.to_geo(x, y)

@@ -47,11 +47,11 @@ class HeadingOffset:
 
 
 @dataclass(frozen=True, slots=True)
-class _Fit:
-    """x: east m, north m, offset rad. information: (3, 3) J' W J."""
+class _Fits:
+    """x: (m, 3) east m, north m, offset rad. log_likelihood: (m,). information: (m, 3, 3) J' W J."""
 
     x: NDArray[np.float64]
-    log_likelihood: float
+    log_likelihood: NDArray[np.float64]
     information: NDArray[np.float64]
 
 
@@ -69,18 +69,19 @@ def heading_offset(
     if len(bearing_deg) < FEWEST_BEARINGS:
         return None
     z, sigma = np.radians(bearing_deg), np.maximum(np.radians(sigma_deg), SIGMA_FLOOR)
-    starts = [np.array([*_crossing(places_m, z - d), d]) for d in _STARTS]
-    fits = [_likeliest(places_m, z, sigma, outlier_probability, x, 3) for x in starts]
-    plain = [_likeliest(places_m, z, sigma, outlier_probability, x * (1.0, 1.0, 0.0), 2) for x in starts]
-    best = max(fits, key=lambda fit: fit.log_likelihood)
-    gain = 2.0 * (best.log_likelihood - max(fit.log_likelihood for fit in plain))
+    starts = np.array([[*_crossing(places_m, z - d), d] for d in _STARTS])
+    with_offset = np.repeat([True, False], len(starts))
+    x = np.vstack([starts, starts * (1.0, 1.0, 0.0)])
+    fits = _likeliest(places_m, z, sigma, outlier_probability, x, with_offset)
+    best = int(np.argmax(fits.log_likelihood[: len(starts)]))
+    gain = 2.0 * float(fits.log_likelihood[best] - fits.log_likelihood[~with_offset].max())
     try:
-        variance = float(np.linalg.inv(best.information)[2, 2])
+        variance = float(np.linalg.inv(fits.information[best])[2, 2])
     except np.linalg.LinAlgError:
         return None
     if not variance > 0.0:
         return None
-    return HeadingOffset(math.degrees(float(best.x[2])), math.degrees(math.sqrt(variance)), gain)
+    return HeadingOffset(math.degrees(float(fits.x[best, 2])), math.degrees(math.sqrt(variance)), gain)
 
 
 def _crossing(places_m: NDArray[np.float64], z: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -95,41 +96,45 @@ def _likeliest(
     sigma: NDArray[np.float64],
     outlier_probability: float,
     x: NDArray[np.float64],
-    free: int,
-) -> _Fit:
-    """Uphill from `x` in its first `free` unknowns."""
+    with_offset: NDArray[np.bool_],
+) -> _Fits:
+    """Uphill from all m starts `x` (m, 3) at once. with_offset: (m,) of the others it stays as it is."""
 
-    def look(at: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-        """(log likelihood, (k,) residuals, (k,) weights: how probably each is no outlier, over its variance)."""
-        off = at[:2] - places_m
-        residual = np.remainder(z - np.arctan2(off[:, 0], off[:, 1]) - at[2] + np.pi, 2.0 * np.pi) - np.pi
+    def look(at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """(m,) log likelihood, (m, k) residuals, (m, k) weights: how probably each is no outlier, over its variance."""
+        off = at[:, None, :2] - places_m
+        residual = np.remainder(z - np.arctan2(off[..., 0], off[..., 1]) - at[:, 2:] + np.pi, 2.0 * np.pi) - np.pi
         density = np.exp(-0.5 * (residual / sigma) ** 2) / (math.sqrt(2.0 * math.pi) * sigma)
         honest = (1.0 - outlier_probability) * density
         likelihood = honest + outlier_probability / (2.0 * math.pi)
-        return float(np.log(likelihood).sum()), residual, honest / likelihood / sigma**2
+        return np.log(likelihood).sum(axis=1), residual, honest / likelihood / sigma**2
 
     def slopes(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(k, 3) d(atan2(e, n) + d) / d(e, n, d) = n / r^2, -e / r^2, 1."""
-        off = at[:2] - places_m
-        square = np.maximum(np.sum(off**2, axis=1), _NEAREST_M2)
-        return np.column_stack([off[:, 1] / square, -off[:, 0] / square, np.ones(z.size)])
+        """(m, k, 3) d(atan2(e, n) + d) / d(e, n, d) = n / r^2, -e / r^2, 1."""
+        off = at[:, None, :2] - places_m
+        square = np.maximum(np.sum(off**2, axis=-1), _NEAREST_M2)
+        return np.stack([off[..., 1] / square, -off[..., 0] / square, np.ones_like(square)], axis=-1)
 
+    free = np.column_stack([np.ones((len(x), 2)), with_offset])
     value, residual, weight = look(x)
-    damping = 1e-3
+    damping, climbing = np.full(len(x), 1e-3), np.full(len(x), True)
     for _ in range(_STEPS):
-        by = slopes(x)[:, :free]
-        information = (by.T * weight) @ by
-        damped = information + np.diag(damping * np.diag(information) + 1e-12)
-        ahead = x.copy()
-        ahead[:free] += np.linalg.solve(damped, by.T @ (weight * residual))
+        by = slopes(x) * free[:, None, :]
+        information = np.einsum("mki,mk,mkj->mij", by, weight, by)
+        diagonal = np.einsum("mii->mi", information)
+        damped = information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
+        ahead = x + np.linalg.solve(damped, np.einsum("mki,mk->mi", by, weight * residual)[..., None])[..., 0]
         there = look(ahead)
         risen = there[0] - value
-        if risen < 0.0:
-            damping *= 10.0
-            continue
-        x, (value, residual, weight) = ahead, there
-        damping = max(damping / 5.0, 1e-9)
-        if risen < _SETTLED:
+        better = climbing & (risen >= 0.0)
+        x = np.where(better[:, None], ahead, x)
+        value = np.where(better, there[0], value)
+        residual, weight = (
+            np.where(better[:, None], new, old) for new, old in ((there[1], residual), (there[2], weight))
+        )
+        damping = np.where(better, np.maximum(damping / 5.0, 1e-9), damping * 10.0)
+        climbing &= ~(better & (risen < _SETTLED))
+        if not climbing.any():
             break
     by = slopes(x)
-    return _Fit(x, value, (by.T * weight) @ by)
+    return _Fits(x, value, np.einsum("mki,mk,mkj->mij", by, weight, by))

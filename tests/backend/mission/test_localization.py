@@ -182,3 +182,13 @@ def test_flight_area_and_zones_reach_the_planner_and_the_vetoes() -> None:
 def _at(x: float, y: float) -> Place:
     point = FRAME.to_geo(x, y)
     return Place(lat=point.lat_deg, lon=point.lon_deg)
+
+
+def test_a_belief_that_goes_on_from_the_one_before_is_the_same_bit_for_bit() -> None:
+    grown, anew = task(0.1), task(0.1)
+    measured = [towards(40 * n, 15 * n, (150, 60)) for n in range(5)]
+    for count in range(len(measured) + 1):
+        fact, _ = grown.belief_fact(measured[:count])
+    assert fact == anew.belief_fact(measured)[0]
+    without = [b for b in measured if b is not measured[2]]
+    assert grown.belief_fact(without)[0] == anew.belief_fact(without)[0] != fact
