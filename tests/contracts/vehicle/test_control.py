@@ -1,0 +1,95 @@
+"""Who has control of every Vehicle: a pilot, an autopilot by itself, this program or the next."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import pytest
+from rig import DEAD_STATION, FLIGHT_COMMANDS, HEIGHT, Rig, ends_with
+
+from hardware.autopilot.connect import connect_vehicle
+from hardware.ports import PilotHasControl
+
+
+async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(rig: Rig) -> None:
+    vehicle, sim = rig.vehicle, rig.sim
+    await rig.airborne()
+    flight = asyncio.create_task(vehicle.goto(rig.place(0.0, 300.0), rig.amsl(), 7.0))
+    await rig.until(lambda: (vehicle.telemetry().velocity_north_m_s or 0.0) > 3.0, 20, "flying north")
+
+    if rig.name == "sim-px4":
+        taken = await sim.order("pilot_sticks", east_m_s=1.0)
+        assert taken["took_control"]
+    else:
+        taken = await sim.order("pilot_mode")
+    await ends_with(flight, PilotHasControl, "Resume")
+    assert vehicle.telemetry().controller == "pilot"
+    assert vehicle.telemetry().held_by_pilot
+    assert any("pilot took over" in line for line in rig.lines)
+
+    here = rig.place(0.0, 10.0)
+    orders: list[Callable[[], Awaitable[None]]] = [
+        vehicle.hold,
+        vehicle.return_home,
+        vehicle.land,
+        lambda: vehicle.goto(here, rig.amsl(), 5.0),
+        lambda: vehicle.turn(30.0),
+        lambda: vehicle.take_off(20.0),
+    ]
+    for order in orders:
+        with pytest.raises(PilotHasControl):
+            await order()
+    await sim.order("give_back")
+    await rig.clock.sleep(3.0)
+    assert not vehicle.telemetry().held_by_pilot
+    with pytest.raises(PilotHasControl):  # the mode switch alone gives nothing back
+        await vehicle.goto(here, rig.amsl(), 5.0)
+    received = (await sim.order("commands", since_s=taken["time_s"] + 1e-6))["commands"]
+    assert [number for _, number in received if number in FLIGHT_COMMANDS] == []
+
+    vehicle.release_pilot_latch()
+    assert vehicle.telemetry().controller != "pilot"
+    await vehicle.goto(here, rig.amsl(), 5.0)
+    assert vehicle.telemetry().controller == "crossfix"
+    assert rig.off_by(here) < 3.0
+
+
+async def test_a_mode_that_nobody_commanded_latches_until_the_vehicle_has_landed_and_is_nobodys(rig: Rig) -> None:
+    """The autopilot's own failsafe, or a pilot who selects landing: the mission must not fight it."""
+    await rig.airborne()
+
+    await rig.sim.order("pilot_mode", mode="LAND")
+    await rig.until(lambda: rig.vehicle.telemetry().controller == "pilot", 5, "the latch")
+
+    with pytest.raises(PilotHasControl, match="LAND"):
+        await rig.vehicle.goto(rig.place(0.0, 0.0), rig.amsl(), 5.0)
+    await rig.until(lambda: rig.vehicle.telemetry().armed is False, 60, "the landing")
+    assert rig.vehicle.telemetry().controller == "nobody"
+    with pytest.raises(PilotHasControl, match="LAND"):
+        await rig.vehicle.take_off(HEIGHT)
+
+
+async def test_when_this_program_dies_the_autopilot_acts_and_a_new_one_finds_it(rig: Rig) -> None:
+    sim, (parameter, returning) = rig.sim, DEAD_STATION.get(rig.name, ("", ""))
+    await rig.airborne()
+    await sim.order("set_param", name=parameter, value=0)
+    await rig.vehicle.goto(rig.place(0.0, 30.0), rig.amsl(), 6.0)
+    await rig.vehicle.close()
+
+    again = await connect_vehicle(sim.url, rig.clock)
+    try:
+        t = again.telemetry()
+        assert t.in_air
+        assert t.controller == "nobody"
+        assert rig.off_by(rig.place(0.0, 30.0)) < 3.0
+        await again.hold()  # no latch: the vehicle waits as it was left
+        assert again.telemetry().controller == "crossfix"
+        await sim.order("set_param", name=parameter, value={"RETURN": 2, "RTL": 1}[returning])
+    finally:
+        await again.close()
+    for _ in range(100):
+        if (await sim.order("truth"))["mode"] == returning:
+            return
+        await asyncio.sleep(0.1)
+    pytest.fail("the autopilot did not return by itself after its ground station was gone")

@@ -1,0 +1,160 @@
+"""What every Vehicle does when it is told to: seen by telemetry, and refused in words before it is sent."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Awaitable, Callable
+from itertools import pairwise
+
+import pytest
+from rig import DEAD_STATION, HEIGHT, Rig, ends_with
+
+from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.clock import WallClock
+from hardware.frame import LocalFrame
+from hardware.ports import VehicleError, VehicleUnreachable
+from hardware.readings import GeoPoint
+
+
+async def test_the_snapshot_says_where_and_how_the_vehicle_is(rig: Rig) -> None:
+    t = rig.vehicle.telemetry()
+
+    assert t.connected
+    assert t.autopilot in ("px4", "ardupilot")
+    assert t.position is not None
+    assert t.home is not None
+    assert rig.off_by(t.home) < 100.0
+    assert t.heading_deg is not None
+    assert 0.0 <= t.heading_deg < 360.0
+    assert t.heading_at_s is not None
+    assert -0.05 < t.at_s - t.heading_at_s < 2.0
+    assert t.controller == "nobody"
+    assert t.mode
+    await rig.clock.sleep(2.0)
+    since = rig.clock.now() - 1.5
+    headings = rig.vehicle.headings(since)
+    assert len(headings) >= 10
+    assert all(since <= a.at_s < b.at_s <= rig.clock.now() for a, b in pairwise(headings))
+
+
+async def test_a_ready_vehicle_passes_its_checklist_and_each_bad_failsafe_refuses_with_a_remedy(rig: Rig) -> None:
+    sim, (parameter, _) = rig.sim, DEAD_STATION.get(rig.name, ("", ""))
+    assert [check for check in await rig.vehicle.preflight() if check.blocking and not check.ok] == []
+
+    await sim.order("set_param", name=parameter, value=0)
+    refused = [check for check in await rig.vehicle.preflight() if check.blocking and not check.ok]
+
+    assert len(refused) == 1
+    assert parameter in refused[0].name
+    assert parameter in refused[0].remedy
+
+
+async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: Rig) -> None:
+    vehicle = rig.vehicle
+
+    await vehicle.take_off(HEIGHT)
+    t = vehicle.telemetry()
+    assert t.in_air
+    assert t.altitude_relative_m == pytest.approx(HEIGHT, abs=1.5)
+    assert t.controller == "crossfix"
+
+    place = rig.place(east=30.0, north=-25.0)
+    await vehicle.goto(place, rig.amsl(), 5.0)
+    assert rig.off_by(place) < 2.5
+    if rig.autopilot is not None:
+        truth = await rig.autopilot.order("truth")
+        assert math.hypot(*LocalFrame(place).to_enu(GeoPoint(truth["lat"], truth["lon"]))) < 4.0
+
+    began = rig.clock.now()
+    await vehicle.turn(30.0)
+    took = rig.clock.now() - began
+    headings = [sample.heading_deg for sample in vehicle.headings(began)]
+    turned = sum(math.remainder(b - a, 360.0) for a, b in pairwise(headings))
+    assert turned >= 350.0
+    assert {int(heading // 20) for heading in headings} == set(range(18))
+    assert 8.0 < took < 30.0
+    assert rig.off_by(place) < 3.0
+
+    await vehicle.return_home()
+    assert vehicle.telemetry().mode in ("RETURN", "RTL")
+    await rig.until(lambda: not vehicle.telemetry().armed, 180, "the landing after the return")
+    home = vehicle.telemetry().home
+    assert home is not None
+    assert rig.off_by(home) < 3.0
+    assert not [line for line in rig.lines if "took over" in line]
+
+
+async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
+    vehicle = rig.vehicle
+    await rig.airborne()
+
+    far = rig.place(east=0.0, north=400.0)
+    flight = asyncio.create_task(vehicle.goto(far, rig.amsl(), 7.0))
+    await rig.until(lambda: (vehicle.telemetry().velocity_north_m_s or 0.0) > 4.0, 20, "flying north")
+    await vehicle.hold()
+    await ends_with(flight, VehicleError, "replaced by Hold")
+    stopped = vehicle.telemetry().position
+    assert stopped is not None
+    assert rig.off_by(far) > 250.0
+    await rig.clock.sleep(8.0)
+    assert rig.off_by(stopped) < 4.0
+
+    turn = asyncio.create_task(vehicle.turn(20.0))
+    await rig.clock.sleep(5.0)
+    await vehicle.hold()
+    await ends_with(turn, VehicleError, "replaced by Hold")
+    await rig.clock.sleep(4.0)
+    headings = [sample.heading_deg for sample in vehicle.headings(rig.clock.now() - 2.0)]
+    assert max(abs(math.remainder(heading - headings[0], 360.0)) for heading in headings) < 5.0
+
+    await vehicle.goto(rig.place(0.0, 20.0), rig.amsl(), 7.0)  # after a hold it flies on
+    await vehicle.land()
+    assert vehicle.telemetry().mode == "LAND"
+    await rig.until(lambda: not vehicle.telemetry().armed, 90, "the landing")
+    assert rig.off_by(rig.place(0.0, 20.0)) < 4.0
+
+
+async def test_on_the_ground_flight_orders_are_refused_in_words(rig: Rig) -> None:
+    here = rig.vehicle.telemetry().position
+    assert here is not None
+
+    for order in (rig.vehicle.goto(here, rig.amsl(), 5.0), rig.vehicle.turn(30.0)):
+        with pytest.raises(VehicleError, match="take off first"):
+            await order
+    for order in (rig.vehicle.return_home(), rig.vehicle.land()):
+        with pytest.raises(VehicleError, match="on the ground"):
+            await order
+    await rig.vehicle.hold()  # nothing to do, never an error
+
+
+@pytest.mark.parametrize(("altitude", "speed"), [(math.nan, 5.0), (500.0, 0.0), (500.0, -1.0), (math.inf, 5.0)])
+async def test_orders_that_mean_nothing_are_refused_before_they_are_sent(altitude: float, speed: float) -> None:
+    vehicle = MavsdkVehicle("udpin://127.0.0.1:1", WallClock())
+
+    with pytest.raises(ValueError, match="No place to fly to"):
+        await vehicle.goto(GeoPoint(47.0, 8.0), altitude, speed)
+    for rate in (0.0, math.nan, 500.0):
+        with pytest.raises(ValueError, match="turn rate must be"):
+            await vehicle.turn(rate)
+    with pytest.raises(ValueError, match="take-off altitude"):
+        await vehicle.take_off(-3.0)
+
+
+async def test_before_it_is_connected_every_order_says_so() -> None:
+    vehicle = MavsdkVehicle("udpin://127.0.0.1:1", WallClock())
+    orders: list[Callable[[], Awaitable[object]]] = [
+        vehicle.hold,
+        vehicle.land,
+        vehicle.return_home,
+        vehicle.preflight,
+        lambda: vehicle.goto(GeoPoint(47.0, 8.0), 500.0, 5.0),
+        lambda: vehicle.turn(30.0),
+        lambda: vehicle.take_off(10.0),
+    ]
+
+    assert not vehicle.telemetry().connected
+    assert vehicle.telemetry().autopilot == "unknown"
+    for order in orders:
+        with pytest.raises(VehicleUnreachable, match="No vehicle is connected"):
+            await order()
