@@ -70,6 +70,17 @@ class CheckFact(Fact):
     blocking: bool
 
 
+class AntennaFact(Fact):
+    """relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
+    front points so far clockwise of the nose."""
+
+    name: str
+    relative_bearing_deg: list[float]
+    gain_db: list[float]
+    offset_to_nose_deg: float
+    frequency_hz: Known
+
+
 class EstimateFact(Fact):
     """Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180)."""
 
@@ -117,13 +128,14 @@ class AntennaChecked(Fact):
 
 
 class MissionStarted(Fact):
-    """The vehicle's home at the start is the origin of the mission's local frame."""
+    """The vehicle's home at the start is the origin of the mission's local frame. antenna None: nobody kept it."""
 
     kind: Literal["mission_started"] = "mission_started"
     by: str
     home: Place
     home_amsl_m: float
     software: str
+    antenna: AntennaFact | None = None
 
 
 class PhaseChanged(Fact):
@@ -234,6 +246,7 @@ class RecordingImported(Fact):
     recorded_at_utc: datetime | None
     sweep_ids: list[str]
     remarks: list[str]
+    antenna: AntennaFact | None = None
 
 
 class BearingExcluded(Fact):

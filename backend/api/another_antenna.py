@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from backend.api.services import Services
 from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recorded, SweepRejected
+from backend.mission.antenna import antenna_flown
 from backend.mission.errors import MissionConflict, MissionInputError
 from backend.mission.measuring import sweep_fact
 from backend.spec import MissionSpec
@@ -51,10 +52,16 @@ class AnotherAntenna:
 async def another_antenna(
     services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest
 ) -> AnotherAntenna | None:
-    """None when the antenna is to stay as flown. Raises MissionInputError for a pattern that cannot be used."""
+    """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew.
+
+    Raises MissionInputError for a pattern that cannot be used.
+    """
     if wanted.pattern is None and wanted.offset_to_nose_deg is None:
         return None
-    pattern = services.pattern if wanted.pattern is None else _pattern(wanted.pattern, _frequency_hz(recorded))
+    if wanted.pattern is None:
+        pattern = antenna_flown(recorded) or services.pattern
+    else:
+        pattern = _pattern(wanted.pattern, _frequency_hz(recorded))
     if wanted.offset_to_nose_deg is not None:
         pattern = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
     ids = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]

@@ -21,8 +21,9 @@ from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
 from hardware.readings import GeoPoint
 from planner.types import PlannerError
 
-SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected")
-"""The events that the answer depends on: a sweep that was rejected may tell something through another antenna."""
+SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected", "recording_imported")
+"""The events that the answer depends on: a sweep that was rejected may tell something through another antenna, and
+the antenna that flew is told at the start or the import."""
 
 
 def what_if(

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
 
 from backend.events import BearingMeasured, Event, Recorded, RecordingImported, SweepStarted
+from backend.mission.antenna import antenna_fact
 from backend.mission.area import centre_of, corner_of
 from backend.mission.errors import MissionInputError
 from backend.mission.localization import localization
@@ -94,6 +95,7 @@ def import_facts(
             recorded_at_utc=None if began_s is None else datetime.fromtimestamp(began_s, UTC),
             sweep_ids=sweep_ids,
             remarks=remarks,
+            antenna=antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg)),
         )
     ]
     task = localization(mission, state.home or corner_of(mission.area), state.home_amsl_m)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from backend.commands import Command
-from backend.events import BearingMeasured, BeliefUpdated, CheckFact, PlanChosen, SweepRejected
+from backend.events import AntennaFact, BearingMeasured, BeliefUpdated, CheckFact, PlanChosen, SweepRejected
 from backend.mission.safety import Veto
 from backend.spec import MissionSpec, Place
 
@@ -23,6 +23,7 @@ class StartFacts:
     home: Place | None
     home_amsl_m: float | None
     software: str
+    antenna: AntennaFact | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,7 +133,14 @@ def _start(step: Step, given: Commanded) -> None:
     _refuse_objections(step, given)
     if facts.home is None or facts.home_amsl_m is None:
         raise Refused("the vehicle has no home position", "wait for a GPS fix")
-    step.record(MissionStarted(by=given.by, home=facts.home, home_amsl_m=facts.home_amsl_m, software=facts.software))
+    started = MissionStarted(
+        by=given.by,
+        home=facts.home,
+        home_amsl_m=facts.home_amsl_m,
+        software=facts.software,
+        antenna=facts.antenna,
+    )
+    step.record(started)
     step.do(ReleasePilotLatch())
     go_on(step, f"started by {given.by}")
 

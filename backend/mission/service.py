@@ -13,6 +13,7 @@ from backend import commands
 from backend.commands import CommandReply, CommandRequest
 from backend.events import AntennaChecked, Event, MissionDrafted, PreflightChecked, Recorded
 from backend.mission import effects, inputs
+from backend.mission.antenna import antenna_fact
 from backend.mission.antenna_check import check_by_hand
 from backend.mission.area import centre_of, corner_of
 from backend.mission.checklist import checklist, home_of
@@ -253,7 +254,8 @@ class MissionService:
             listening = None if other is None else other.listening
             checks, task = await checklist(state.mission, self._equipment, listening, state.antenna)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.limits.home_amsl_m)
-            facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, self._equipment.software)
+            software, antenna = self._equipment.software, antenna_fact(self._equipment.pattern)
+            facts = inputs.StartFacts(() if objections else checks, home, home_amsl_m, software, antenna)
             objections += resume_vetoes(self._equipment.vehicle.telemetry())
             given = inputs.Commanded(str(request.command_id), by, request.command, objections, facts)
             if task is None or objections:

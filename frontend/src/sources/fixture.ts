@@ -116,7 +116,7 @@ export class FixtureSource implements Source {
   }
 
   private fly(): void {
-    this.emit({ kind: "mission_started", by: "operator", home: placeOf(this.home), home_amsl_m: 62, software: "example" });
+    this.emit({ kind: "mission_started", by: "operator", home: placeOf(this.home), home_amsl_m: 62, software: "example", antenna: null });
     this.become("taking_off", "started by operator");
     this.emit({ kind: "took_off", place: placeOf(this.home), altitude_relative_m: 40 });
     this.plan();

@@ -701,6 +701,17 @@ export interface components {
             emitter: components["schemas"]["Place"];
             by: string;
         };
+        /**
+         * @description relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
+         *     front points so far clockwise of the nose.
+         */
+        AntennaFact: {
+            name: string;
+            relative_bearing_deg: number[];
+            gain_db: number[];
+            offset_to_nose_deg: number;
+            frequency_hz: number | null;
+        };
         Area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         /** @description In hold, in flight: from here on this is searched. The bearings taken before count on. */
         AreaChanged: {
@@ -1433,7 +1444,7 @@ export interface components {
             flight?: components["schemas"]["FlightSpecInput"];
             timers?: components["schemas"]["TimerSpecInput"];
         };
-        /** @description The vehicle's home at the start is the origin of the mission's local frame. */
+        /** @description The vehicle's home at the start is the origin of the mission's local frame. antenna None: nobody kept it. */
         MissionStarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1444,6 +1455,7 @@ export interface components {
             home: components["schemas"]["Place"];
             home_amsl_m: number;
             software: string;
+            antenna: components["schemas"]["AntennaFact"] | null;
         };
         /** @description One line of the list. `started_at_utc`, `ended_at_utc`, `outcome`: None until it happened. */
         MissionSummary: {
@@ -1802,6 +1814,7 @@ export interface components {
             recorded_at_utc: string | null;
             sweep_ids: string[];
             remarks: string[];
+            antenna: components["schemas"]["AntennaFact"] | null;
         };
         /** @description Continue after hold, restart or a pilot's takeover (then it also releases the pilot latch). */
         Resume: {

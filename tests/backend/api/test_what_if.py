@@ -6,11 +6,13 @@ import base64
 import json
 import math
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from backend.events import BearingExcluded, BearingMeasured, MissionDrafted, MissionStarted, SweepRejected
+from backend.mission.antenna import antenna_fact
 from backend.mission.localization import localization
 from backend.spec import MissionSpec, Place, Polygon
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -169,6 +171,17 @@ async def test_another_mounting_turns_every_bearing_and_moves_the_place(client, 
     assert as_flown["antenna"] is None
     assert turned_deg(askew) == pytest.approx([-25.0, -25.0], abs=0.5)
     assert askew["belief"]["digest"] != as_flown["belief"]["digest"]
+
+
+async def test_the_mounting_is_that_of_the_antenna_that_flew_whatever_the_server_has_now(client, services):
+    turned = replace(YAGI, name="flown", offset_to_nose_deg=90.0)
+    started = MissionStarted(by="o", home=HOME, home_amsl_m=100.0, software="0", antenna=antenna_fact(turned))
+    events = [MissionDrafted(spec=SPEC), started, BEARINGS[0], TASK.belief_fact(BEARINGS[:1])[0]]
+    await services.journal.append("m1", events)
+    await services.journal.save_sweep("m1", BEARINGS[0].sweep_id, 1, 1, sweep_of(BEARINGS[0]))
+    told = await ask(client, "m1", bearings=1, offset_to_nose_deg=0.0)
+    assert told["antenna"] == {"name": "flown", "offset_to_nose_deg": 0.0}
+    assert turned_deg(told) == pytest.approx([0.0], abs=0.5)
 
 
 async def test_through_an_antenna_that_it_does_not_look_like_a_sweep_tells_nothing(client, heard):
