@@ -50,6 +50,7 @@ ROOMS = [
     "hardware/sdr/sigmf_playback.py",
     "hardware/sdr/soapy.py",
     "hardware/sdr/spectrum.py",
+    "hardware/sim/receiver.py",
 ]
 
 PIECES = {"the target area", "could not be read", "= {}", "{}, {}", "{} %", "{}{}", "hole lies outside"}
