@@ -145,7 +145,7 @@ class Legible:
 
 
 def test_lists_and_editor_are_legible(server: Server, open_screen: OpenScreen) -> None:
-    server.draft()
+    draft = server.draft()
     screen = open_screen(server)
     legible = Legible(screen)
     expect(screen.part("mission-row").first).to_be_visible()
@@ -157,6 +157,11 @@ def test_lists_and_editor_are_legible(server: Server, open_screen: OpenScreen) -
     screen.map_ready("edit-map")
     expect(screen.part("area-size")).to_have_attribute("data-suggested", "true")
     legible.check("new")
+    screen.go(f"#/mission/{draft}/area")
+    screen.map_ready("edit-map")
+    screen.part("outlook-ask").click()
+    expect(screen.part("outlook")).to_contain_text("is not flying")
+    legible.check("area")
 
 
 def test_the_checklist_is_legible(server: Server, open_screen: OpenScreen) -> None:

@@ -202,7 +202,7 @@ export function PlanPanel() {
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
       {missionId && isLive && startedAt && live.value.mission.missionId === missionId && <Decision id={missionId} />}
-      {missionId && isLive && startedAt && phase === "hold" && (
+      {missionId && isLive && source.value?.kind === "live" && phase === "hold" && (
         <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
           {t("area.change")}
         </a>
