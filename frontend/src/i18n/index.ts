@@ -1,15 +1,13 @@
 // All words of the page come through here. English is the reference; a missing translation does not compile.
 import { signal } from "@preact/signals";
 import { en, type MessageKey } from "./en";
+import { locale, type Language } from "./locale";
 import { tellIn } from "./told";
 
 export type { MessageKey } from "./en";
+export { locale, type Language } from "./locale";
 export { told, tellInUnits, toldName, toldReason } from "./told";
-export type Language = "en" | "de";
 export type Parameters = Record<string, string | number>;
-
-/** For numbers: which mark groups thousands, which one parts the decimals. */
-export const locale = signal<Language>("en");
 
 const table = signal<Record<MessageKey, string>>(en);
 

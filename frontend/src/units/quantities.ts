@@ -1,6 +1,6 @@
 // Lengths, areas, speeds and times for people. Input is always SI.
 
-import { locale } from "../i18n";
+import { locale } from "../i18n/locale";
 
 export type UnitSystem = "metric" | "imperial";
 
