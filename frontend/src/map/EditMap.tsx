@@ -17,7 +17,7 @@ import { ringsApart, ringsTogether, type Rings } from "../state/areas";
 import type { MissionSpec, PlanChosen } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
-import { createMap, fit } from "./createMap";
+import { createMap, fit, framed } from "./createMap";
 import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, planFeatures } from "./features";
 import { addSources, missionLayers } from "./layers";
 import { palettes, type Palette } from "./palette";
@@ -120,8 +120,6 @@ const proposed = computed<At<PlanChosen> | null>(() => {
 /** To the metre, so that the map is not drawn again with every telemetry value. */
 const parked = computed(() => vehicle.value.at?.map((degrees) => degrees.toFixed(5)).join() ?? null);
 
-let framed: string | null = null;
-
 /** False as soon as the operator moves the map himself: then it stays where he put it. */
 let framing = true;
 
@@ -173,8 +171,8 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
     stops.push(
       effect(() => {
         const now = draft.value;
-        if (!now || framed === now.key) return;
-        framed = now.key;
+        if (!now || framed.what === `draft:${now.key}`) return;
+        framed.what = `draft:${now.key}`;
         framing = true;
         frameDraft(map, now.spec);
       }),

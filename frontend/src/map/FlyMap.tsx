@@ -15,7 +15,7 @@ import { formatDuration, formatLength } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { beliefPixels, imageCorners } from "./beliefImage";
-import { createMap, fit, gridStepM } from "./createMap";
+import { createMap, fit, framed, gridStepM } from "./createMap";
 import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, pathFeatures, planFeatures, type Features } from "./features";
 import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, SWITCHES, type SourceName, type Switch } from "./layers";
@@ -167,8 +167,6 @@ function frameAll(map: GlMap, animate: boolean): void {
   if (box) fit(map, box, animate, bannerPx.peek());
 }
 
-let framedFor: string | null = null;
-
 function MapTools({ map }: { map: { current: GlMap | null } }) {
   const flip = (which: Switch) => {
     const next = new Set(hidden.value);
@@ -246,8 +244,8 @@ export function FlyMap() {
     let unbind: () => void = () => undefined;
     const stopFraming = effect(() => {
       const id = mission.value.spec ? mission.value.missionId : null;
-      if (id === null || framedFor === id) return;
-      framedFor = id;
+      if (id === null || framed.what === id) return;
+      framed.what = id;
       frameAll(created, false);
     });
     created.on("load", () => {
@@ -274,7 +272,7 @@ export function FlyMap() {
       if (framing) frameAll(created, false);
     });
     const stopBanner = bannerPx.subscribe(() => {
-      if (framing && framedFor !== null) frameAll(created, false);
+      if (framing && framed.what !== null) frameAll(created, false);
     });
     const stopHover = watchHover(created, (place, aborted) => {
       const id = mission.peek().missionId;

@@ -49,6 +49,9 @@ function plainStyle(colours: Palette): StyleSpecification {
 /** Where the camera was, so that another theme or page shows the same place. */
 let lastCamera: { center: LonLat; zoom: number } | null = null;
 
+/** The mission or draft that the camera was put to last, by any map: another one is framed anew. */
+export const framed: { what: string | null } = { what: null };
+
 /** Step of the plain grid now, m. */
 export const gridStepM = signal<number | null>(null);
 
