@@ -42,7 +42,7 @@ async def fly_to(helm: Helm, place: GeoPoint, altitude_amsl_m: float, speed_m_s:
 async def _send(helm: Helm, manoeuvre: Manoeuvre, place: GeoPoint, altitude_amsl_m: float, speed_m_s: float) -> None:
     dialect = helm.monitor.dialect
     there = reposition(place, altitude_amsl_m, speed_m_s, None)
-    await helm.order(manoeuvre, there, dialect.reposition_modes, "the next place")
+    await helm.steer(manoeuvre, there, "the next place")
     helm.spot = (place, altitude_amsl_m)
     if not dialect.reposition_sets_speed:
         speed = command_long(CHANGE_SPEED, 1.0, speed_m_s, -1.0, 0.0, 0.0, 0.0, 0.0)

@@ -13,6 +13,8 @@ from hardware.autopilot.patience import Deadline
 from hardware.ports import VehicleError, VehicleUnreachable
 from hardware.readings import GeoPoint
 
+MODE_S = 0.2
+"""Longer than this nothing waits for the vehicle's next word of its mode, which comes ten times a second."""
 GIVE_UP_LINK_WALL_S = 15.0
 """A manoeuvre whose vehicle is silent for so many seconds of the wall ends with VehicleUnreachable (it flies on)."""
 
@@ -40,6 +42,17 @@ class Helm:
     async def order(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], what: str) -> None:
         """See Commander.order."""
         await self.monitor.commander.order(manoeuvre, outgoing, modes, what)
+
+    async def steer(self, manoeuvre: Manoeuvre, outgoing: Outgoing, what: str) -> None:
+        """An order that only moves the search on: sent right after the vehicle's next word of its mode.
+
+        Sent later, it may undo a pilot's change of mode before the autopilot has told of it, and nobody would know.
+        """
+        monitor = self.monitor
+        known_at_s = monitor.snapshot.mode_at_s
+        told = Deadline(monitor.clock, MODE_S, MODE_S)
+        await self.until(manoeuvre, told, lambda: monitor.snapshot.mode_at_s != known_at_s)
+        await self.order(manoeuvre, outgoing, monitor.dialect.reposition_modes, what)
 
     def go_on(self, manoeuvre: Manoeuvre) -> None:
         """Raises when the manoeuvre may not go on, or its vehicle has been silent for too long."""

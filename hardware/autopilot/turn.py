@@ -56,7 +56,7 @@ class Turn:
         snapshot, clock = monitor.snapshot, monitor.clock
         if monitor.dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
             # yaw commands are acknowledged in every mode and obeyed in this one only
-            await self._order(reposition(place, altitude_amsl_m, None, None), "holding the spot")
+            await self._helm.steer(self._manoeuvre, reposition(place, altitude_amsl_m, None, None), "holding the spot")
         if snapshot.heading_deg is None or snapshot.heading_at_s is None:
             return False
         progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
@@ -66,7 +66,8 @@ class Turn:
             self._helm.go_on(self._manoeuvre)
             target = self._target(method, clock.now() - began, progress.turned_deg, sent)
             if target - sent > 1.0:
-                await self._order(self._step(method, progress, target, place, altitude_amsl_m), "the turn")
+                step = self._step(method, progress, target, place, altitude_amsl_m)
+                await self._helm.steer(self._manoeuvre, step, "the turn")
                 sent = target
             await monitor.news.wait()
             for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
@@ -76,10 +77,6 @@ class Turn:
             elif seen_at - progress_at > STUCK_S:
                 return False
         return True
-
-    async def _order(self, outgoing: Outgoing, what: str) -> None:
-        modes = self._helm.monitor.dialect.reposition_modes
-        await self._helm.order(self._manoeuvre, outgoing, modes, what)
 
     def _target(self, method: TurnMethod, elapsed_s: float, turned_deg: float, sent_deg: float) -> float:
         """Degrees from the start that should be ordered by now."""
