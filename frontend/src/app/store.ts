@@ -1,20 +1,21 @@
 // The page's state: what the source told, the moment looked at, and what follows from both.
 import { batch, computed, effect, signal } from "@preact/signals";
 import type { Source, SourceMessage } from "../sources/source";
-import { ageS } from "../state/age";
 import { emptyLive, reduceLive, type LiveState } from "../state/live";
 import { inFlight, missionAt, suppose, type MissionState } from "../state/mission";
+import { steady, unseen, type VehicleView } from "../state/steady";
 import type { Phase, TrackFact, WhatIf } from "../wire";
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 
 export const live = signal<LiveState>(emptyLive);
 export const source = signal<Source | null>(null);
 
-/** Monotonic page time, ms; moves four times a second so that ages move. */
+/** Monotonic page time, ms; moves four times a second so that ages move: with what is heard, else by itself. */
 export const nowMs = signal(performance.now());
+const TICK_MS = 250;
 setInterval(() => {
-  nowMs.value = performance.now();
-}, 250);
+  if (performance.now() - nowMs.peek() > 1.5 * TICK_MS) nowMs.value = performance.now();
+}, TICK_MS);
 
 /** Sequence number of the event looked at; null: now. */
 export const cursor = signal<number | null>(null);
@@ -62,15 +63,6 @@ export const reviewTimeMs = computed<number | null>(() => {
 
 export const track = signal<readonly TrackFact[]>([]);
 
-export interface VehicleView {
-  at: LonLat | null;
-  headingDeg: number | null;
-  positionAgeS: number | null;
-  altitudeRelativeM: number | null;
-  speedMs: number | null;
-  mode: string | null;
-}
-
 const telemetry = computed(() => live.value.telemetry);
 
 const reviewPoint = computed<TrackFact | null>(() => {
@@ -79,28 +71,20 @@ const reviewPoint = computed<TrackFact | null>(() => {
   return track.value.findLast((p) => Date.parse(p.at_utc) <= time) ?? track.value[0] ?? null;
 });
 
-export const vehicle = computed<VehicleView>(() => {
+const seen = computed<VehicleView>(() => {
   if (cursor.value !== null) {
     const point = reviewPoint.value;
-    return {
-      at: point ? [point.lon, point.lat] : null,
-      headingDeg: point?.heading_deg ?? null,
-      positionAgeS: point ? 0 : null,
-      altitudeRelativeM: point?.altitude_relative_m ?? null,
-      speedMs: null,
-      mode: point?.mode ?? null,
-    };
+    return point ? { at: [point.lon, point.lat], headingDeg: point.heading_deg, speedMs: null } : unseen;
   }
-  const heard = telemetry.value;
-  const value = heard?.value;
-  return {
-    at: value && value.lon !== null && value.lat !== null ? [value.lon, value.lat] : null,
-    headingDeg: value?.heading_deg ?? null,
-    positionAgeS: ageS(value?.position_age_s, heard?.atMs ?? null, heard?.atMs ?? 0),
-    altitudeRelativeM: value?.altitude_relative_m ?? null,
-    speedMs: value?.ground_speed_m_s ?? null,
-    mode: value?.mode ?? null,
-  };
+  const value = telemetry.value?.value;
+  if (!value) return unseen;
+  const at: LonLat | null = value.lon !== null && value.lat !== null ? [value.lon, value.lat] : null;
+  return { at, headingDeg: value.heading_deg, speedMs: value.ground_speed_m_s };
+});
+
+export const vehicle = signal<VehicleView>(unseen);
+effect(() => {
+  vehicle.value = cursor.value === null ? steady(vehicle.peek(), seen.value) : seen.value;
 });
 
 const livePath = computed(() => live.value.path);
@@ -188,20 +172,34 @@ export const shownTimeMs = computed<number>(() => {
 /** Messages are folded at most once a frame; a belief at once, so that the map draws it in the very next frame. */
 let pending: SourceMessage[] = [];
 let scheduled = false;
+let waiting: ReturnType<typeof setTimeout> | undefined;
+
+/** These are shown with the next telemetry, if that comes within the time: each frame drawn costs the whole page. */
+const CAN_WAIT: ReadonlySet<SourceMessage["type"]> = new Set(["sweep_progress", "status"]);
+const WAIT_MS = 100;
 
 function flush(): void {
   scheduled = false;
+  clearTimeout(waiting);
+  waiting = undefined;
   if (pending.length === 0) return;
   const messages = pending;
   pending = [];
   const time = performance.now();
-  live.value = messages.reduce((state, message) => reduceLive(state, message, time), live.peek());
+  batch(() => {
+    live.value = messages.reduce((state, message) => reduceLive(state, message, time), live.peek());
+    if (time - nowMs.peek() > TICK_MS) nowMs.value = time;
+  });
 }
 
 function receive(message: SourceMessage): void {
   pending.push(message);
   if (message.type === "belief") return flush();
   if (scheduled) return;
+  if (CAN_WAIT.has(message.type)) {
+    waiting ??= setTimeout(flush, WAIT_MS);
+    return;
+  }
   scheduled = true;
   if (document.hidden) setTimeout(flush, 50);
   else requestAnimationFrame(flush);

@@ -21,9 +21,9 @@ describe("reduceLive", () => {
     expect(after.events).toBe(before.events);
   });
 
-  it("draws the path in steps of three metres, only in the air", () => {
+  it("draws the path in steps of five metres, only in the air", () => {
     const step = 1 / 111_320;
-    const flown = [telemetry(50, 7), telemetry(50 + 2 * step, 7), telemetry(50 + 4 * step, 7), telemetry(51, 7, { in_air: false })];
+    const flown = [telemetry(50, 7), telemetry(50 + 3 * step, 7), telemetry(50 + 6 * step, 7), telemetry(51, 7, { in_air: false })];
     expect(run({ type: "event", recorded: record(phase("flying"))[0]! }, ...flown).path).toHaveLength(2);
     expect(run({ type: "event", recorded: record(phase("ready"))[0]! }, ...flown).path).toEqual([]);
   });

@@ -43,8 +43,8 @@ export const emptyLive: LiveState = {
   unreadable: 0,
 };
 
-/** The vehicle on the map covers what is shorter; each step draws the whole map again. */
-const PATH_STEP_M = 3.0;
+/** About what the vehicle covers on the map; each step draws the whole map again. */
+const PATH_STEP_M = 5.0;
 
 /** Of the mission shown: the vehicle may be on the way home from another one. */
 function extendPath({ path, mission }: LiveState, telemetry: TelemetryMessage): readonly LonLat[] {
