@@ -23,8 +23,8 @@ class Wire:
 
     def __init__(self) -> None:
         self.sent: list[Fields] = []
-        self.before: Callable[[], None] = lambda: None
-        self.answer: Callable[[int], None] = lambda count: None
+        self.before: Callable[[], object] = lambda: None
+        self.answer: Callable[[int], object] = lambda count: None
 
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
         await asyncio.sleep(0)
@@ -89,7 +89,7 @@ async def test_in_progress_waits_for_the_last_word_without_sending_again() -> No
 
 async def test_a_latch_that_closes_in_the_instant_before_sending_stops_it() -> None:
     rig = Rig()
-    rig.wire.before = lambda: rig.latch.latch("the pilot moved the sticks") and None
+    rig.wire.before = lambda: rig.latch.latch("the pilot moved the sticks")
 
     with pytest.raises(PilotHasControl, match="the pilot moved the sticks"):
         await rig.order(arm())
@@ -98,7 +98,7 @@ async def test_a_latch_that_closes_in_the_instant_before_sending_stops_it() -> N
 
 async def test_a_pilot_who_takes_over_while_an_answer_is_awaited_gets_no_repetition() -> None:
     rig = Rig()
-    rig.wire.answer = lambda count: rig.latch.latch("the pilot moved the sticks") and None
+    rig.wire.answer = lambda count: rig.latch.latch("the pilot moved the sticks")
 
     with pytest.raises(PilotHasControl):
         await rig.order()
