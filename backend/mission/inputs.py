@@ -135,6 +135,13 @@ class FailsafeActs:
 
 
 @dataclass(frozen=True, slots=True)
+class FailsafeStopped:
+    """An order of ours that was under way when that began has stopped it. Nothing is sent: it might be a pilot."""
+
+    mode: str
+
+
+@dataclass(frozen=True, slots=True)
 class LinkDown:
     link: Link
     detail: str
@@ -215,6 +222,7 @@ Input = (
     | WorkVetoed
     | PilotTookOver
     | FailsafeActs
+    | FailsafeStopped
     | LinkDown
     | LinkUp
     | BatteryLow

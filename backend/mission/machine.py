@@ -42,6 +42,7 @@ from backend.mission.inputs import (
     Commanded,
     Edited,
     FailsafeActs,
+    FailsafeStopped,
     HomeReached,
     Input,
     Interrupted,
@@ -111,9 +112,13 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
         case PilotTookOver():
             _pilot(step, given)
         case FailsafeActs(mode=mode):
-            if state.phase == "hold" and not state.pilot_has_control:
+            if state.phase in AUTOMATIC | {"hold"} and not state.pilot_has_control:
                 step.do(CancelWork())
                 _failsafe_flies(step, f"it went into {mode} because it had not heard from here")
+                step.go("hold", "the autopilot is bringing the vehicle home")
+        case FailsafeStopped():
+            if state.phase == "hold" and not state.pilot_has_control:
+                forget_failsafe(step)
         case LinkDown():
             _link_down(step, given)
         case LinkUp():

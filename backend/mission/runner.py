@@ -21,9 +21,9 @@ from backend.mission.machine import transition
 from backend.mission.measuring import Measured
 from backend.mission.outbox import Outbox
 from backend.mission.safety import Veto, battery_vetoes, resume_vetoes, staying_vetoes
-from backend.mission.state import TERMINAL, MissionState
+from backend.mission.state import AUTOMATIC, TERMINAL, MissionState
 from backend.mission.steps import Steps
-from backend.mission.watch import GOING_HOME, Watch
+from backend.mission.watch import Watch
 from hardware.ports import HardwareError, PilotHasControl
 from planner.types import PlannerError
 
@@ -32,6 +32,7 @@ log = logging.getLogger("crossfix.mission")
 TRACK_SAVED_S = 2.5
 KEEP_ON_S = 1.0
 DOWN_AFTER_ABORT_S = 1.0
+LOOK = "look at the vehicle and resume, or order the return"
 
 Slot = Literal["command", "thinking", "belief"]
 
@@ -219,10 +220,11 @@ class Runner:
         try:
             result = await step
         except PilotHasControl as error:
-            mode = self._equipment.vehicle.telemetry().mode or "unknown"
-            result = inputs.PilotTookOver(mode, str(error), mode in GOING_HOME)
+            self.watch.notice_pilot(str(error))
+            unnoticed = self._state.phase in AUTOMATIC
+            result = self._failure(name, str(error), LOOK) if unnoticed else None
         except (HardwareError, PlannerError) as error:
-            result = self._failure(name, str(error), "look at the vehicle and resume, or order the return")
+            result = self._failure(name, str(error), LOOK)
         except Exception:
             log.exception("mission %s: the step %s failed", self.mission_id, name)
             result = self._failure(name, f"the step {name!r} failed inside Crossfix", "resume, or order the return")

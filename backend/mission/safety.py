@@ -60,13 +60,15 @@ class Limits:
 class Situation:
     """The vehicle as last heard, and how fast its battery drains (percent a second of flight).
 
-    heard_since_s: when it was heard again after its link had been lost.
+    heard_since_s: when it was heard again after its link had been lost. failsafe_flies: the autopilot acts by itself;
+    no pilot does.
     """
 
     telemetry: Telemetry
     now_s: float
     drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
     heard_since_s: float = -math.inf
+    failsafe_flies: bool = False
 
     @property
     def position_age_s(self) -> float:
@@ -91,7 +93,10 @@ def vehicle_vetoes(situation: Situation) -> tuple[Veto, ...]:
     """Is there a vehicle that may be commanded at all?"""
     telemetry, age = situation.telemetry, situation.position_age_s
     found = []
-    if telemetry.controller == "pilot":
+    if situation.failsafe_flies:
+        detail = f"the autopilot acts by itself: {telemetry.mode}"
+        found.append(Veto("failsafe", detail, "hold or resume first"))
+    elif telemetry.controller == "pilot":
         found.append(
             Veto("pilot", "the pilot has control of the vehicle", "resume when the pilot has given control back")
         )

@@ -25,8 +25,11 @@ HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
 GOING_HOME = frozenset({"RETURN", "RTL", "SMART_RTL", "AUTO_RTL", "LAND", "PRECISION LAND"})
 """Modes that an autopilot's failsafe enters by itself (as the vehicle names them)."""
+WAITING = frozenset({"HOLD", "GUIDED", "BRAKE"})
+"""Modes into which our orders bring a flying vehicle."""
 HEARD_AGAIN_S, HEARD_AGAIN_WALL_S = 15.0, 5.0
-"""So long after it was heard again a vehicle may still be acting on the silence before: it hears us later."""
+"""So long after it was heard again, or the server came back, a vehicle may still act on the silence before: it hears us
+later. A mission that just started had none."""
 
 RECOVERED_PERCENT = 2.0
 """A low battery counts as recovered with so much to spare: a charge at the limit is told once."""
@@ -88,7 +91,7 @@ class Watch:
 
     def situation(self) -> Situation:
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
-        return Situation(telemetry, now, self.drain.percent_s, self._heard_since_s)
+        return Situation(telemetry, now, self.drain.percent_s, self._heard_since_s, self.failsafe_flies)
 
     @property
     def failsafe_flies(self) -> bool:
@@ -105,7 +108,7 @@ class Watch:
         """One look at everything."""
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         self.listening.wait(min(max(now - self._ticked_at, 0.0), LONGEST_TICK_S))
-        if math.isinf(self._ticked_at):
+        if math.isinf(self._ticked_at) and self.state().phase not in AUTOMATIC:
             self._heard_again = Deadline(self.equipment.clock, HEARD_AGAIN_S, HEARD_AGAIN_WALL_S)
         self._ticked_at = now
         self.drain.update(telemetry, now)
@@ -137,10 +140,17 @@ class Watch:
         return self._heard_again is not None and not self._heard_again.passed
 
     def _failsafes_doing(self, telemetry: Telemetry, mode: str) -> bool:
-        """Not a pilot's: the autopilot's own way home, and the mode it goes to once it has landed."""
+        """Not a pilot's: the autopilot's own way home, the mode it goes to once it has landed, or a return that an
+        order of ours stopped, sent before we knew of it."""
         if self.tolerated_mode is None or self.state().phase in AUTOMATIC | {"manual"}:
             return False
-        return mode == self.tolerated_mode or telemetry.in_air is False
+        if mode == self.tolerated_mode or telemetry.in_air is False:
+            return True
+        stopped = mode in WAITING and self._just_heard and telemetry.controller == "pilot"
+        if stopped:
+            self.tolerated_mode = mode
+            self.give(inputs.FailsafeStopped(mode))
+        return stopped
 
     def _links(self, telemetry: Telemetry, now: float) -> None:
         heard = telemetry.heard_at_s

@@ -2,11 +2,13 @@
 
     python -m tests.benchmarks.kill_loop --kills 1000 --database sqlite
     python -m tests.benchmarks.kill_loop --kills 1000 --database postgresql
+    python -m tests.benchmarks.kill_loop --kills 30 --away 6.2 7.0 --whole 0     restarts as the failsafe begins
 
 The real server over real sockets flies the simulated vehicle, which lives in a process of its own and flies on. A
 server is a fork of a process that has imported everything, so that a thousand restarts take two hours rather than
 five; every `--whole`-th is a whole `crossfix serve`. A fact counts as acknowledged once the websocket has shown it.
-Prints one JSON object; ends with status 1 when anything was lost, doubled, changed or late.
+Nobody touches the sticks: a takeover is a failsafe taken for a pilot. Prints one JSON object; ends with status 1 when
+anything was lost, doubled, changed, late or taken for a pilot.
 """
 
 from __future__ import annotations
@@ -144,6 +146,8 @@ class Findings:
     lost: int = 0
     beliefs_compared: int = 0
     beliefs_changed: int = 0
+    late_failsafes: int = 0
+    taken_for_a_pilot: int = 0
     hold_s: dict[str, list[float]] = field(default_factory=lambda: {"forked": [], "whole": []})
 
     def summary(self) -> dict[str, Any]:
@@ -164,13 +168,15 @@ class Findings:
             "lost_or_changed_facts": self.lost,
             "beliefs_compared": self.beliefs_compared,
             "beliefs_changed": self.beliefs_changed,
+            "failsafes_right_after_a_restart": self.late_failsafes,
+            "taken_for_a_pilot": self.taken_for_a_pilot,
             "start_to_hold_s": {kind: spread(values) for kind, values in self.hold_s.items()},
         }
 
     @property
     def good(self) -> bool:
         late = [s for values in self.hold_s.values() for s in values if s > HOLD_WITHIN_S]
-        return not self.lost and not self.beliefs_changed and not late
+        return not (self.lost or self.beliefs_changed or self.taken_for_a_pilot or late)
 
 
 def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
@@ -247,10 +253,12 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
         found.beliefs_changed += again[1] != known[1]
 
 
-async def loop(kills: int, folder: Path, database: str | None, speedup: float, seed: int, whole: int) -> Findings:
+async def loop(
+    kills: int, folder: Path, database: str | None, speedup: float, seed: int, whole: int, away: tuple[float, float]
+) -> Findings:
     chance, found = random.Random(seed), Findings()
     servers, server = Servers(arguments(folder, database, speedup, seed)), None
-    mission_id, before = "", list[Event]()
+    mission_id, before, seen = "", list[Event](), 0
     try:
         while True:
             kind = "whole" if whole and found.kills % whole == whole - 1 else "forked"
@@ -275,7 +283,7 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
                     await shown.close()
                     shown.events.clear()
                     await new_mission(shown)
-                    mission_id = shown.mission_id
+                    mission_id, seen = shown.mission_id, 0
                     found.missions += 1
                 known = len(shown.events) if before else 0
                 await fly_until_killed(server, shown, folder, chance)
@@ -287,6 +295,11 @@ async def loop(kills: int, folder: Path, database: str | None, speedup: float, s
                 new = before[known:]
                 found.acknowledged += len(new)
                 found.bearings += sum(r["event"]["kind"] == "bearing_measured" for r in new)
+                since_kill = before[seen:]
+                seen = len(before)
+                found.taken_for_a_pilot += sum(r["event"]["kind"] == "control_taken" for r in since_kill)
+                found.late_failsafes += sum("had not heard" in r["event"].get("text", "") for r in since_kill)
+            await asyncio.sleep(chance.uniform(*away))
             if sys.stderr.isatty() or found.kills % 20 == 0:
                 print(json.dumps(found.summary()), file=sys.stderr, flush=True)
     except BaseException:
@@ -333,11 +346,11 @@ def warm_up() -> None:
     _warm_up()
 
 
-async def run(kills: int, database: str, speedup: float, seed: int, whole: int) -> Findings:
+async def run(kills: int, database: str, speedup: float, seed: int, whole: int, away: tuple[float, float]) -> Findings:
     await asyncio.to_thread(warm_up)
     with tempfile.TemporaryDirectory(prefix="crossfix-kills-") as folder:
         async with database_url(database) as url:
-            return await loop(kills, Path(folder), url, speedup, seed, whole)
+            return await loop(kills, Path(folder), url, speedup, seed, whole, away)
 
 
 def main() -> None:
@@ -350,6 +363,7 @@ def main() -> None:
     parser.add_argument("--speedup", type=float, default=12.0)
     parser.add_argument("--seed", type=int, default=3)
     parser.add_argument("--whole", type=int, default=10, metavar="N", help="every N-th start is a whole one; 0: none")
+    parser.add_argument("--away", type=float, nargs=2, default=(0.0, 0.0), metavar="S", help="no server for so long")
     found = asyncio.run(run(**vars(parser.parse_args())))
     print(json.dumps(found.summary(), indent=2))
     sys.exit(not found.good)

@@ -48,6 +48,7 @@ export const de: Record<MessageKey, string> = {
 
   "control.crossfix": "Crossfix steuert",
   "control.pilot": "Der Pilot steuert ({mode})",
+  "control.other": "Der Autopilot oder der Pilot steuert ({mode})",
   "control.nobody": "Niemand steuert",
   "control.unknown": "Wer steuert, ist nicht bekannt",
 

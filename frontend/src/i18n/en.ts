@@ -47,6 +47,7 @@ export const en = {
 
   "control.crossfix": "Crossfix has control",
   "control.pilot": "The pilot has control ({mode})",
+  "control.other": "The autopilot or the pilot has control ({mode})",
   "control.nobody": "Nobody has control",
   "control.unknown": "Who has control is not known",
 

@@ -160,7 +160,8 @@ function controlWords(): string {
   if (pilot) return t("control.pilot", { mode: pilot.mode });
   const heard = live.value.telemetry?.value;
   if (!heard) return t("control.unknown");
-  if (heard.controller === "pilot") return t("control.pilot", { mode: heard.mode ?? "?" });
+  // the vehicle only says that it was not us; that it was the pilot is the mission's word
+  if (heard.controller === "pilot") return t("control.other", { mode: heard.mode ?? "?" });
   return t(heard.controller === "crossfix" ? "control.crossfix" : "control.nobody");
 }
 

@@ -265,6 +265,7 @@ def every_input(state: MissionState) -> list[inputs.Input]:
         inputs.WorkVetoed((BATTERY_VETO,)),
         inputs.PilotTookOver("POSCTL", "stick"),
         inputs.FailsafeActs("RETURN"),
+        inputs.FailsafeStopped("HOLD"),
         *(inputs.LinkDown(link, "silent") for link in links),
         *(inputs.LinkUp(link, 3.0) for link in links),
         inputs.LinkUp("vehicle", 12.0, going_home=True),

@@ -46,6 +46,25 @@ def test_a_failsafe_that_acts_right_after_a_restart_leaves_the_mission_in_hold_a
     assert answer(walk.command(commands.Resume())).accepted
 
 
+def test_a_failsafe_that_acts_right_after_a_resume_holds_the_mission_and_is_not_fought() -> None:
+    for phase in AUTOMATIC:
+        walk = walk_in(phase)
+        effects = walk.give(inputs.FailsafeActs("RETURN"))
+        assert not any(isinstance(e, VEHICLE) for e in effects)
+        assert asked.CancelWork() in effects
+        assert walk.state.phase == "hold"
+        assert not walk.state.pilot_has_control
+
+
+def test_a_failsafe_that_an_order_of_ours_has_stopped_leaves_the_mission_in_hold_and_sends_nothing() -> None:
+    walk = Walk().to("flying")
+    walk.give(inputs.FailsafeActs("RETURN"))
+    effects = walk.give(inputs.FailsafeStopped("HOLD"))
+    assert not any(isinstance(e, (*VEHICLE, asked.ReleasePilotLatch)) for e in effects)
+    assert walk.state.phase == "hold"
+    assert not walk.state.open_alerts
+
+
 def test_the_pilot_in_control_is_never_commanded_not_even_by_hold_return_or_abort() -> None:
     for command in (commands.Hold(), commands.Return(), commands.Abort(), commands.Override(place=HOME)):
         walk = Walk().to("manual")

@@ -12,7 +12,7 @@ from flights import flying, order, stuck
 from backend import commands
 from backend.commands import Command
 from backend.events import LinkLost, PhaseChanged
-from backend.mission import inputs
+from backend.mission import inputs, watch
 from backend.mission.state import fold
 from backend.spec import Place, TimerSpec
 
@@ -103,6 +103,38 @@ async def test_an_operator_may_take_the_vehicle_from_its_failsafe_which_is_no_pi
     await stage.until_true(lambda: stage.vehicle.names[-len(sent) :] == sent)
     await stage.until_true(lambda: fold(stage.journal.stored[mission_id]).open_alerts == ())
     assert not {"control_taken", "control_released"} & set(stage.journal.kinds(mission_id))
+
+
+async def test_a_place_chosen_while_the_failsafe_flies_is_refused_with_its_name(stage: Stage) -> None:
+    mission_id = await failsafe_flying(stage)
+    refused = await order(stage, mission_id, commands.Override(place=Place(lat=50.0003, lon=7.0)))
+    assert (refused.accepted, refused.reason, refused.remedy) == (
+        False,
+        "the autopilot acts by itself: RETURN",
+        "hold or resume first",
+    )
+
+
+async def test_a_step_that_finds_the_failsafe_flying_right_after_a_resume_is_not_told_as_a_pilot(
+    stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(watch, "HEARD_AGAIN_WALL_S", 60.0)
+    mission_id = await stuck(stage)
+    stage.vehicle.heard = False
+    await stage.until_phase(mission_id, "hold")
+    stage.vehicle.heard = True
+    await stage.until(mission_id, "link_restored")
+    goto = stage.vehicle.goto
+
+    async def failsafe_first(*place: object) -> None:
+        stage.vehicle.state = replace(stage.vehicle.state, controller="pilot", mode="RETURN", held_by_pilot=True)
+        await goto(*place)  # type: ignore[arg-type]
+
+    stage.vehicle.goto = failsafe_first  # type: ignore[method-assign]
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+    await stage.until_true(lambda: stage.service.status().phase == "hold")
+    await stage.until_phase(mission_id, "hold")
+    assert "control_taken" not in stage.journal.kinds(mission_id)
 
 
 async def test_without_a_console_the_failsafes_own_return_is_left_to_bring_the_vehicle_home() -> None:

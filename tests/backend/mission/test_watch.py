@@ -10,10 +10,12 @@ from backend.mission import inputs, watch
 from backend.mission.equipment import Equipment
 from backend.mission.listening import Listening
 from backend.mission.localization import localization
-from backend.mission.safety import NOMINAL_DRAIN_PERCENT_S
+from backend.mission.machine import transition
+from backend.mission.safety import NOMINAL_DRAIN_PERCENT_S, vehicle_vetoes
 from backend.mission.state import MissionState
 from backend.mission.watch import Drain, Watch
 from backend.spec import Place
+from hardware.autopilot.patience import Deadline
 
 
 class HandClock:
@@ -54,6 +56,15 @@ class Scene:
 
     def see(self, **values: object) -> None:
         self.vehicle.state = replace(self.vehicle.state, **values)  # type: ignore[arg-type]
+
+    def machine_answers(self) -> None:
+        """What is given from now on changes the state."""
+
+        def give(given: inputs.Input) -> None:
+            self.given.append(given)
+            self.state, _ = transition(self.state, given, self.clock.at)
+
+        self.watch.give = give
 
     def tick(self, times: int = 1, step_s: float = 0.2) -> list[inputs.Input]:
         self.given.clear()
@@ -199,19 +210,47 @@ def test_a_return_that_began_while_the_link_was_lost_is_the_failsafes_one_seen_t
     assert inputs.PilotTookOver("POSCTL", "the vehicle is in POSCTL") in scene.tick()
 
 
+@pytest.mark.parametrize("phase", ["hold", "planning", "flying", "measuring", "taking_off"])
 def test_a_return_right_after_the_vehicle_was_heard_again_is_the_failsafes_a_later_one_is_not(
-    scene: Scene, monkeypatch: pytest.MonkeyPatch
+    scene: Scene, monkeypatch: pytest.MonkeyPatch, phase: str
 ) -> None:
+    """An operator who resumes at once changes nothing about that."""
     monkeypatch.setattr(watch, "HEARD_AGAIN_WALL_S", 0.0)
     scene.state = Walk().to("hold").state
     scene.tick(20)
+    scene.state = Walk().to(phase).state
     scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    scene.machine_answers()
     assert scene.tick(3) == [inputs.FailsafeActs("RETURN")]
+    assert scene.state.phase == "hold"
     assert scene.watch.failsafe_flies
     scene.see(controller="crossfix", mode="HOLD", held_by_pilot=False)
     assert scene.tick(80) == []
     scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
     assert isinstance(scene.tick()[0], inputs.PilotTookOver)
+
+
+def test_a_return_right_after_the_start_of_a_mission_is_the_pilots(scene: Scene) -> None:
+    scene.state = Walk().to("taking_off").state
+    scene.tick()
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    assert scene.tick() == [inputs.PilotTookOver("RETURN", "the vehicle is in RETURN", True)]
+
+
+def test_a_failsafe_that_an_order_of_before_it_stops_is_no_pilot_but_a_later_stop_is(scene: Scene) -> None:
+    scene.state = Walk().to("hold").state
+    scene.tick()
+    for mode, told in (("RETURN", inputs.FailsafeActs("RETURN")), ("HOLD", inputs.FailsafeStopped("HOLD"))):
+        scene.see(controller="pilot", mode=mode, held_by_pilot=True)
+        assert scene.tick() == [told]
+    later = Scene()
+    later.state = Walk().to("hold").state
+    later.watch.tolerated_mode = "RETURN"
+    later.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    later.tick()
+    later.watch._heard_again = Deadline(later.clock, 0.0)
+    later.see(mode="HOLD")
+    assert inputs.PilotTookOver("HOLD", "the vehicle is in HOLD") in later.tick()
 
 
 def test_the_mode_after_a_failsafes_landing_is_no_pilots_but_who_takes_off_by_hand_is_one(scene: Scene) -> None:
@@ -237,6 +276,14 @@ def test_a_link_that_comes_back_after_the_failsafe_has_landed_says_no_way_home(s
     scene.vehicle.heard = True
     (up,) = (told for told in scene.tick() if isinstance(told, inputs.LinkUp))
     assert not up.going_home
+
+
+def test_a_place_refused_because_the_failsafe_flies_names_it_and_no_pilot(scene: Scene) -> None:
+    scene.watch.tolerated_mode = "RETURN"
+    scene.see(controller="pilot", mode="RETURN", held_by_pilot=True)
+    (veto,) = vehicle_vetoes(scene.watch.situation())
+    assert (veto.rule, veto.detail) == ("failsafe", "the autopilot acts by itself: RETURN")
+    assert veto.remedy == "hold or resume first"
 
 
 def test_home_and_ground_are_told_when_they_are_reached(scene: Scene) -> None:
