@@ -116,9 +116,10 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
                 step.do(CancelWork())
                 _failsafe_flies(step, f"it went into {mode} because it had not heard from here")
                 step.go("hold", "the autopilot is bringing the vehicle home")
-        case FailsafeStopped():
+        case FailsafeStopped(mode=mode):
             if state.phase == "hold" and not state.pilot_has_control:
-                forget_failsafe(step)
+                text = f"the autopilot's own way home ended in {mode}, perhaps by an earlier order"
+                alert(step, "vehicle", "caution", text, "look at the vehicle, then hold or resume")
         case LinkDown():
             _link_down(step, given)
         case LinkUp():
@@ -267,13 +268,8 @@ def _link_down(step: Step, given: LinkDown) -> None:
     step.record(LinkLost(link=given.link, detail=given.detail))
     match given.link:
         case "vehicle":
-            alert(
-                step,
-                "vehicle",
-                "warning",
-                f"vehicle link lost: {given.detail}",
-                "its failsafe acts; restore the link",
-            )
+            text = f"vehicle link lost: {given.detail}"
+            alert(step, "vehicle", "warning", text, "its failsafe acts; restore the link")
             if state.phase in AUTOMATIC:
                 step.do(CancelWork())
                 step.go("hold", "vehicle link lost")
@@ -396,5 +392,5 @@ def _restarted(step: Step, given: Restarted) -> None:
 
 
 def _failsafe_flies(step: Step, why: str) -> None:
-    text = f"the autopilot is on its own way home: {why}"
-    alert(step, "vehicle", "caution", text, "resume to go on searching, or let it land")
+    remedy = "resume to go on searching, or let it land"
+    alert(step, "vehicle", "caution", f"the autopilot is on its own way home: {why}", remedy)

@@ -62,6 +62,9 @@ def test_a_failsafe_that_an_order_of_ours_has_stopped_leaves_the_mission_in_hold
     effects = walk.give(inputs.FailsafeStopped("HOLD"))
     assert not any(isinstance(e, (*VEHICLE, asked.ReleasePilotLatch)) for e in effects)
     assert walk.state.phase == "hold"
+    (told,) = walk.state.open_alerts
+    assert told.startswith("vehicle-")
+    walk.command(commands.Hold(), failsafe_flies=True)
     assert not walk.state.open_alerts
 
 
