@@ -141,7 +141,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
     const stops: (() => void)[] = [];
     map.on("load", () => {
       addSources(map);
-      for (const layer of missionLayers(colours)) map.addLayer(layer);
+      for (const layer of missionLayers(colours, basemap.peek() !== null)) map.addLayer(layer);
       const put = (name: string, data: GeoJSON.FeatureCollection) => map.getSource<GeoJSONSource>(name)?.setData(data);
       stops.push(
         effect(() => {

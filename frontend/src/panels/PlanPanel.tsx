@@ -13,11 +13,21 @@ import { isHomeward } from "../state/mission";
 import { highlighted } from "../app/highlight";
 import { formatPlace } from "../units/coordinates";
 import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
-import type { CandidateFact, PlanChosen } from "../wire";
+import type { CandidateFact, Place, PlanChosen } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
 import { ProblemNote, ProblemBox } from "./ProblemNote";
 import { WhatIfPanel } from "./WhatIfPanel";
 
 const SHOWN = 12;
+
+/** Nearer than this the bearing is noise. */
+const HERE_M = 2;
+
+function wayWords(here: LonLat, place: Place): string {
+  const length = distanceM(here, lonLat(place));
+  if (length < HERE_M) return t("plan.here");
+  return t("plan.distance", { length: formatLength(length, settings.value.units), bearing: formatBearing(bearingDeg(here, lonLat(place))) });
+}
 
 function roundWords(candidate: CandidateFact): string {
   return candidate.dropped_in_round === null
@@ -92,7 +102,6 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
   const plan = mission.value.plan?.fact;
   const { result, problem } = proposed;
   const here = vehicle.value.at;
-  const units = settings.value.units;
   const card = useRef<HTMLDivElement>(null);
   useEffect(() => card.current?.scrollIntoView({ block: "nearest" }), [result, problem]);
   return (
@@ -103,10 +112,7 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
         {here && (
           <span class="muted">
             {" · "}
-            {t("plan.distance", {
-              length: formatLength(distanceM(here, lonLat(proposed.place)), units),
-              bearing: formatBearing(bearingDeg(here, lonLat(proposed.place))),
-            })}
+            {wayWords(here, proposed.place)}
           </span>
         )}
       </div>
@@ -192,10 +198,7 @@ export function PlanPanel() {
         {supposedHere.value && <span class="supposed" data-testid="supposed">{t("whatIf.mark")}</span>}
         {fact && here && !isHomeward(mission.value) && (
           <span class="muted">
-            {t("plan.distance", {
-              length: formatLength(distanceM(here, lonLat(fact.place)), settings.value.units),
-              bearing: formatBearing(bearingDeg(here, lonLat(fact.place))),
-            })}
+            {wayWords(here, fact.place)}
           </span>
         )}
       </h2>

@@ -101,6 +101,12 @@ export function toneOf(event: MissionEvent): EventTone {
   }
 }
 
+/** An operator needs no reason; the mission tells its own. */
+function orderWords(order: "hold" | "return" | "abort", { by, reason }: { by: string; reason: string }): string {
+  const words = t(`event.${order}_ordered` satisfies MessageKey, { by: told(by) });
+  return reason === "ordered" ? words : `${words}: ${told(reason)}`;
+}
+
 export function eventWords({ event }: Recorded, units: UnitSystem): string {
   switch (event.kind) {
     case "mission_drafted":
@@ -168,13 +174,13 @@ export function eventWords({ event }: Recorded, units: UnitSystem): string {
             reason: event.not_yet.map(toldReason).join("; "),
           });
     case "hold_ordered":
-      return t("event.hold_ordered", { by: told(event.by), reason: told(event.reason) });
+      return orderWords("hold", event);
     case "resume_ordered":
       return t("event.resume_ordered", { by: told(event.by) });
     case "return_ordered":
-      return t("event.return_ordered", { by: told(event.by), reason: told(event.reason) });
+      return orderWords("return", event);
     case "abort_ordered":
-      return t("event.abort_ordered", { by: told(event.by), reason: told(event.reason) });
+      return orderWords("abort", event);
     case "automatic_changed":
       return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: told(event.by) });
     case "control_taken":
