@@ -20,6 +20,7 @@ from served import Server, started, url_of
 
 SPEEDUP = 3.0
 
+# Debian's launcher forces rasterization onto a graphics card; without one Chromium itself would do it on the processor.
 CHROMIUM = [
     "--no-sandbox",
     "--disable-background-networking",
@@ -28,6 +29,7 @@ CHROMIUM = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--disable-gpu-rasterization",
     "--autoplay-policy=no-user-gesture-required",
 ]
 
