@@ -2,21 +2,33 @@
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
+STAMPS := .stamps
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test check kernel bench long fuzz load page-load sensor-faults codegen compare-direction-finders setup setup-dev build browser unit system stories clean help
+.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help
+
+# Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
+step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 28
 
-run: setup build ## server, embedded SQLite, simulated vehicle and emitter; the page is open to use
-	$(BIN)/crossfix serve
+run: ## server, embedded SQLite, simulated vehicle and emitter; the page is open to use
+	$(call step,1/4,Python packages into .venv,a minute or two the first time)
+	@$(MAKE) --no-print-directory setup
+	$(call step,2/4,packages of the page,half a minute the first time)
+	@$(MAKE) --no-print-directory frontend/node_modules/.installed
+	$(call step,3/4,the page,a few seconds after a change)
+	@$(MAKE) --no-print-directory build
+	$(call step,4/4,the server,half a minute the first time: it compiles the planner; Ctrl-C ends it)
+	@$(BIN)/crossfix serve
 
 setup: $(VENV)/.installed ## the Python environment in .venv
 
 $(VENV)/bin/python:
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
@@ -36,65 +48,104 @@ frontend/node_modules/.installed: frontend/package.json frontend/package-lock.js
 build: frontend/dist/.built ## the page, into frontend/dist
 
 frontend/dist/.built: frontend/node_modules/.installed $(PAGE_SOURCES)
-	cd frontend && npm run --silent build
+	cd frontend && npm run --silent build -- --logLevel warn
 	@touch $@
 
-browser: ## Debian's Chromium, when there is none
+browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
-test: check kernel ## everything CI runs; missions wait for the wall's clock, so the unit tests fill their pauses, and no browser does
-	$(MAKE) -j2 -Otarget unit system
-	$(MAKE) stories
+test: ## everything CI runs
+	$(call step,1/6,Python packages into .venv,two minutes the first time)
+	@$(MAKE) --no-print-directory setup-dev
+	$(call step,2/6,packages of the page,half a minute the first time)
+	@$(MAKE) --no-print-directory frontend/node_modules/.installed
+	$(call step,3/6,style; types; imports; schemas; figures; the tests of the page,two minutes)
+	@$(MAKE) --no-print-directory check
+	$(call step,4/6,the page and the planner's machine code,half a minute the first time)
+	@$(MAKE) --no-print-directory build kernel
+	$(call step,5/6,unit tests here; whole missions beside them,ten minutes)
+	@$(MAKE) --no-print-directory unit-and-system
+	$(call step,6/6,what a user does on the page; in Chromium,five minutes)
+	@$(MAKE) --no-print-directory stories
 
-check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, page unit tests
+check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/pyright
 	$(BIN)/python -m backend.api.schema --check frontend/src/wire/openapi.json
+	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
+	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json
+	$(BIN)/python -m tests.benchmarks.figures --check
 	cd frontend && npm run --silent codegen -- --check
+	$(BIN)/python -m docs.drawing --check
+	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 	cd frontend && npm run --silent check
 
-kernel: setup-dev ## compiled once, not by each worker in a test
+kernel: setup-dev ## compiled once here, not by each test worker
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 
-unit: kernel ## tests without a vehicle or a browser
-	nice -n 10 $(BIN)/pytest -n 2 --hypothesis-profile ci -m "not system and not browser and not long"
+unit-and-system: # missions wait for the wall's clock, and the unit tests fill their pauses
+	@mkdir -p $(STAMPS); $(MAKE) --no-print-directory system >$(STAMPS)/system.log 2>&1 & missions=$$!; \
+	trap "kill $$missions; exit 130" INT TERM; \
+	$(MAKE) --no-print-directory unit; unit=$$?; \
+	echo "Waiting for the whole missions; what they say so far is in $(STAMPS)/system.log"; \
+	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
+
+unit: kernel ## tests without a vehicle or a browser, and how much of the code they run
+	nice -n 10 $(BIN)/pytest -n 2 --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
+	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets
 	$(BIN)/pytest -m "system and not browser" --durations 8
 
-stories: setup-dev build browser ## what a user does on the page, in Chromium; a process of its own: it keeps an event loop
+stories: setup-dev build browser ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
 	$(BIN)/pytest -n 2 --dist loadfile -m browser --durations 8
 
-long: setup-dev ## the kernel against its reference 10,000 times, and tables computed anew: a quarter of an hour
+long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
 
-fuzz: setup-dev build ## 100,000 odd requests and messages against a running server; hours
-	CROSSFIX_FUZZ_REQUESTS=100000 CROSSFIX_FUZZ_MESSAGES=100000 $(BIN)/pytest tests/fuzz --timeout 86400
+fuzz: setup-dev build ## 100,000 odd requests and messages to a running server: hours
+	CROSSFIX_FUZZ_OUT=$(MEASUREMENTS) CROSSFIX_FUZZ_REQUESTS=100000 CROSSFIX_FUZZ_MESSAGES=100000 $(BIN)/pytest tests/fuzz --timeout 86400
 
 load: setup-dev build ## a hundred viewers, five of them stalled: latency and memory over ten minutes
-	$(BIN)/python -m tests.benchmarks.live_load fanout
+	$(BIN)/python -m tests.benchmarks.live_load fanout --seconds 600 --out $(MEASUREMENTS)
 
-page-load: setup-dev build browser ## the page: belief on screen, frames at 20 Hz, memory in replay, bytes a minute; an hour and a half
-	$(BIN)/python -m tests.benchmarks.page_belief --bearings 20
-	$(BIN)/python -m tests.benchmarks.page_frames --minutes 10
-	$(BIN)/python -m tests.benchmarks.page_bytes --minutes 5
-	$(BIN)/python -m tests.benchmarks.page_replay --minutes 60
+page-load: setup-dev build browser ## the page: belief on screen, frames at 20 Hz, memory in replay, bytes per minute: an hour and a half
+	$(BIN)/python -m tests.benchmarks.page_belief --bearings 20 --out $(MEASUREMENTS)
+	$(BIN)/python -m tests.benchmarks.page_frames --minutes 10 --out $(MEASUREMENTS)
+	$(BIN)/python -m tests.benchmarks.page_bytes --minutes 5 --out $(MEASUREMENTS)
+	$(BIN)/python -m tests.benchmarks.page_replay --minutes 60 --out $(MEASUREMENTS)
 
-sensor-faults: setup-dev ## a thousand simulated missions for each fault of the sensor: an hour on one core
-	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000
+sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
+	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
+	$(BIN)/python -m backend.reasons.catalogue frontend/src/i18n/reasons.en.ts
+	$(BIN)/python -m tests.spoken tests/golden/reasons.json
 	cd frontend && npm run --silent codegen
 
+architecture: setup-dev ## the picture of docs/architecture.md, from the imports
+	$(BIN)/python -m docs.drawing
+
+COMPOSE ?= docker compose
+containers: setup-dev ## build the image, fly one mission in the containers of docker-compose.yml, take them down again
+	SPEEDUP=5 $(COMPOSE) up --build --detach
+	$(BIN)/python -m tests.containers.fly http://127.0.0.1:8600; flown=$$?; $(COMPOSE) down; exit $$flown
+
+example: setup-dev ## the flight that the page plays as its example, recorded again: after each change of the wire
+	$(BIN)/python frontend/scripts/record_example.py
+
 SWEEPS ?= 2000
-compare-direction-finders: setup-dev ## three direction finders on 2,000 simulated sweeps a condition: the table and plot of docs/direction-finding.md
-	$(BIN)/python -m hardware.direction_finding.comparison --sweeps $(SWEEPS) --reliability docs/images/sigma_reliability.svg
+compare-direction-finders: setup-dev ## three direction finders on 2,000 simulated sweeps per condition: the table and plot of docs/direction-finding.md
+	$(BIN)/python -m tests.benchmarks.direction_finders --sweeps $(SWEEPS) --reliability docs/images/sigma_reliability.svg --out $(MEASUREMENTS)
 
 bench: setup ## the planner's speed on this machine
-	$(BIN)/crossfix bench
+	$(BIN)/python -m tests.benchmarks.planner_speed --out $(MEASUREMENTS)
 
-clean: ## everything that was made, but not the data
-	rm -rf $(VENV) frontend/node_modules frontend/dist
+figures: setup-dev ## docs/measurements.md and the tables of the pages, from docs/measurements/*.json
+	$(BIN)/python -m tests.benchmarks.figures
+
+clean: ## removes everything that make created, but not the data
+	rm -rf $(VENV) $(STAMPS) .coverage frontend/node_modules frontend/dist

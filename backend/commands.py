@@ -1,4 +1,7 @@
-"""What a browser may ask: REST bodies. Commands are idempotent by the client-made `command_id`."""
+"""What a browser may ask: REST bodies. Commands are idempotent by the client-made `command_id`.
+
+craft_id None: of hold, return and abort every craft of the mission; of all others its only craft.
+"""
 
 from __future__ import annotations
 
@@ -7,38 +10,58 @@ from uuid import UUID
 
 from pydantic import Field
 
-from backend.spec import Model, Place, SearchArea
+from backend.reasons import Reason
+from backend.spec import Id, Model, Place, SearchArea
 
 
-class Start(Model):
+class CraftCommand(Model):
+    """What is asked of a craft."""
+
+    craft_id: Id | None = None
+
+
+class Start(CraftCommand):
     kind: Literal["start"] = "start"
 
 
-class Hold(Model):
+class Hold(CraftCommand):
     kind: Literal["hold"] = "hold"
 
 
-class Resume(Model):
-    """Continue after hold, restart or a pilot's takeover (then it also releases the pilot latch)."""
+class Resume(CraftCommand):
+    """Continue after hold, restart or a pilot's takeover (then it also takes control back)."""
 
     kind: Literal["resume"] = "resume"
 
 
-class Return(Model):
+class Return(CraftCommand):
     kind: Literal["return"] = "return"
 
 
-class Abort(Model):
+class Abort(CraftCommand):
     """End the automatic mission at once: the vehicle holds, then returns home by its autopilot."""
 
     kind: Literal["abort"] = "abort"
 
 
-class Override(Model):
+class Override(CraftCommand):
     """Fly to this place next instead of the planner's choice."""
 
     kind: Literal["override"] = "override"
     place: Place
+
+
+class Accept(CraftCommand):
+    kind: Literal["accept"] = "accept"
+
+
+class Veto(CraftCommand):
+    kind: Literal["veto"] = "veto"
+
+
+class SetAutomatic(CraftCommand):
+    kind: Literal["set_automatic"] = "set_automatic"
+    automatic: bool
 
 
 class ChangeArea(Model):
@@ -48,23 +71,11 @@ class ChangeArea(Model):
     search: SearchArea
 
 
-class Accept(Model):
-    kind: Literal["accept"] = "accept"
-
-
-class Veto(Model):
-    kind: Literal["veto"] = "veto"
-
-
-class SetAutomatic(Model):
-    kind: Literal["set_automatic"] = "set_automatic"
-    automatic: bool
-
-
 class ExcludeBearing(Model):
     kind: Literal["exclude_bearing"] = "exclude_bearing"
     bearing_id: str
     reason: str = Field(default="", max_length=200)
+    """In the operator's own words."""
 
 
 class AcknowledgeAlert(Model):
@@ -72,21 +83,9 @@ class AcknowledgeAlert(Model):
     alert_id: str
 
 
-Command = Annotated[
-    Start
-    | Hold
-    | Resume
-    | Return
-    | Abort
-    | Override
-    | ChangeArea
-    | Accept
-    | Veto
-    | SetAutomatic
-    | ExcludeBearing
-    | AcknowledgeAlert,
-    Field(discriminator="kind"),
-]
+ForCraft = Start | Hold | Resume | Return | Abort | Override | Accept | Veto | SetAutomatic
+ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
+Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
 
 
 class CommandRequest(Model):
@@ -95,10 +94,9 @@ class CommandRequest(Model):
 
 
 class CommandReply(Model):
-    """accepted False: `reason` says why, `remedy` what to do. seq: the journal's last number after the command."""
+    """reason: why it was refused, None when it was accepted. seq: the journal's last number after the command."""
 
     command_id: UUID
     accepted: bool
-    reason: str
-    remedy: str
+    reason: Reason | None
     seq: int

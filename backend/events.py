@@ -1,7 +1,8 @@
 """The facts of a mission, in the past tense. The journal stores them; state is a fold of them.
 
-Every event has a `kind`. A stored event is wrapped in `Recorded` with its sequence number and UTC time. Bearings:
-degrees clockwise from true north. Rejected wishes are facts too (`CommandRefused`): the review must show them.
+Every event has a `kind`, and the id of the craft or the emitter that it speaks of. A stored event is wrapped in
+`Recorded` with its sequence number and UTC time. Bearings: degrees clockwise from true north. Rejected wishes are facts
+too (`CommandRefused`): the review must show them. by: who ordered it, None when the mission did by itself.
 """
 
 from __future__ import annotations
@@ -12,11 +13,17 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from backend.spec import Area, MissionSpec, Model, Place, SearchArea
+from backend.reasons import Reason
+from backend.spec import Area, Id, MissionSpec, Model, Place, SearchArea
+from hardware.authority import Authority
+from hardware.readings import CheckName
+
+FIRST_CRAFT = "craft-1"
+FORM = 2
+"""Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
 
 Phase = Literal[
-    "draft",  # editable, nothing flown
-    "ready",  # preflight passed
+    "ground",  # not flying for this mission
     "taking_off",
     "planning",  # choosing the next place
     "waiting",  # a place is proposed, the operator must accept
@@ -26,10 +33,27 @@ Phase = Literal[
     "manual",  # the pilot has control
     "returning",
     "landing",
-    "done",  # localized, or ended with an honest "not localized"
-    "aborted",
-    "failed",
 ]
+"""What a craft does."""
+MissionPhase = Literal["draft", "ready", "searching", "done", "aborted", "failed"] | Phase
+"""A mission in one word: what its craft does while one flies, else the stage of its search."""
+Outcome = Literal["localized", "not_localized", "aborted", "failed"]
+Link = Literal["vehicle", "receiver", "console", "payload"]
+Topic = Literal[
+    "vehicle",
+    "receiver",
+    "console",
+    "payload",
+    "pilot",
+    "battery",
+    "place",
+    "heading",
+    "failure",
+    "safety",
+    "ground",
+    "storage",
+]
+"""What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place."""
 
 
 class Fact(Model):
@@ -63,10 +87,11 @@ class CandidateFact(Fact):
 
 
 class CheckFact(Fact):
-    name: str
+    """One line of the checklist. blocking: refuses the start unless it is ok."""
+
+    name: CheckName
     ok: bool
-    detail: str
-    remedy: str
+    reason: Reason
     blocking: bool
 
 
@@ -92,6 +117,31 @@ class EstimateFact(Fact):
     major_axis_m: float
     minor_axis_m: float
     major_axis_deg: float
+
+
+class CraftSource(Fact):
+    """A craft's own sweep."""
+
+    kind: Literal["craft"] = "craft"
+    craft_id: Id
+
+
+class ImportSource(Fact):
+    """A sweep out of a recording."""
+
+    kind: Literal["import"] = "import"
+    recording_id: str
+
+
+class PersonSource(Fact):
+    """Somebody with an antenna in their hand."""
+
+    kind: Literal["person"] = "person"
+    name: str
+
+
+BearingSource = Annotated[CraftSource | ImportSource | PersonSource, Field(discriminator="kind")]
+"""Who took a bearing: each source has errors of its own."""
 
 
 class MissionDrafted(Fact):
@@ -128,9 +178,11 @@ class AntennaChecked(Fact):
 
 
 class MissionStarted(Fact):
-    """The vehicle's home at the start is the origin of the mission's local frame. antenna None: nobody kept it."""
+    """A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
+    None: nobody kept it."""
 
     kind: Literal["mission_started"] = "mission_started"
+    craft_id: Id
     by: str
     home: Place
     home_amsl_m: float
@@ -140,26 +192,31 @@ class MissionStarted(Fact):
 
 class PhaseChanged(Fact):
     kind: Literal["phase_changed"] = "phase_changed"
+    craft_id: Id
     before: Phase
     after: Phase
-    reason: str
+    reason: Reason
 
 
 class TookOff(Fact):
     kind: Literal["took_off"] = "took_off"
+    craft_id: Id
     place: Place
     altitude_relative_m: float
 
 
 class PlanChosen(Fact):
-    """The next measurement place. `place_number` counts places from 1. `expected_time_s`: mean time until localized
-    by way of this place; `time_90_s`: not exceeded in 90 % of the rollouts (None when not sampled)."""
+    """The next measurement place. `emitter_id`: the emitter it is to tell most of, None of an operator's.
+    `place_number` counts places from 1. `expected_time_s`: mean time until localized by way of this place; `time_90_s`:
+    not exceeded in 90 % of the rollouts (None when not sampled)."""
 
     kind: Literal["plan_chosen"] = "plan_chosen"
+    craft_id: Id
+    emitter_id: Id | None = None
     place_number: int
     place: Place
     source: Literal["planner", "operator"]
-    reason: str
+    reason: Reason
     expected_time_s: Known
     time_90_s: Known
     candidates: list[CandidateFact]
@@ -172,12 +229,14 @@ class PlanVetoed(Fact):
     """The operator refused the proposed place; the planner chooses again without it."""
 
     kind: Literal["plan_vetoed"] = "plan_vetoed"
+    craft_id: Id
     place: Place
     by: str
 
 
 class FlightStarted(Fact):
     kind: Literal["flight_started"] = "flight_started"
+    craft_id: Id
     place_number: int
     place: Place
     altitude_amsl_m: float
@@ -185,6 +244,7 @@ class FlightStarted(Fact):
 
 class PlaceReached(Fact):
     kind: Literal["place_reached"] = "place_reached"
+    craft_id: Id
     place_number: int
     place: Place
     distance_m: float
@@ -193,32 +253,38 @@ class PlaceReached(Fact):
 
 class SweepStarted(Fact):
     kind: Literal["sweep_started"] = "sweep_started"
+    craft_id: Id
     place_number: int
     attempt: int
 
 
 class SweepRejected(Fact):
     kind: Literal["sweep_rejected"] = "sweep_rejected"
+    emitter_id: Id
+    source: BearingSource
     sweep_id: str
     place_number: int
     attempt: int
     quality: float
-    reason: str
+    reason: Reason
     place: Place
     binned_db: list[Known]
     fitted_db: list[Known]
 
 
 class BearingMeasured(Fact):
-    """binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
+    """sweep_id None, binned_db and fitted_db empty: no sweep was kept (a person's bearing). binned_db, fitted_db: 180
+    bins of 2 degrees of antenna heading (true), None where nothing was heard.
 
     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
     heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
     """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
+    emitter_id: Id
+    source: BearingSource
     bearing_id: str
-    sweep_id: str
+    sweep_id: str | None
     place_number: int
     place: Place
     altitude_amsl_m: float
@@ -235,41 +301,46 @@ class BearingMeasured(Fact):
 
 
 class RecordingImported(Fact):
-    """Recorded sweeps were brought in; their facts follow. recording_id: SHA-256 of the files and of what was said
-    about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood and why.
+    """Recorded sweeps of an emitter were brought in; their facts follow. recording_id: SHA-256 of the files and of what
+    was said about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood
+    and why.
     """
 
     kind: Literal["recording_imported"] = "recording_imported"
+    emitter_id: Id
     recording_id: str
     filename: str
     by: str
     recorded_at_utc: datetime | None
     sweep_ids: list[str]
-    remarks: list[str]
+    remarks: list[Reason]
     antenna: AntennaFact | None = None
 
 
 class BearingExcluded(Fact):
     kind: Literal["bearing_excluded"] = "bearing_excluded"
+    emitter_id: Id
     bearing_id: str
     by: str
     reason: str
+    """In the operator's own words."""
 
 
 class BeliefUpdated(Fact):
-    """The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
-    compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
+    """The belief about one emitter after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt
+    belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
     significant: then nothing is claimed."""
 
     kind: Literal["belief_updated"] = "belief_updated"
+    emitter_id: Id
     bearings: int
     estimate: EstimateFact | None
     consistent: bool
     localized: bool
-    not_yet: list[str]
-    contradicting: list[str] = Field(default_factory=list)
+    not_yet: list[Reason]
+    contradicting: list[str] = Field(default_factory=list[str])
     heading_offset_deg: Known = None
     heading_offset_std_error_deg: Known = None
     digest: str
@@ -277,44 +348,46 @@ class BeliefUpdated(Fact):
 
 class HoldOrdered(Fact):
     kind: Literal["hold_ordered"] = "hold_ordered"
-    by: str
-    reason: str
+    craft_id: Id
+    by: str | None
+    reason: Reason | None
 
 
 class ResumeOrdered(Fact):
     kind: Literal["resume_ordered"] = "resume_ordered"
+    craft_id: Id
     by: str
 
 
 class ReturnOrdered(Fact):
     kind: Literal["return_ordered"] = "return_ordered"
-    by: str
-    reason: str
+    craft_id: Id
+    by: str | None
+    reason: Reason | None
 
 
 class AbortOrdered(Fact):
     kind: Literal["abort_ordered"] = "abort_ordered"
+    craft_id: Id
     by: str
-    reason: str
 
 
 class AutomaticChanged(Fact):
     """ "Accept the next location automatically" was armed or disarmed."""
 
     kind: Literal["automatic_changed"] = "automatic_changed"
+    craft_id: Id
     automatic: bool
     by: str
 
 
-class ControlTaken(Fact):
-    kind: Literal["control_taken"] = "control_taken"
-    mode: str
-    detail: str
+class AuthorityChanged(Fact):
+    """Who flies the craft from now on. by: the operator whose deed it was, None when the vehicle showed it."""
 
-
-class ControlReleased(Fact):
-    kind: Literal["control_released"] = "control_released"
-    by: str
+    kind: Literal["authority_changed"] = "authority_changed"
+    craft_id: Id
+    authority: Authority
+    by: str | None = None
 
 
 class CommandAccepted(Fact):
@@ -331,35 +404,39 @@ class CommandRefused(Fact):
     command_id: str
     command: str
     by: str
-    reason: str
-    remedy: str = ""
+    reason: Reason
 
 
 class SafetyVetoed(Fact):
     kind: Literal["safety_vetoed"] = "safety_vetoed"
-    rule: str
-    detail: str
-    remedy: str
+    craft_id: Id
+    reason: Reason
 
 
 class LinkLost(Fact):
     kind: Literal["link_lost"] = "link_lost"
-    link: Literal["vehicle", "receiver", "console", "payload"]
-    detail: str
+    craft_id: Id
+    link: Link
+    reason: Reason
 
 
 class LinkRestored(Fact):
     kind: Literal["link_restored"] = "link_restored"
-    link: Literal["vehicle", "receiver", "console", "payload"]
+    craft_id: Id
+    link: Link
     outage_s: float
 
 
 class AlertRaised(Fact):
+    """craft_id, emitter_id: whom it concerns; None of both: the whole mission."""
+
     kind: Literal["alert_raised"] = "alert_raised"
     alert_id: str
+    topic: Topic
     level: Literal["warning", "caution", "advisory"]
-    text: str
-    remedy: str
+    reason: Reason
+    craft_id: Id | None = None
+    emitter_id: Id | None = None
 
 
 class AlertAcknowledged(Fact):
@@ -375,13 +452,14 @@ class AlertCleared(Fact):
 
 class ServerRestarted(Fact):
     kind: Literal["server_restarted"] = "server_restarted"
-    detail: str
 
 
 class MissionEnded(Fact):
+    """The search is over; a craft of it may still be on its way home."""
+
     kind: Literal["mission_ended"] = "mission_ended"
-    outcome: Literal["localized", "not_localized", "aborted", "failed"]
-    reason: str
+    outcome: Outcome
+    reason: Reason
     mission_time_s: float
 
 
@@ -409,8 +487,7 @@ Event = Annotated[
     | ReturnOrdered
     | AbortOrdered
     | AutomaticChanged
-    | ControlTaken
-    | ControlReleased
+    | AuthorityChanged
     | CommandAccepted
     | CommandRefused
     | SafetyVetoed

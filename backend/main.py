@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
 import uvicorn
@@ -23,7 +23,7 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
     """`opening` makes the parts behind the API and takes them down again."""
 
     @asynccontextmanager
-    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+    async def lifespan(app: FastAPI) -> AsyncGenerator[None]:
         async with opening(settings) as services:
             app.state.services = services
             try:

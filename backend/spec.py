@@ -10,6 +10,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from hardware.readings import Latitude, Longitude, Place
+from planner.options import FIELD, BasePolicy, DiscreteSelection, Estimator, Method, PlannerOptions, Sampling
+
 
 class Model(BaseModel):
     """Base of everything that is stored or sent: frozen, no unknown fields, defaults always present on the wire."""
@@ -17,16 +20,9 @@ class Model(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", json_schema_serialization_defaults_required=True)
 
 
-Longitude = Annotated[float, Field(ge=-180, le=180, allow_inf_nan=False)]
-Latitude = Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)]
 LonLat = tuple[Longitude, Latitude]
 Positive = Annotated[float, Field(gt=0, le=1e12, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, le=1e12, allow_inf_nan=False)]
-
-
-class Place(Model):
-    lat: Latitude
-    lon: Longitude
 
 
 class Polygon(Model):
@@ -92,15 +88,23 @@ class FullMotionSpec(Model):
 MotionSpec = Annotated[LinearMotionSpec | LinearConstantMotionSpec | FullMotionSpec, Field(discriminator="kind")]
 
 
-class EmitterSpec(Model):
-    """What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only."""
+Id = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
+"""Names a craft or an emitter within its mission."""
+FIRST_EMITTER = "emitter-1"
 
+
+class EmitterSpec(Model):
+    """What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
+    "pulsed" only."""
+
+    emitter_id: Id = FIRST_EMITTER
     frequency_hz: Positive = 868_300_000.0
     kind: Literal["carrier", "pulsed"] = "carrier"
     label: str = Field(default="emitter", max_length=80)
     pulse_width_s: float = Field(default=0.02, gt=0, le=1, allow_inf_nan=False)
     pulse_period_s: float = Field(default=1.3, gt=0, le=10, allow_inf_nan=False)
     pulse_jitter_s: float = Field(default=0.03, ge=0, le=1, allow_inf_nan=False)
+    prior: PriorSpec = Field(default_factory=UniformPriorSpec)
 
     @model_validator(mode="after")
     def pulses_have_pauses(self) -> EmitterSpec:
@@ -118,7 +122,7 @@ class SensorSpec(Model):
     measurement_time_s: Positive = 30.0
     turn_rate_deg_s: float = Field(default=30.0, ge=5, le=90)
     pulses_per_heading: int = Field(default=2, ge=1, le=20)
-    """A sweep of a pulsed tag is complete when each sixteenth of the circle was listened to for so many pulses."""
+    """A sweep of a pulsed tag is complete when each sixteenth of the circle was listened to for this many pulses."""
     minimum_quality: float = Field(default=0.7, ge=0, le=1)
     maximum_retakes: int = Field(default=2, ge=0, le=10)
 
@@ -126,16 +130,22 @@ class SensorSpec(Model):
 class PlannerSpec(Model):
     """Which planner decides, and with how much work."""
 
-    method: Literal["rollout", "base_policy"] = "rollout"
-    base_policy: Literal["ellipse", "fisher"] = "fisher"
-    selection: Literal["uniform", "sequential_halving"] = "sequential_halving"
-    sampling: Literal["deterministic", "crn", "pmc"] = "crn"
-    estimator: Literal["map", "expected_value", "geometric_median"] = "map"
-    budget: int = Field(default=1000, ge=10, le=100_000)
+    method: Method = FIELD.method
+    base_policy: BasePolicy = FIELD.base_policy
+    selection: DiscreteSelection = FIELD.selection
+    sampling: Sampling = FIELD.sampling
+    estimator: Estimator = FIELD.estimator
+    budget: int = Field(default=FIELD.budget, ge=10, le=100_000)
     action_spacing_m: float = Field(default=15.0, ge=1, le=5000)
     standoff_m: float = Field(default=50.0, ge=0, le=5000)
     motion: MotionSpec = Field(default_factory=LinearConstantMotionSpec)
-    seed: int = Field(default=1, ge=0, le=2**31 - 1)
+    seed: int = Field(default=FIELD.seed, ge=0, le=2**31 - 1)
+
+    @property
+    def options(self) -> PlannerOptions:
+        return PlannerOptions(
+            self.method, self.base_policy, self.selection, self.sampling, self.estimator, self.budget, self.seed
+        )
 
 
 class LocalizationSpec(Model):
@@ -157,7 +167,7 @@ class FlightSpec(Model):
     speed_m_s: float = Field(default=7.0, gt=0, le=30)
     fence: Area | None = None
     fence_margin_m: float = Field(default=60.0, ge=0, le=5000)
-    no_fly: list[Area] = Field(default_factory=list)
+    no_fly: list[Area] = Field(default_factory=list[Area])
     reserve_battery_percent: float = Field(default=25.0, ge=5, le=90)
     battery_telemetry: bool = True
     """False: the vehicle is known to report no charge, and nothing but its own failsafe looks after its battery."""
@@ -171,34 +181,56 @@ class TimerSpec(Model):
     console_lost_hold_s: Positive = 10.0
     console_lost_return_s: Positive = 60.0
     receiver_silent_s: Positive = 5.0
-    vehicle_command_s: Positive = 60.0
 
 
 class SearchArea(Model):
-    """Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec."""
+    """Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec.
+
+    priors: by emitter id; an emitter that is not named keeps its own.
+    """
 
     area: Area
-    prior: PriorSpec
+    priors: dict[Id, PriorSpec]
     fence: Area | None
     fence_margin_m: float = Field(ge=0, le=5000)
     no_fly: list[Area]
 
 
+MOST_EMITTERS = 32
+
+
 class MissionSpec(Model):
-    """Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold)."""
+    """Everything needed to search; frozen when the mission starts, but for the search area (in hold)."""
 
     name: str = Field(min_length=1, max_length=120)
     area: Area
-    prior: PriorSpec = Field(default_factory=UniformPriorSpec)
-    emitter: EmitterSpec = Field(default_factory=EmitterSpec)
+    emitters: list[EmitterSpec] = Field(default_factory=lambda: [EmitterSpec()], min_length=1, max_length=MOST_EMITTERS)
     sensor: SensorSpec = Field(default_factory=SensorSpec)
     planner: PlannerSpec = Field(default_factory=PlannerSpec)
     localization: LocalizationSpec = Field(default_factory=LocalizationSpec)
     flight: FlightSpec = Field(default_factory=FlightSpec)
     timers: TimerSpec = Field(default_factory=TimerSpec)
 
+    @model_validator(mode="after")
+    def emitters_are_told_apart(self) -> MissionSpec:
+        ids = [emitter.emitter_id for emitter in self.emitters]
+        if len(set(ids)) < len(ids):
+            raise ValueError("two emitters have the same emitter_id; give each its own")
+        return self
+
+    def emitter(self, emitter_id: str) -> EmitterSpec:
+        """Raises KeyError for an emitter that is not looked for."""
+        for emitter in self.emitters:
+            if emitter.emitter_id == emitter_id:
+                return emitter
+        raise KeyError(emitter_id)
+
     def searching(self, where: SearchArea) -> MissionSpec:
         """The same mission elsewhere."""
         flying = {"fence": where.fence, "fence_margin_m": where.fence_margin_m, "no_fly": where.no_fly}
         flight = self.flight.model_copy(update=flying)
-        return self.model_copy(update={"area": where.area, "prior": where.prior, "flight": flight})
+        emitters = [
+            emitter.model_copy(update={"prior": where.priors.get(emitter.emitter_id, emitter.prior)})
+            for emitter in self.emitters
+        ]
+        return self.model_copy(update={"area": where.area, "emitters": emitters, "flight": flight})

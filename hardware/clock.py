@@ -29,7 +29,7 @@ class ScaledClock:
         return self._start_utc + (time.monotonic() - self._start_monotonic) * self.factor
 
     async def sleep(self, seconds: float) -> None:
-        """Sleep so many of this clock's seconds."""
+        """Sleep that many of this clock's seconds."""
         await asyncio.sleep(max(0.0, seconds) / self.factor)
 
 

@@ -9,30 +9,28 @@ import numpy as np
 import pymap3d
 from numpy.typing import NDArray
 
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 
 @dataclass(frozen=True, slots=True)
 class LocalFrame:
     """ENU metres on the ellipsoid's tangent plane at `origin`; good to centimetres within a few kilometres."""
 
-    origin: GeoPoint
+    origin: Place
 
-    def to_enu(self, point: GeoPoint) -> tuple[float, float]:
+    def to_enu(self, point: Place) -> tuple[float, float]:
         """(east, north) in metres."""
-        east, north, _ = pymap3d.geodetic2enu(
-            point.lat_deg, point.lon_deg, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0
-        )
+        east, north, _ = pymap3d.geodetic2enu(point.lat, point.lon, 0.0, self.origin.lat, self.origin.lon, 0.0)
         return float(east), float(north)
 
-    def to_geo(self, east: float, north: float) -> GeoPoint:
-        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0)
-        return GeoPoint(float(lat), float(lon))
+    def to_geo(self, east: float, north: float) -> Place:
+        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat, self.origin.lon, 0.0)
+        return Place(float(lat), float(lon))
 
     def to_lon_lat(self, points: NDArray[np.float64]) -> list[tuple[float, float]]:
         """(n, 2) east, north in metres -> n times (lon, lat) in degrees."""
-        east, north = points.T
-        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat_deg, self.origin.lon_deg, 0.0)
+        east, north = points[:, 0], points[:, 1]
+        lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat, self.origin.lon, 0.0)
         return list(zip(lon.tolist(), lat.tolist(), strict=True))
 
 

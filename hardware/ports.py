@@ -6,32 +6,36 @@ only when telemetry has confirmed the deed; it raises `VehicleError` (with what 
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
-from typing import Protocol, runtime_checkable
+from collections.abc import AsyncIterator, Sequence
+from typing import Protocol
 
+from hardware.authority import Authority
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.readings import (
+    Announcement,
     BearingReading,
-    GeoPoint,
+    Channel,
     HeadingSample,
+    Place,
     PowerSample,
     PreflightCheck,
-    Pulses,
     Sweep,
     Telemetry,
 )
+from hardware.reasons import HardwareReason
+from planner.reason import ReasonedError
 
 
-class HardwareError(RuntimeError):
-    """A device did not do what it was asked; the message says what, and what to try."""
+class HardwareError(ReasonedError):
+    """A device did not do what it was asked; the reason says what, and what to try."""
 
 
 class VehicleError(HardwareError):
     """A command was refused or not confirmed by telemetry in time."""
 
 
-class PilotHasControl(VehicleError):
-    """The pilot took over: no command is sent until an operator releases the latch."""
+class NotInControl(VehicleError):
+    """Somebody else took control: no command is sent until an operator takes it back."""
 
 
 class VehicleUnreachable(VehicleError):
@@ -40,6 +44,14 @@ class VehicleUnreachable(VehicleError):
 
 class ReceiverError(HardwareError):
     """The receiver is silent, misconfigured or gone."""
+
+    def __init__(self, reason: HardwareReason) -> None:
+        super().__init__(reason)
+        self._hardware_reason: HardwareReason = reason
+
+    @property
+    def reason(self) -> HardwareReason:
+        return self._hardware_reason
 
 
 class Clock(Protocol):
@@ -50,7 +62,7 @@ class Clock(Protocol):
         ...
 
     async def sleep(self, seconds: float) -> None:
-        """Sleep so many of this clock's seconds."""
+        """By this clock."""
         ...
 
 
@@ -71,8 +83,8 @@ class Vehicle(Protocol):
         """Every heading heard at or after `since_s`, in time order (bounded history of a few minutes)."""
         ...
 
-    def changes(self) -> AsyncIterator[str]:
-        """Yields a line whenever who has control, the mode, or the link changes ("pilot took over: POSCTL", ...)."""
+    def changes(self) -> AsyncIterator[Announcement]:
+        """Whenever control, mode or link changes, or a command has to be repeated. From the call on."""
         ...
 
     async def preflight(self) -> list[PreflightCheck]:
@@ -81,7 +93,7 @@ class Vehicle(Protocol):
 
     async def take_off(self, altitude_relative_m: float) -> None: ...
 
-    async def goto(self, place: GeoPoint, altitude_amsl_m: float, speed_m_s: float) -> None:
+    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
         """Fly there and return once telemetry says arrived and settled."""
         ...
 
@@ -99,31 +111,32 @@ class Vehicle(Protocol):
         """Start landing on the spot; returns once the mode confirms."""
         ...
 
-    def release_pilot_latch(self) -> None:
-        """The operator's explicit deed that lets commands pass again after a pilot took over."""
+    def take_control(self) -> None:
+        """The operator's explicit deed that lets commands pass again after somebody else took control."""
+        ...
+
+    def restore(self, authority: Authority) -> None:
+        """After a restart, before anything is commanded: go on from who flew before."""
         ...
 
 
 class Receiver(Protocol):
-    """Received narrow-band power at the emitter's frequency."""
+    """Received narrow-band power of one or several emitters at once."""
 
-    async def open(self, frequency_hz: float) -> None:
-        """Raises ReceiverError."""
+    async def open(self, channels: Sequence[Channel]) -> None:
+        """Listen to these channels, all at once, until closed or opened with others.
+
+        Raises ReceiverError, also when it cannot hear every one of them: pulses, or too many, or too far apart.
+        """
         ...
 
     async def close(self) -> None: ...
 
     def samples(self) -> AsyncIterator[PowerSample]:
-        """Power samples from now on. Ends when closed; raises ReceiverError when the device is gone."""
-        ...
+        """Power samples from now on, those of each channel in time order and with that channel's exact frequency.
 
-
-@runtime_checkable
-class HearsPulses(Protocol):
-    """A Receiver that can also listen to a pulsed tag: one sample a pulse."""
-
-    def expect(self, pulses: Pulses | None) -> None:
-        """Before `open`: what is listened to from then on; None: what the receiver was made for (a carrier, mostly)."""
+        Ends when closed; raises ReceiverError when the device is gone.
+        """
         ...
 
 

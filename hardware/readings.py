@@ -7,34 +7,37 @@ Altitudes are always named: AMSL (above mean sea level), relative (above home), 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from annotated_types import Interval
 from numpy.typing import NDArray
+
+from hardware.authority import NOBODY, Authority
+from hardware.reasons.preflight import GpsFixName
+from hardware.reasons.sweep import SweepReason
+from hardware.reasons.vehicle_news import VehicleNews
+from planner.reason import Reason
+
+Longitude = Annotated[float, Interval(ge=-180.0, le=180.0)]
+Latitude = Annotated[float, Interval(ge=-90.0, le=90.0)]
 
 
 @dataclass(frozen=True, slots=True)
-class GeoPoint:
-    """A place on the ground, WGS84 degrees."""
+class Place:
+    """A place on the ground, WGS84 degrees. The only type for one, on the wire too."""
 
-    lat_deg: float
-    lon_deg: float
-
-
-Controller = Literal["crossfix", "pilot", "nobody"]
+    lat: Latitude
+    lon: Longitude
 
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC).
-
-    held_by_pilot: somebody else took control and has not given it back (the mode is still his): a command now would
-    take it from him.
-    """
+    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC)."""
 
     connected: bool
     at_s: float
-    position: GeoPoint | None = None
+    position: Place | None = None
     position_at_s: float | None = None
     altitude_amsl_m: float | None = None
     altitude_relative_m: float | None = None
@@ -45,16 +48,15 @@ class Telemetry:
     velocity_down_m_s: float | None = None
     battery_percent: float | None = None
     battery_at_s: float | None = None
-    gps_fix: str | None = None
+    gps_fix: GpsFixName | None = None
     satellites: int | None = None
     armed: bool | None = None
     in_air: bool | None = None
     mode: str | None = None
     mode_at_s: float | None = None
-    home: GeoPoint | None = None
+    home: Place | None = None
     home_amsl_m: float | None = None
-    controller: Controller = "nobody"
-    held_by_pilot: bool = False
+    authority: Authority = NOBODY
     autopilot: Literal["px4", "ardupilot", "unknown"] = "unknown"
 
     @property
@@ -65,13 +67,38 @@ class Telemetry:
 
 
 @dataclass(frozen=True, slots=True)
-class PreflightCheck:
-    """One line of the checklist. `remedy` says how to mend it when not ok; a `blocking` one refuses the start."""
+class Announcement:
+    """Something that the vehicle link noticed. at_s: UTC."""
 
-    name: str
+    at_s: float
+    reason: VehicleNews
+
+
+CheckName = Literal[
+    "vehicle_link",
+    "gps",
+    "position",
+    "heading",
+    "battery",
+    "home",
+    "ready_to_arm",
+    "control",
+    "failsafe",
+    "receiver",
+    "antenna",
+    "pattern",
+    "area",
+    "safety",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class PreflightCheck:
+    """One line of the checklist. reason: what was found, and its remedy when not ok. blocking: refuses the start."""
+
+    name: CheckName
     ok: bool
-    detail: str
-    remedy: str = ""
+    reason: Reason
     blocking: bool = True
 
 
@@ -85,9 +112,18 @@ class Pulses:
 
 
 @dataclass(frozen=True, slots=True)
+class Channel:
+    """What a receiver listens to: a carrier, or a tag's pulses, at the emitter's nominal frequency."""
+
+    frequency_hz: float
+    pulses: Pulses | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class PowerSample:
     """Received narrow-band power at one moment. `power_db` relative to the receiver's reference.
 
+    frequency_hz: of the channel it belongs to, exactly as the receiver was asked for it.
     detected False: a pulse was due and none was heard; `power_db` is the noise then. It shows that the receiver lives.
     """
 
@@ -105,7 +141,7 @@ class HeadingSample:
 
     at_s: float
     heading_deg: float
-    position: GeoPoint | None = None
+    position: Place | None = None
     displaced_m: float = 0.0
 
 
@@ -122,7 +158,7 @@ class Sweep:
     heading_deg: NDArray[np.float64]
     power_db: NDArray[np.float64]
     frequency_hz: float
-    position: GeoPoint
+    position: Place
     altitude_amsl_m: float
     drift_m: float = 0.0
     clipped_samples: int = 0
@@ -143,7 +179,7 @@ class BearingReading:
     """The direction finder's answer to one sweep.
 
     quality: cosine similarity of the sweep and the pattern shifted to the bearing, [0, 1].
-    accepted: False when the sweep must be taken again; `reason` says why in the operator's words.
+    accepted: False when the sweep must be taken again; `reason` says why.
     binned_db: (180,) mean power a 2-degree bin of antenna heading (NaN: empty); fitted_db: (180,) the fit.
     heading_sigma_deg: the share of sigma_deg that a flight's bearings have in common, the heading's.
     """
@@ -152,7 +188,7 @@ class BearingReading:
     sigma_deg: float
     quality: float
     accepted: bool
-    reason: str
+    reason: SweepReason | None
     peaks: tuple[BearingPeak, ...]
     binned_db: NDArray[np.float64]
     fitted_db: NDArray[np.float64]

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.types import FloatArray, PlannerError, Region, Ring
+from planner.reasons import AreaCrossesItself, UnusableArea
+from planner.types import BoolArray, FloatArray, PlannerError, Region, Ring
 
 _EMPTY = np.empty((0, 2))
 
@@ -33,7 +34,8 @@ def region_area(region: Region) -> float:
 def bounds(region: Region) -> tuple[float, float, float, float]:
     """(x_min, y_min, x_max, y_max) of all vertices, m."""
     points = np.concatenate(region)
-    return (*map(float, points.min(axis=0)), *map(float, points.max(axis=0)))  # type: ignore[return-value]
+    (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
+    return float(x_min), float(y_min), float(x_max), float(y_max)
 
 
 def edges(region: Region) -> tuple[FloatArray, FloatArray]:
@@ -43,7 +45,7 @@ def edges(region: Region) -> tuple[FloatArray, FloatArray]:
     return np.concatenate(region), np.concatenate([np.roll(ring, -1, axis=0) for ring in region])
 
 
-def contains(region: Region, points: FloatArray) -> np.ndarray:
+def contains(region: Region, points: FloatArray) -> BoolArray:
     """Even-odd test. points: (n, 2). Returns (n,) bool; points on the border may fall on either side."""
     points = np.asarray(points, dtype=float).reshape(-1, 2)
     start, end = edges(region)
@@ -62,7 +64,7 @@ def clip_half_plane(ring: Ring, point: FloatArray, normal: FloatArray) -> Ring:
     if (depth >= 0).all():
         return ring
     following, depth_following = np.roll(ring, -1, axis=0), np.roll(depth, -1)
-    kept = []
+    kept: list[FloatArray] = []
     for p, q, dp, dq in zip(ring, following, depth, depth_following, strict=True):
         if dp >= 0:
             kept.append(p)
@@ -118,7 +120,7 @@ def convex_hull(points: FloatArray) -> Ring:
     return np.array(half(ordered) + half(ordered[::-1]))
 
 
-def cells_hull(cells: np.ndarray, x0: float, y0: float, h: float) -> Ring:
+def cells_hull(cells: BoolArray, x0: float, y0: float, h: float) -> Ring:
     """Counter-clockwise convex hull of the marked cells, (ny, nx) bool, of size h from the corner (x0, y0)."""
     rows = np.flatnonzero(cells.any(axis=1))
     first, past = cells[rows].argmax(axis=1), cells.shape[1] - cells[rows, ::-1].argmax(axis=1)
@@ -144,7 +146,7 @@ def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
     return distance
 
 
-def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> np.ndarray:
+def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: int) -> BoolArray:
     """(ny, nx) bool: the square cells of size h from the south-west corner (x0, y0) that the region touches."""
     columns, rows = np.meshgrid(centres(x0 - 0.5 * h, h, nx + 1), centres(y0 - 0.5 * h, h, ny + 1))
     corners = contains(region, np.column_stack([columns.ravel(), rows.ravel()])).reshape(ny + 1, nx + 1)
@@ -163,26 +165,26 @@ def cells_touching(region: Region, x0: float, y0: float, h: float, nx: int, ny: 
     return touched
 
 
-def validate_region(region: Region, name: str) -> Region:
-    """The region with finite float64 rings, or a PlannerError that says what is wrong with it."""
+def validate_area(region: Region) -> Region:
+    """The search area with finite float64 rings that are not closed. PlannerError when it is not usable."""
     if len(region) == 0:
-        raise PlannerError(f"{name} has no ring: give at least one polygon of three corners")
-    return tuple(_validate_ring(np.asarray(ring, dtype=float), name) for ring in region)
+        raise PlannerError(UnusableArea("no_ring"))
+    return tuple(_validate_ring(np.asarray(ring, dtype=float)) for ring in region)
 
 
-def _validate_ring(ring: Ring, name: str) -> Ring:
+def _validate_ring(ring: Ring) -> Ring:
     if ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3:
-        raise PlannerError(f"{name} needs at least three corners of two coordinates, got shape {ring.shape}")
+        raise PlannerError(UnusableArea("too_few_corners"))
     if not np.isfinite(ring).all():
-        raise PlannerError(f"{name} has a corner that is not a finite number")
+        raise PlannerError(UnusableArea("not_finite"))
     if (ring[0] == ring[-1]).all():
         ring = ring[:-1]
     crossing = _self_crossing(ring)
     if crossing is not None:
-        raise PlannerError(f"{name} crosses itself near x = {crossing[0]:.1f} m, y = {crossing[1]:.1f} m: untangle it")
+        raise PlannerError(AreaCrossesItself(float(crossing[0]), float(crossing[1])))
     extent = np.ptp(ring, axis=0).max() if len(ring) else 0.0
     if abs(signed_area(ring)) <= 1e-12 * max(extent, 1e-150) ** 2:
-        raise PlannerError(f"{name} has no area: its corners lie on one line or in one point")
+        raise PlannerError(UnusableArea("no_extent"))
     return np.ascontiguousarray(ring)
 
 
@@ -199,6 +201,6 @@ def _self_crossing(ring: Ring) -> FloatArray | None:
     return None
 
 
-def _cross(o: FloatArray, p: FloatArray, q: FloatArray):
+def _cross(o: FloatArray, p: FloatArray, q: FloatArray) -> FloatArray:
     """z of (p - o) x (q - o); positive when q lies left of o -> p. Broadcasts over leading axes."""
     return (p[..., 0] - o[..., 0]) * (q[..., 1] - o[..., 1]) - (p[..., 1] - o[..., 1]) * (q[..., 0] - o[..., 0])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from planner.observation import wrap
+from planner.reasons import UnusableFlights, UnusableNumber
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, PlannerError
 
 
@@ -36,13 +37,13 @@ def fit_motion(distances: FloatArray, turns: FloatArray, times: FloatArray) -> t
     """
     distances, turns, times = (np.asarray(a, dtype=float) for a in (distances, turns, times))
     if not distances.shape == turns.shape == times.shape or distances.ndim != 1:
-        raise PlannerError("distances, turns and times must be lists of the same length")
+        raise PlannerError(UnusableFlights("lengths_differ"))
     if len(distances) < 4:
-        raise PlannerError(f"at least four flights are needed to fit a movement model, got {len(distances)}")
+        raise PlannerError(UnusableFlights("too_few"))
     if not (np.isfinite([distances, turns, times]).all() and (times > 0).all() and (distances >= 0).all()):
-        raise PlannerError("flights need finite distances >= 0, finite turns and times > 0")
+        raise PlannerError(UnusableFlights("not_finite"))
     if np.ptp(distances) == 0:
-        raise PlannerError("all flights have the same length: speed and constant cannot be told apart")
+        raise PlannerError(UnusableFlights("equal_distances"))
     models = [_fit_linear(distances, times), _fit_linear_constant(distances, times), _fit_full(distances, turns, times)]
     errors = {
         name: float(np.sqrt(np.mean((flight_time(model, distances, turns) - times) ** 2)))
@@ -85,7 +86,7 @@ def validate_motion(motion: Motion) -> None:
     for name in ("turn_rate", "acceleration", "speed"):
         value = getattr(motion, name, 1.0)
         if not (np.isfinite(value) and value > 0):
-            raise PlannerError(f"movement model: {name} must be a positive number, got {value}")
+            raise PlannerError(UnusableNumber(name, "positive", f"{value:g}"))
     constant = getattr(motion, "constant", 0.0)
     if not (np.isfinite(constant) and constant >= 0):
-        raise PlannerError(f"movement model: constant must be a number >= 0, got {constant}")
+        raise PlannerError(UnusableNumber("movement_constant", "not_negative", f"{constant:g}"))

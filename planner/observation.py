@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.types import Bearing, FloatArray, PlannerError
+from planner.reasons import UnusableBearing
+from planner.types import Bearing, BoolArray, FloatArray, PlannerError
 
 WEDGE_SIGMAS = 4.0
-"""A target lies within so many sigma of an honest bearing (spec 2)."""
+"""A target lies within this many sigma of an honest bearing (spec 2)."""
 
 WIDEST_HARD_WEDGE = np.deg2rad(80.0)
 """Half angles above this are no usable wedge: the bearing only weighs, it does not cut."""
@@ -49,7 +50,7 @@ def hard_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, margin: floa
     return np.where(inside_wedge(bearing, x, y, margin), gaussian_likelihood(error, bearing.sigma), 0.0)
 
 
-def inside_wedge(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> np.ndarray:
+def inside_wedge(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> BoolArray:
     """Whether points lie in the +-4 sigma wedge widened by `margin` m to each side and behind its apex."""
     half = WEDGE_SIGMAS * bearing.sigma
     dx, dy = x - bearing.x, y - bearing.y
@@ -76,10 +77,10 @@ def mixture_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray) -> FloatA
 def validate_bearing(bearing: Bearing) -> None:
     """PlannerError when a number is not usable."""
     if not np.isfinite([bearing.x, bearing.y, bearing.angle, bearing.sigma]).all():
-        raise PlannerError("a bearing needs finite position, angle and sigma")
+        raise PlannerError(UnusableBearing("not_finite"))
     if bearing.sigma <= 0:
-        raise PlannerError(f"a bearing's sigma must be positive, got {bearing.sigma} rad")
+        raise PlannerError(UnusableBearing("sigma"))
     if not 0.0 <= bearing.outlier_probability < 1.0:
-        raise PlannerError(f"outlier probability must be in [0, 1), got {bearing.outlier_probability}")
+        raise PlannerError(UnusableBearing("outlier_probability"))
     if any(not np.isfinite([peak.angle, peak.weight]).all() or peak.weight <= 0 for peak in bearing.peaks):
-        raise PlannerError("every further peak of a sweep needs a finite angle and a positive weight")
+        raise PlannerError(UnusableBearing("peak"))

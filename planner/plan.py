@@ -6,24 +6,19 @@ Synchronous and pure; the compiled kernel releases the interpreter lock, so that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from planner.belief.grid import GridBelief, prior_belief
 from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
-from planner.policy.rollout import Rollout
-from planner.policy.simulation import HORIZON, BasePolicy, KernelName, TerminalValue, simulate
-from planner.sampling import Sampling, random_paths
-from planner.selection.sequential_halving import sequential_halving
-from planner.selection.types import Selection
-from planner.selection.uniform import uniform
+from planner.options import FIELD, PlannerOptions
+from planner.policy.rollout import SELECTIONS, Rollout
+from planner.policy.simulation import HORIZON, KernelName, TerminalValue, simulate
+from planner.reasons import BeliefOutOfStep, NoWay, UnusableNumber
+from planner.sampling import random_paths
 from planner.types import Bearing, Decision, FloatArray, LinearMotion, PlannerError, Problem
-
-SelectionName = Literal["sequential_halving", "uniform"]
-_SELECTIONS: dict[str, Selection] = {"sequential_halving": sequential_halving, "uniform": uniform}
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +43,8 @@ def plan(
     belief: GridBelief,
     bearings: Sequence[Bearing],
     platform_xy: tuple[float, float],
+    options: PlannerOptions = FIELD,
     *,
-    selection: SelectionName = "sequential_halving",
-    sampling: Sampling = "crn",
-    base_policy: BasePolicy = "fisher",
-    budget: int = 1000,
-    seed: int = 1,
     threads: int = 2,
     heading: float | None = None,
     horizon: int = HORIZON,
@@ -64,17 +55,16 @@ def plan(
     """The next place to measure from, by policy rollout.
 
     bearings: those folded into the belief (their number seeds this decision apart from the others). platform_xy: m
-    ENU. seed: the same inputs and seed give the same decision. heading: rad ccw from east, matters to the full motion
-    model only. without: places the operator refused. Raises PlannerError when no place is allowed or reachable.
+    ENU. options: `method` and `estimator` do not count, the estimator is the problem's. heading: rad ccw from
+    east, matters to the full motion model only. without: places (m ENU) that the operator refused. Raises PlannerError
+    when no place is allowed or reachable.
     """
-    if selection not in _SELECTIONS:
-        raise PlannerError(f"selection must be one of {sorted(_SELECTIONS)}, got {selection!r}")
-    _check(belief, bearings, budget)
+    _check(belief, bearings, options.budget)
     policy = Rollout(
-        selection=_SELECTIONS[selection],
-        sampling=sampling,
-        base_policy=base_policy,
-        budget=budget,
+        selection=SELECTIONS[options.selection],
+        sampling=options.sampling,
+        base_policy=options.base_policy,
+        budget=options.budget,
         threads=threads,
         horizon=horizon,
         kernel=kernel,
@@ -82,7 +72,7 @@ def plan(
         heading=heading,
         without=without,
     )
-    return policy(problem, belief, platform_xy, np.random.default_rng([seed, len(bearings)]))
+    return policy(problem, belief, platform_xy, np.random.default_rng([options.seed, len(bearings)]))
 
 
 def expected_time_from(
@@ -90,11 +80,10 @@ def expected_time_from(
     belief: GridBelief,
     bearings: Sequence[Bearing],
     xy: tuple[float, float],
+    options: PlannerOptions = FIELD,
     *,
     platform_xy: tuple[float, float] | None = None,
-    base_policy: BasePolicy = "fisher",
     rollouts: int = 200,
-    seed: int = 1,
     threads: int = 1,
     heading: float | None = None,
     horizon: int = HORIZON,
@@ -102,15 +91,16 @@ def expected_time_from(
 ) -> ExpectedTime:
     """Time until localization when the next bearing is taken at xy (m ENU), then the base policy followed.
 
-    platform_xy: where the flight to xy starts; None: the platform is there already. The sample paths depend on seed
-    and number of bearings only, so that places compare on equal luck. PlannerError when xy cannot be reached.
+    options: `base_policy` and `seed` matter. platform_xy: where the flight to xy starts; None: the platform is there
+    already. The sample paths depend on seed and number of bearings only, so that places compare on equal luck.
+    PlannerError when xy cannot be reached.
     """
     _check(belief, bearings, rollouts)
     simulation = simulate(
         problem,
         belief,
         xy if platform_xy is None else platform_xy,
-        base_policy=base_policy,
+        base_policy=options.base_policy,
         heading=heading,
         horizon=horizon,
         threads=threads,
@@ -120,8 +110,8 @@ def expected_time_from(
     if platform_xy is None:
         actions.costs[0] = problem.measurement_time
     if not np.isfinite(actions.costs[0]):
-        raise PlannerError("this place cannot be reached without crossing a no-fly area or the fence")
-    rng = np.random.default_rng([seed, len(bearings)])
+        raise PlannerError(NoWay(float(np.hypot(*(actions.places[0] - simulation.platform)))))
+    rng = np.random.default_rng([options.seed, len(bearings)])
     paths = random_paths(belief, simulation.rules.sigma, rollouts, horizon, rng)
     tasks = Tasks(np.zeros(rollouts, dtype=np.int64), np.arange(rollouts))
     out = simulation.run(actions, paths, tasks)
@@ -138,14 +128,14 @@ def expected_time_from(
 
 def _check(belief: GridBelief, bearings: Sequence[Bearing], budget: int) -> None:
     if budget < 1:
-        raise PlannerError(f"the budget must be at least one rollout, got {budget}")
+        raise PlannerError(UnusableNumber("budget", "at_least_one", str(budget)))
     if belief.bearings != len(bearings):
-        raise PlannerError(f"the belief holds {belief.bearings} bearings, but {len(bearings)} were given: fold them")
+        raise PlannerError(BeliefOutOfStep(belief.bearings, len(bearings)))
 
 
 def warm_up() -> None:
     """Load (the first time: compile) the kernels, so that the first plan of a mission does not wait for them."""
     square = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]])
     problem = Problem((square,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
-    plan(problem, prior_belief(problem), (), (0.0, 0.0), budget=16, threads=1)
+    plan(problem, prior_belief(problem), (), (0.0, 0.0), replace(FIELD, budget=16), threads=1)
     meetings(square, square, (square,))

@@ -7,18 +7,15 @@ that is given, there is no other.
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Paths
+from planner.reasons import UnusableNumber
 from planner.types import FloatArray, PlannerError
 
-Sampling = Literal["deterministic", "crn", "pmc"]
-
 LARGEST_NOISE = 3.0
-"""Noise beyond so many sigma is drawn again (spec 8)."""
+"""Noise beyond this many sigma is drawn again (spec 8)."""
 
 
 def random_paths(belief: GridBelief, sigma: float, count: int, bearings: int, rng: np.random.Generator) -> Paths:
@@ -29,8 +26,8 @@ def random_paths(belief: GridBelief, sigma: float, count: int, bearings: int, rn
 
 def random_targets(belief: GridBelief, count: int, rng: np.random.Generator) -> FloatArray:
     """(count, 2) m: a cell drawn by its mass, then a uniform place inside it."""
-    cumulative = np.cumsum(belief.density.ravel())
-    cells = np.searchsorted(cumulative, rng.random(count) * cumulative[-1], side="right")
+    cumulative: FloatArray = np.cumsum(belief.density.ravel())
+    cells = np.searchsorted(cumulative, rng.random(count) * float(cumulative[-1]), side="right")
     cells = np.minimum(cells, int(np.flatnonzero(belief.density.ravel())[-1]))
     corners = np.column_stack([cells % belief.nx, cells // belief.nx])
     return np.array([belief.x0, belief.y0]) + (corners + rng.random((count, 2))) * belief.h
@@ -47,7 +44,7 @@ def random_noise(sigma: float, shape: tuple[int, ...], rng: np.random.Generator)
 def deterministic_paths(belief: GridBelief, count: int, bearings: int) -> Paths:
     """`count` = 2^m noiseless paths whose targets stand for equal shares of the mass."""
     if count < 1 or count & (count - 1):
-        raise PlannerError(f"deterministic sampling needs a power of two of paths, got {count}")
+        raise PlannerError(UnusableNumber("paths", "power_of_two", str(count)))
     return Paths(equal_mass_points(belief, count), np.zeros((count, bearings)))
 
 
@@ -64,8 +61,8 @@ def _split(density: FloatArray, x: FloatArray, y: FloatArray, count: int, axis: 
     if count == 1:
         mass = density.sum()
         return [(float(density.sum(axis=0) @ x / mass), float(density.sum(axis=1) @ y / mass))]
-    cumulative = np.cumsum(density.sum(axis=1 - axis))
-    half = 0.5 * cumulative[-1]
+    cumulative: FloatArray = np.cumsum(density.sum(axis=1 - axis))
+    half = 0.5 * float(cumulative[-1])
     cut = int(np.searchsorted(cumulative, half))
     before = cumulative[cut - 1] if cut else 0.0
     share = (half - before) / (cumulative[cut] - before)

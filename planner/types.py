@@ -7,12 +7,17 @@ Source: F. Hoffmann's thesis on sensor path planning for emitter localization (s
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.options import FIELD, Estimator
+from planner.reason import ReasonedError
+from planner.reasons import ChoiceReason, NotYetReason, RefusalReason
+
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 Ring = FloatArray
 """(n, 2) vertices in metres ENU, not closed (the last vertex differs from the first), either orientation."""
@@ -20,15 +25,22 @@ Ring = FloatArray
 Region = tuple[Ring, ...]
 """Rings combined by the even-odd rule: one ring is a polygon, a ring inside another is a hole, disjoint rings a set."""
 
-Estimator = Literal["map", "expected_value", "geometric_median"]
 
+class PlannerError(ReasonedError):
+    """The planner refuses what it was given, or finds nowhere to go."""
 
-class PlannerError(ValueError):
-    """Input that the planner refuses; the message says what is wrong and how to mend it."""
+    def __init__(self, reason: RefusalReason) -> None:
+        super().__init__(reason)
+        self._refusal: RefusalReason = reason
+
+    @property
+    def reason(self) -> RefusalReason:
+        """Why the planner refuses."""
+        return self._refusal
 
 
 class InconsistentBearings(PlannerError):
-    """The +-4 sigma wedges have no common point inside the area: at least one bearing is an outlier."""
+    """The +-4 sigma wedges have no common point inside the area."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +143,7 @@ class Problem:
     standoff: float = 0.0
     action_grid: tuple[int, int] = (20, 20)
     action_spacing: float | None = None
-    estimator: Estimator = "map"
+    estimator: Estimator = FIELD.estimator
     prior: Prior = field(default_factory=UniformPrior)
 
 
@@ -170,14 +182,14 @@ class Candidate:
 class Decision:
     """What a policy answers. x, y: the next measurement place, m ENU.
 
-    reason: one sentence for the operator. candidates: empty for policies that compare none.
+    reason: why this place. candidates: empty for policies that compare none.
     times: (n,) s, sampled times until localization by way of the chosen action (empty when not sampled).
     rollouts: sample paths used.
     """
 
     x: float
     y: float
-    reason: str
+    reason: ChoiceReason
     candidates: tuple[Candidate, ...] = ()
     times: FloatArray = field(default_factory=lambda: np.empty(0))
     rollouts: int = 0
@@ -187,7 +199,7 @@ class Decision:
 class LocalizationRule:
     """When "localized" may be said (design, mission rule 6).
 
-    threshold: mu, m. min_places: bearings from at least so many distinct places. min_place_distance: m between
+    threshold: mu, m. min_places: from how many distinct places there must be bearings. min_place_distance: m between
     distinct places. min_crossing_angle: rad, the best crossing angle of two bearing lines at the estimate.
     """
 
@@ -199,7 +211,7 @@ class LocalizationRule:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """localized, or the reasons (in the operator's words) why not yet.
+    """localized, or the reasons why not yet.
 
     consistent: the wedges have a common point. estimate: what the belief says, None when the bearings are inconsistent.
     against: indices of the bearings that do not point at the estimate.
@@ -207,6 +219,6 @@ class Verdict:
 
     localized: bool
     consistent: bool
-    reasons: tuple[str, ...]
+    reasons: tuple[NotYetReason, ...]
     estimate: Estimate | None = None
     against: tuple[int, ...] = ()

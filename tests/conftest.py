@@ -28,6 +28,7 @@ from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
 
 sys.path.insert(0, str(Path(__file__).parent / "doubles"))  # not tests/ itself: it would hide the packages
+sys.path.append(str(Path(__file__).parents[1]))  # for `from tests.reasons import ...`
 
 
 class PostgresCluster:
@@ -42,8 +43,15 @@ class PostgresCluster:
 
     def _run(self, program: str, *arguments: str) -> subprocess.Popen[bytes]:
         command = [str(self.programs / program), "-D", str(self.folder / "data"), *arguments]
-        as_user = {"user": self.user, "group": pwd.getpwnam(self.user).pw_gid, "extra_groups": []} if self.user else {}
-        return subprocess.Popen(command, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **as_user)
+        return subprocess.Popen(
+            command,
+            cwd="/",
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            user=self.user,
+            group=pwd.getpwnam(self.user).pw_gid if self.user else None,
+            extra_groups=[] if self.user else None,
+        )
 
     def give_folder(self) -> None:
         """To the user that PostgreSQL runs as."""

@@ -7,18 +7,18 @@ from dataclasses import dataclass, replace
 
 from backend.api.services import Services
 from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recorded, SweepRejected
-from backend.mission.antenna import antenna_flown
-from backend.mission.errors import MissionConflict, MissionInputError
-from backend.mission.measuring import sweep_fact
+from backend.reasons import carried
+from backend.reasons.refusals import NoSuchEmitter
+from backend.reasons.request import SamplesNotStored
+from backend.search.antenna import antenna_flown
+from backend.search.errors import MissionConflict, MissionInputError
+from backend.search.sweep_facts import Taken, sweep_fact
 from backend.spec import MissionSpec
 from backend.store.entries import SweepEntry
 from backend.wire.resources import PatternUpload, SweepFact, WhatIfAntenna, WhatIfRequest
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import PatternError, parse_pattern
 from hardware.ports import DirectionFinder
-
-A_PATTERN = "take a file that `crossfix calibrate` wrote, or a turntable table of angle_deg, gain_db that ends in .csv"
-NO_SAMPLES_NEEDED = "ask with another bearing error, share of wrong bearings or planner: these need no samples"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,18 +35,18 @@ class AnotherAntenna:
 
     def heard(self, mission: MissionSpec, flown: SweepFact) -> SweepFact:
         """What the sweep would have told. Raises MissionConflict when a bearing's samples were not stored."""
-        entry = self.sweeps.get(flown.sweep_id)
+        entry = None if flown.sweep_id is None else self.sweeps.get(flown.sweep_id)
         if entry is None and flown.kind == "sweep_rejected":
             return flown  # of power that could not be made into a sweep
         if entry is None:
-            detail = f"the power samples of place {flown.place_number} were not stored, no other antenna can hear them"
-            raise MissionConflict(detail, NO_SAMPLES_NEEDED)
+            raise MissionConflict(SamplesNotStored(flown.place_number))
         sweep = entry.sweep()
         reading = self.finder.estimate(sweep, self.pattern)
-        told = sweep_fact(mission, flown.sweep_id, sweep, reading, flown.place_number, entry.attempt, None)
-        if isinstance(told, BearingMeasured) and isinstance(flown, BearingMeasured):
-            return told.model_copy(update={"bearing_id": flown.bearing_id})
-        return told
+        taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt)
+        heard = sweep_fact(taken, mission.sensor, sweep, reading, None)
+        if isinstance(heard, BearingMeasured) and isinstance(flown, BearingMeasured):
+            return heard.model_copy(update={"bearing_id": flown.bearing_id})
+        return heard
 
 
 async def another_antenna(
@@ -61,10 +61,11 @@ async def another_antenna(
     if wanted.pattern is None:
         pattern = antenna_flown(recorded) or services.pattern
     else:
-        pattern = _pattern(wanted.pattern, _frequency_hz(recorded))
+        pattern = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
     if wanted.offset_to_nose_deg is not None:
         pattern = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
-    ids = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
+    heard = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
+    ids = [sweep_id for sweep_id in heard if sweep_id is not None]
     stored = {sweep_id: await services.journal.sweep(mission_id, sweep_id) for sweep_id in ids}
     return AnotherAntenna(services.finder, pattern, {id_: entry for id_, entry in stored.items() if entry is not None})
 
@@ -73,13 +74,18 @@ def _pattern(upload: PatternUpload, frequency_hz: float) -> AntennaPattern:
     try:
         pattern = parse_pattern(upload.filename, upload.text)
     except PatternError as error:
-        raise MissionInputError(str(error), A_PATTERN, "pattern") from error
+        raise MissionInputError(carried(error.reason), "pattern") from error
     elsewhere = pattern.other_frequency(frequency_hz)
-    if elsewhere:
-        raise MissionInputError(elsewhere, "take a pattern that was measured at the emitter's frequency", "pattern")
+    if elsewhere is not None:
+        raise MissionInputError(carried(elsewhere), "pattern")
     return pattern
 
 
-def _frequency_hz(recorded: Sequence[Recorded]) -> float:
+def _frequency_hz(recorded: Sequence[Recorded], emitter_id: str | None) -> float:
+    """emitter_id None: of the first emitter. Raises MissionInputError for one that is not looked for."""
     specs = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
-    return specs[-1].emitter.frequency_hz
+    try:
+        emitter = specs[-1].emitters[0] if emitter_id is None else specs[-1].emitter(emitter_id)
+    except KeyError as error:
+        raise MissionInputError(NoSuchEmitter(emitter_id or ""), "emitter_id") from error
+    return emitter.frequency_hz

@@ -13,32 +13,31 @@ from backend import spec
 from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml
 from backend.maps.refusal import MapRefused
-from backend.mission.area import area_geometry
-from backend.mission.errors import MissionInputError
+from backend.reasons import Reason
+from backend.reasons.maps import NoPolygon, NotAreas, PolygonsUnited
+from backend.search.area import area_geometry
+from backend.search.errors import MissionInputError
 from backend.wire.resources import AreaImport, AreaUpload
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
-
-DRAW = "Draw the area as one or more polygons and export it as GeoJSON (WGS84) or KML."
+from hardware.readings import Place
 
 
 def read_area(upload: AreaUpload) -> AreaImport:
-    """Raises MissionInputError with a sentence for the operator."""
+    """Raises MissionInputError."""
     content = upload.text.encode("utf-8", "replace")
     is_xml = upload.text.lstrip("\ufeff \t\r\n").startswith("<")
     try:
         reading = read_kml(content) if is_xml else read_geojson(content)
     except MapRefused as refused:
-        raise MissionInputError(str(refused), refused.remedy or DRAW, "text") from refused
+        raise MissionInputError(refused.reason, "text") from refused
     geometries = [feature.geometry for feature in reading.features]
     polygons = list(_polygons(geometries))
     if not polygons:
-        lines = " A line is no area: close it to a polygon." if geometries else ""
-        raise MissionInputError(f"the file holds no polygon.{lines}", DRAW, "text")
-    notes = reading.all_notes()
+        raise MissionInputError(NoPolygon(lines=bool(geometries)), "text")
+    notes: list[Reason] = [*reading.all_notes()]
     others = sum(geometry["type"] not in {"Polygon", "MultiPolygon"} for geometry in geometries)
     if others:
-        notes.append(f"{others} points or lines were left out.")
+        notes.append(NotAreas(others))
     area, area_m2 = _united(polygons, notes)
     rings = (
         area.coordinates if isinstance(area, spec.Polygon) else [ring for rings in area.coordinates for ring in rings]
@@ -55,17 +54,17 @@ def _polygons(geometries: Sequence[dict[str, Any]]) -> Iterator[list[Any]]:
             yield from geometry["coordinates"]
 
 
-def _united(polygons: Sequence[list[Any]], notes: list[str]) -> tuple[spec.Area, float]:
+def _united(polygons: Sequence[list[Any]], notes: list[Reason]) -> tuple[spec.Area, float]:
     """The area in lon/lat and its size; overlapping polygons are united, self-crossing ones refused."""
     drawn: spec.Area = spec.MultiPolygon(
         coordinates=[[[tuple(p) for p in ring] for ring in rings] for rings in polygons]
     )
     lon, lat = drawn.coordinates[0][0][0]
-    metric = area_geometry(drawn, LocalFrame(GeoPoint(lat, lon)), "text", "the area in the file")
+    metric = area_geometry(drawn, LocalFrame(Place(lat, lon)), "text", "area")
     united = unary_union([shape({"type": "Polygon", "coordinates": rings}) for rings in polygons])
     parts = list(united.geoms) if isinstance(united, MultiPolygon) else [united]
     if len(parts) < len(polygons):
-        notes.append(f"{len(polygons)} polygons that touch or overlap were united to {len(parts)}.")
+        notes.append(PolygonsUnited(len(polygons), len(parts)))
     rings = [_rings(part) for part in parts if isinstance(part, Polygon)]
     area = spec.Polygon(coordinates=rings[0]) if len(rings) == 1 else spec.MultiPolygon(coordinates=rings)
     return area, metric.area

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from backend.events import BeliefUpdated, Recorded
-from backend.mission.area import corner_of
-from backend.mission.localization import localization
-from backend.mission.state import MissionState, evolve
+from backend.search.area import corner_of
+from backend.search.localization import localization
+from backend.search.state import SearchState, evolve
 from backend.wire.belief_frame import encode_belief
 
 FOLDED_KINDS = (
@@ -22,24 +22,33 @@ FOLDED_KINDS = (
 """The events that a belief depends on."""
 
 
-def belief_frame(mission_id: str, recorded: Sequence[Recorded], bearings: int, lite: bool) -> bytes | None:
-    """The last belief of so many bearings, None when there was none. recorded: of FOLDED_KINDS, in order.
+def belief_frame(
+    mission_id: str, recorded: Sequence[Recorded], lite: bool, emitter_id: str | None = None
+) -> bytes | None:
+    """The belief about an emitter that stands after these events: of its last BeliefUpdated, the prior when there is
+    none. emitter_id None: the first emitter.
 
-    0 bearings: the prior, before the start as well. Heavy: call it off the event loop.
+    recorded: of FOLDED_KINDS, in order. None: they hold no specification, or no such emitter. Heavy: call it off the
+    event loop.
     """
-    state = _state_at(recorded, bearings)
-    if state is None:
+    state, seq = _last_belief(recorded, emitter_id)
+    if state.spec is None or (emitter_id is not None and emitter_id not in state.emitters):
         return None
-    task = localization(state.mission, state.home or corner_of(state.mission.area), state.home_amsl_m)
-    _, belief = task.belief_fact(state.bearings)
-    return encode_belief(mission_id, bearings, belief.density, task.corners_lon_lat(belief), lite=lite)
+    task = localization(state.mission, state.home or corner_of(state.mission.area), emitter_id)
+    fact, belief = task.belief_fact(state.emitters[task.emitter_id].bearings if seq else ())
+    corners = task.corners_lon_lat(belief)
+    return encode_belief(mission_id, task.emitter_id, seq, fact.bearings, belief.density, corners, lite=lite)
 
 
-def _state_at(recorded: Sequence[Recorded], bearings: int) -> MissionState | None:
-    state, found = MissionState(), None
+def _last_belief(recorded: Sequence[Recorded], emitter_id: str | None) -> tuple[SearchState, int]:
+    """The state at the last BeliefUpdated with its number; the newest state and 0 when there is none."""
+    state, found, seq = SearchState(), SearchState(), 0
     for record in recorded:
         state = evolve(state, record.event, record.at_utc.timestamp())
-        prior = bearings == 0 and not state.bearings
-        if prior or (isinstance(record.event, BeliefUpdated) and record.event.bearings == bearings):
-            found = state
-    return found
+        if isinstance(record.event, BeliefUpdated) and record.event.emitter_id == (emitter_id or _first(state)):
+            found, seq = state, record.seq
+    return (found, seq) if seq else (state, 0)
+
+
+def _first(state: SearchState) -> str:
+    return next(iter(state.emitters))

@@ -12,16 +12,18 @@ from collections.abc import Iterable
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from backend.api.problems import respond
-from backend.wire.problem import Problem
+from backend.api.problems import ApiProblem, respond
+from backend.reasons import request as reasons
+from backend.wire.problem import Problem, problem
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 BODY_BYTES = 8 * 2**20
 RECORDING_BYTES = 128 * 2**20
 """A minute of IQ at the usual rates."""
+EXPORT_BYTES = 32 * 2**20
+"""Hours of a mission with some hundred sweeps."""
 UPLOADS = ("/api/maps", "/api/overlays")
 """Their bodies are files, streamed to disk under limits of their own."""
 
@@ -38,9 +40,9 @@ class Guard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        problem = self._foreign(scope, headers) or _too_large(scope, headers)
-        if problem is not None:
-            await _refuse(problem, scope, receive, send)
+        refusal = self._foreign(scope, headers) or _too_large(scope, headers)
+        if refusal is not None:
+            await _refuse(refusal, scope, receive, send)
             return
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
@@ -51,23 +53,13 @@ class Guard:
     def _foreign(self, scope: Scope, headers: Headers) -> Problem | None:
         host = headers.get("host", "")
         if not self._is_ours(host):
-            return Problem(
-                title="Unknown host",
-                status=421,
-                detail=f"This server does not go by the name {host[:100]!r}.",
-                remedy="Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
-            )
+            return problem(421, reasons.UnknownHost(host[:100]))
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return None
         origin = headers.get("origin")
         if origin is None or urlsplit(origin).netloc.lower() == host.lower():
             return None
-        return Problem(
-            title="Foreign origin",
-            status=403,
-            detail=f"A page of {origin[:100]!r} may not command this server.",
-            remedy="Use the page that this server serves.",
-        )
+        return problem(403, reasons.ForeignOrigin(origin[:100]))
 
     def _is_ours(self, host: str) -> bool:
         """An IP address cannot be rebound, a name can: only known names pass."""
@@ -89,18 +81,15 @@ def _too_large(scope: Scope, headers: Headers) -> Problem | None:
     length, most = headers.get("content-length", "0"), _most_bytes(scope["path"])
     if most is None or not length.isdigit() or int(length) <= most:
         return None
-    return Problem(
-        title="Too large",
-        status=413,
-        detail=f"A request may have at most {most // 2**20} MB.",
-        remedy="Simplify the geometry, or split the file.",
-    )
+    return problem(413, reasons.BodyTooLarge(most))
 
 
 def _most_bytes(path: str) -> int | None:
     """None: the endpoint has its own limit."""
     if path.startswith(UPLOADS):
         return None
+    if path == "/api/recordings/read":
+        return EXPORT_BYTES
     recording = path.startswith("/api/missions/") and path.endswith("/recordings")
     return RECORDING_BYTES if recording else BODY_BYTES
 
@@ -116,18 +105,18 @@ def _counted(scope: Scope, receive: Receive) -> Receive:
         message = await receive()
         taken += len(message.get("body", b""))
         if taken > most:
-            raise HTTPException(413, f"A request may have at most {most // 2**20} MB.")
+            raise ApiProblem(413, reasons.BodyTooLarge(most))
         return message
 
     return counted
 
 
-async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+async def _refuse(refusal: Problem, scope: Scope, receive: Receive, send: Send) -> None:
     """A websocket handshake is answered with the status too."""
     if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
         await send({"type": "websocket.close", "code": 1008})
         return
-    response = respond(problem)
+    response = respond(refusal)
     await response(scope, receive, send)
 
 

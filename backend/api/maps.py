@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Callable
 from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path as FilePath
-from typing import Annotated, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse
@@ -19,7 +19,9 @@ from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
 from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
-from backend.maps.refusal import MapRefused, NoRoom, NotStored
+from backend.maps.refusal import MapRefused, NotStored
+from backend.reasons.maps import NoRoomForMap
+from backend.reasons.request import BodyTooLarge, UploadBrokeOff
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -72,20 +74,20 @@ MapFolderDep = Annotated[MapFolder, Depends(map_folder)]
 OverlayFolderDep = Annotated[OverlayFolder, Depends(overlay_folder)]
 
 
-async def _in_thread(what: str, work: Callable[..., T], *arguments: object) -> T:
+async def _in_thread(what: Literal["map", "overlay"], work: Callable[..., T], *arguments: object) -> T:
     """Disk work off the event loop; what the map room refuses becomes a problem."""
     try:
         return await asyncio.to_thread(work, *arguments)
-    except (NotStored, FileNotFoundError) as error:
-        raise not_found(what, str(error), f"Somebody may have deleted it: reload the list of {what}s.") from error
+    except NotStored as error:
+        raise ApiProblem(404, error.reason) from error
+    except FileNotFoundError as error:  # deleted meanwhile
+        raise not_found(what, FilePath(error.filename).stem) from error
     except MapRefused as error:
         raise _refused(error) from error
 
 
 def _refused(error: MapRefused) -> ApiProblem:
-    if isinstance(error, NoRoom):
-        return ApiProblem(413, "Not enough room", str(error), error.remedy)
-    return ApiProblem(422, "The file or area cannot be used", str(error), error.remedy)
+    return ApiProblem(413 if isinstance(error.reason, NoRoomForMap) else 422, error.reason)
 
 
 def _announced_bytes(request: Request) -> int | None:
@@ -101,7 +103,7 @@ def _label(name: str, filename: str) -> str:
 async def list_maps(folder: MapFolderDep) -> MapList:
     """The maps on this machine."""
     packages, unusable = await _in_thread("map", folder.packages)
-    return MapList(maps=packages, room_bytes=await _in_thread("map", folder.room_bytes), unusable=unusable)
+    return MapList(maps=packages, room_bytes=await _in_thread("map", folder.room_bytes), unusable=[*unusable])
 
 
 @router.post("/maps", status_code=201, openapi_extra=RAW_BODY)
@@ -115,7 +117,7 @@ async def upload_map(
     except MapRefused as error:
         raise _refused(error) from error
     except ClientDisconnect as error:
-        raise ApiProblem(400, "The upload broke off", "Nothing was kept.", "Upload the file again.") from error
+        raise ApiProblem(400, UploadBrokeOff()) from error
 
 
 @router.post("/maps/coverage")
@@ -183,12 +185,7 @@ async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
     async for piece in body:
         held += piece
         if len(held) > most:
-            raise ApiProblem(
-                413,
-                "Too large",
-                f"An overlay may have at most {most // 10**6} MB.",
-                "Leave out what is not needed, or make a map package (PMTiles) of it.",
-            )
+            raise ApiProblem(413, BodyTooLarge(most))
     return bytes(held)
 
 

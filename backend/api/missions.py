@@ -10,7 +10,7 @@ from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
-from backend.mission.errors import MissionNotFound
+from backend.search.errors import MissionNotFound
 from backend.spec import MissionSpec
 from backend.store.digest import MissionDigest
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
@@ -40,7 +40,7 @@ async def list_missions(services: ServicesDep) -> MissionList:
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    return await _mission(services, await services.missions.create(spec, principal.name))
+    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
 
 
 @router.get("/{mission_id}")
@@ -54,7 +54,7 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.edit(mission_id, spec, principal.name)
+    await services.missions.drafts.edit(mission_id, spec, principal.name)
     return await _mission(services, mission_id)
 
 
@@ -63,13 +63,13 @@ async def send_command(
     mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep
 ) -> CommandReply:
     """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
-    return await services.missions.command(mission_id, request, principal.name)
+    return await services.missions.flights.command(mission_id, request, principal.name)
 
 
 @router.post("/{mission_id}/preflight")
 async def run_preflight(mission_id: MissionId, services: ServicesDep, principal: PrincipalDep) -> PreflightReply:
     """Run the checklist and record it."""
-    checked = await services.missions.preflight(mission_id)
+    checked = await services.missions.drafts.preflight(mission_id)
     return PreflightReply(passed=checked.passed, checks=checked.checks)
 
 
@@ -80,5 +80,5 @@ async def check_antenna(
     """Listen while the vehicle is turned once around by hand before a known emitter; the result joins the checklist.
     409 while anything flies."""
     emitter = request.place if request.place is not None else request.bearing_deg or 0.0
-    checked = await services.missions.check_antenna(mission_id, emitter, request.wait_s, principal.name)
+    checked = await services.missions.drafts.check_antenna(mission_id, emitter, request.wait_s, principal.name)
     return checked.check

@@ -1,4 +1,4 @@
-"""The built page: hashed assets are kept for ever, everything else is asked for anew; unknown paths are the page."""
+"""The built page: hashed assets are kept for ever, everything else is asked for again; unknown paths are the page."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from starlette.exceptions import HTTPException
 from starlette.responses import HTMLResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Message, Receive, Scope, Send
+
+from backend.api.problems import not_found
 
 NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Crossfix: the page is not built</title>
 <style>body{font:1.1rem/1.5 system-ui,sans-serif;max-width:40rem;margin:15vh auto;padding:0 1rem}</style>
@@ -30,20 +32,20 @@ class Page:
         try:
             await response(scope, receive, _begun_with_its_body(send))
         except FileNotFoundError as error:
-            raise HTTPException(404, f"The file {scope['path']} was replaced just now; load the page again.") from error
+            raise not_found("file", scope["path"]) from error
 
     async def _respond(self, scope: Scope) -> Response:
         path = scope["path"]
         if path == "/api" or path.startswith("/api/"):
-            raise HTTPException(404, f"The API has nothing at {path}.")
+            raise not_found("page", path)
         if scope["method"] not in {"GET", "HEAD"}:
-            raise HTTPException(405, "The page can only be read.", {"allow": "GET, HEAD"})
+            raise HTTPException(405, headers={"allow": "GET, HEAD"})
         if not (self._folder / "index.html").is_file():
             return HTMLResponse(NOT_BUILT, status_code=503, headers={"cache-control": "no-store"})
         response = await self._file(path.lstrip("/") or "index.html", scope)
         if response is None:
             if Path(path).suffix:
-                raise HTTPException(404, f"There is no file {path}.")
+                raise not_found("file", path)
             response = await self._files.get_response("index.html", scope)
         kept = "public, max-age=31536000, immutable" if path.startswith("/assets/") else "no-cache"
         response.headers["cache-control"] = kept

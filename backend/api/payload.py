@@ -12,22 +12,13 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from backend.api.problems import respond
 from backend.api.services import Services
-from backend.wire.problem import Problem
+from backend.reasons.request import NoPayloadExpected, UnknownToken
+from backend.wire.problem import problem
 
 router = APIRouter()
 
-NO_PAYLOAD = Problem(
-    title="No payload is expected",
-    status=404,
-    detail="This server takes no samples from a payload.",
-    remedy="Start it with CROSSFIX_PAYLOAD_TOKENS, a list of the tokens its payloads may show.",
-)
-UNKNOWN_TOKEN = Problem(
-    title="Unknown payload",
-    status=401,
-    detail="The token is none of those that this server knows.",
-    remedy="Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
-)
+NO_PAYLOAD = problem(404, NoPayloadExpected())
+UNKNOWN_TOKEN = problem(401, UnknownToken())
 
 
 @router.websocket("/api/payload")
@@ -44,7 +35,7 @@ async def payload(websocket: WebSocket) -> None:
     await websocket.accept()
     with suppress(WebSocketDisconnect):
         await hub.serve(lambda: _text(websocket), websocket.send_text)
-        await websocket.close(1008, "the payload was told why")
+        await websocket.close(1008, "refused; the last message says why")
 
 
 async def _text(websocket: WebSocket) -> str:

@@ -19,10 +19,10 @@ router = APIRouter(prefix="/api", tags=["planning"], responses=PROBLEM_RESPONSES
 async def expected_time(mission_id: MissionId, request: ExpectedTimeRequest, services: ServicesDep) -> ExpectedTime:
     """The expected time to localization when the vehicle measured at this place next."""
     async with services.planning:
-        found = await services.missions.expected_time(mission_id, request.place)
+        found = await services.missions.questions.expected_time(mission_id, request.place)
     return ExpectedTime(
         place=found.place,
-        allowed=found.allowed,
+        allowed=found.reason is None,
         reason=found.reason,
         expected_time_s=found.mean_s,
         std_error_s=found.std_error_s,
@@ -35,12 +35,10 @@ async def expected_time(mission_id: MissionId, request: ExpectedTimeRequest, ser
 async def area_outlook(mission_id: MissionId, search: SearchArea, services: ServicesDep) -> AreaOutlook:
     """What to expect if a mission in flight searched elsewhere from now on. Nothing is changed."""
     async with services.planning:
-        found = await services.missions.outlook(mission_id, search)
-    first = found.vetoes[0] if found.vetoes else None
+        found, vetoes = await services.missions.questions.outlook(mission_id, search)
     return AreaOutlook(
-        allowed=first is None,
-        reason="" if first is None else first.detail,
-        remedy="" if first is None else first.remedy,
+        allowed=not vetoes,
+        reason=vetoes[0] if vetoes else None,
         belief=found.belief,
         plan=found.plan,
         no_plan=found.no_plan,
@@ -51,7 +49,7 @@ async def area_outlook(mission_id: MissionId, search: SearchArea, services: Serv
 async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
     """Plan the first place of a mission that is not flown yet."""
     async with services.planning:
-        found = await services.missions.preview(spec)
+        found = await services.missions.questions.preview(spec)
     return Preview(
         start=found.start,
         first_place=found.first_place,

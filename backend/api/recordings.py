@@ -18,12 +18,16 @@ from pydantic import AfterValidator, Field, StringConstraints
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
-from backend.mission.errors import MissionInputError
-from backend.mission.importing import Upload
-from backend.spec import Model, Place
+from backend.reasons import carried
+from backend.reasons import request as reasons
+from backend.search.errors import MissionInputError
+from backend.search.importing import Upload
+from backend.spec import Id, Model, Place
 from backend.wire.resources import ImportedSweep, RecordingImport
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
+from hardware.reasons.iq_recording import NotIq
+from hardware.reasons.renamed import renamed
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
 from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, is_sigmf
@@ -33,7 +37,6 @@ router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], respons
 
 SIGMF = (META, DATA, ARCHIVE)
 MOST_FILES = 3
-FORMS = "a UAV-RT rotation file, a CSV of heading_deg and power_db, or SigMF"
 
 
 def _past(moment: datetime | None) -> datetime | None:
@@ -52,15 +55,16 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name.
-    offset_deg: the antenna's front, clockwise of the nose. frequency_hz, pulse_width_s, pulse_period_s: what to look
-    for in IQ."""
+    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name. offset_deg:
+    the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's.
+    frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ."""
 
     files: list[UploadFile]
     lat: Annotated[Finite, Field(ge=-90, le=90)] | None = None
     lon: Annotated[Finite, Field(ge=-180, le=180)] | None = None
     at_utc: Annotated[datetime | None, AfterValidator(_past)] = None
     tag: Name | None = None
+    emitter_id: Id | None = None
     offset_deg: Annotated[Finite, Field(ge=-360, le=360)] | None = None
     frequency_hz: Annotated[Finite, Field(gt=0, le=1e12)] | None = None
     pulse_width_s: Annotated[Finite, Field(gt=0, le=10)] | None = None
@@ -75,13 +79,13 @@ async def import_recording(
     principal: PrincipalDep,
     response: Response,
 ) -> RecordingImport:
-    """Import recorded sweeps into a draft or an ended mission, as if they had been flown there.
+    """Import recorded sweeps of an emitter into a mission, as if they had been flown there; in flight, too.
 
     One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
     """
     upload = await _read(form)
-    facts, already = await services.missions.import_recording(mission_id, upload, principal.name)
+    facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
     if already:
         response.status_code = 200
     return _reply(facts, already)
@@ -90,36 +94,34 @@ async def import_recording(
 async def _read(form: RecordingForm) -> Upload:
     """Raises MissionInputError."""
     if (form.lat is None) != (form.lon is None):
-        raise MissionInputError("a place needs both latitude and longitude", "give lat and lon, or neither", "lat")
+        raise MissionInputError(reasons.HalfGiven("place"), "lat")
     if (form.pulse_width_s is None) != (form.pulse_period_s is None):
-        raise MissionInputError(
-            "a pulsed tag needs both its pulse width and its period", "give both, or neither", "pulse_period_s"
-        )
+        raise MissionInputError(reasons.HalfGiven("pulses"), "pulse_period_s")
     place = None if form.lat is None or form.lon is None else Place(lat=form.lat, lon=form.lon)
     with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
         names = await asyncio.to_thread(_stored, form.files, Path(folder))
+        owners = {str(path): name for path, name in names.items()}
         recording_id = await asyncio.to_thread(_identity, names, form)
         try:
             recording = await asyncio.to_thread(_parsed, names, form)
         except (RecordingError, SpectrumError) as error:
-            raise MissionInputError(_renamed(str(error), names), f"upload {FORMS}", "files") from error
+            raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
     first = next(iter(names.values()))
     return Upload(
         recording_id,
         first,
-        Recording(recording.sweeps, tuple(_renamed(remark, names) for remark in recording.remarks)),
+        Recording(recording.sweeps, tuple(renamed(remark, owners) for remark in recording.remarks)),
         place,
         None if form.at_utc is None else form.at_utc.timestamp(),
         form.offset_deg,
+        form.emitter_id,
     )
 
 
 def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
     """Where each file lies under a name of ours, and what its owner calls it; the recording itself first."""
     if len(files) > MOST_FILES:
-        raise MissionInputError(
-            f"{len(files)} files are more than one recording", "upload one file, or meta, data and headings", "files"
-        )
+        raise MissionInputError(reasons.TooManyFiles(len(files)), "files")
     kept: dict[Path, str] = {}
     called = [Path((file.filename or "").replace("\\", "/")).name[-120:] or "recording" for file in files]
     sigmf = any(name.lower().endswith(SIGMF) for name in called)
@@ -127,9 +129,7 @@ def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
         ending = next((e for e in SIGMF if name.lower().endswith(e)), None)
         path = folder / (f"recording{ending}" if ending else ("headings.csv" if sigmf else "recording.csv"))
         if path in kept:
-            raise MissionInputError(
-                f"{name} and {kept[path]} are two recordings", "upload them one after the other", "files"
-            )
+            raise MissionInputError(reasons.TwoRecordings(kept[path], name), "files")
         with path.open("wb") as stream:
             shutil.copyfileobj(file.file, stream)
         kept[path] = name
@@ -153,15 +153,7 @@ def _parsed(names: dict[Path, str], form: RecordingForm) -> Recording:
     read = read_sweeps(recording, form.tag, IqReading(headings, form.frequency_hz, pulses))
     if is_sigmf(recording) or (form.frequency_hz is None and pulses is None):
         return read
-    unused = f"{recording.name}: frequency and pulses are looked for in IQ only; these powers are taken as they are"
-    return replace(read, remarks=(*read.remarks, unused))
-
-
-def _renamed(text: str, names: dict[Path, str]) -> str:
-    """The owner's file names for ours."""
-    for path, name in names.items():
-        text = text.replace(str(path), name).replace(path.name, name)
-    return text
+    return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))
 
 
 def _reply(facts: Sequence[Recorded], already: bool) -> RecordingImport:
@@ -169,14 +161,14 @@ def _reply(facts: Sequence[Recorded], already: bool) -> RecordingImport:
     assert isinstance(imported, RecordingImported)
     sweeps = [
         ImportedSweep(
-            sweep_id=fact.sweep_id,
+            sweep_id=fact.sweep_id or "",
             place_number=fact.place_number,
             place=fact.place,
             accepted=isinstance(fact, BearingMeasured),
             bearing_deg=fact.bearing_deg if isinstance(fact, BearingMeasured) else None,
             sigma_deg=fact.sigma_deg if isinstance(fact, BearingMeasured) else None,
             quality=fact.quality,
-            reason=fact.reason if isinstance(fact, SweepRejected) else "",
+            reason=fact.reason if isinstance(fact, SweepRejected) else None,
         )
         for fact in (record.event for record in facts)
         if isinstance(fact, BearingMeasured | SweepRejected)

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path, Query, Response
+from fastapi import APIRouter, Query, Response
 
 from backend.api import summary
 from backend.api.another_antenna import another_antenna
@@ -15,8 +15,7 @@ from backend.api.dependencies import MissionId, ServicesDep, SweepId
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.what_if import SUPPOSED_KINDS, what_if
-from backend.events import Recorded
-from backend.mission.ports import TrackPoint
+from backend.events import FIRST_CRAFT, Recorded
 from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
@@ -25,9 +24,12 @@ from backend.wire.resources import EventPage, SweepRecord, Track, WhatIf, WhatIf
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
+CraftId = Annotated[str, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
+EmitterId = Annotated[str | None, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
+
 ExportFormat = Literal["geojson", "kml", "csv", "json", "mcap", "cot", "bundle"]
 
-EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], Sequence[TrackPoint]], str | bytes]] = {
+EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], export.Tracks], str | bytes]] = {
     "geojson": export.geojson,
     "kml": export.kml,
     "csv": export.bearings_csv,
@@ -78,25 +80,23 @@ async def list_events(
     return EventPage(events=page, last_seq=digest.last_seq, more=len(recorded) > len(page))
 
 
-@router.get("/beliefs/{bearings}", response_class=Response, responses=BINARY)
+@router.get("/beliefs", response_class=Response, responses=BINARY)
 async def get_belief(
     mission_id: MissionId,
     services: ServicesDep,
-    bearings: Annotated[int, Path(ge=0, le=10_000)],
-    seq: Annotated[int | None, Query(ge=1)] = None,
+    seq: Annotated[int | None, Query(ge=1, le=2**31 - 1)] = None,
+    emitter: EmitterId = None,
     lite: bool = False,
 ) -> Response:
-    """The last belief of so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm.
-
-    `seq`: up to that event only, when a bearing was left out or the search area changed later.
-    """
+    """The belief about an emitter (None: the first) that stood at the event `seq` (None: now), as the binary frame the
+    websocket sends; before the first bearing the prior. `lite`: 8-bit logarithm."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
     if seq is not None:
         recorded = [record for record in recorded if record.seq <= seq]
-    frame = await asyncio.to_thread(belief_frame, mission_id, recorded, bearings, lite)
+    frame = await asyncio.to_thread(belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
-        raise not_found("belief", f"after {bearings} bearings", "The mission has fewer bearings.")
+        raise not_found("belief", f"at the event {seq}")
     return Response(frame, media_type="application/octet-stream")
 
 
@@ -109,7 +109,7 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
     async with services.planning:
         found = await asyncio.to_thread(what_if, mission_id, recorded, request, antenna)
     if found is None:
-        raise not_found("belief", f"after {request.bearings} bearings", "The mission has fewer bearings.")
+        raise not_found("belief", f"after {request.bearings} bearings")
     return found
 
 
@@ -119,16 +119,16 @@ async def get_sweep(mission_id: MissionId, sweep_id: SweepId, services: Services
     await stored_mission(services, mission_id)
     entry = await services.journal.sweep(mission_id, sweep_id)
     if entry is None:
-        raise not_found("sweep", sweep_id, "The sweep ids are in the mission's events.")
+        raise not_found("sweep", sweep_id)
     return summary.sweep_record(entry)
 
 
 @router.get("/track")
-async def get_track(mission_id: MissionId, services: ServicesDep) -> Track:
-    """The flown path."""
+async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId = FIRST_CRAFT) -> Track:
+    """The flown path of a craft."""
     await stored_mission(services, mission_id)
-    points = [summary.track_fact(point) for point in await services.journal.track(mission_id)]
-    return Track(mission_id=mission_id, points=points)
+    track = (await services.journal.tracks(mission_id)).get(craft, [])
+    return Track(mission_id=mission_id, craft_id=craft, points=[summary.track_fact(point) for point in track])
 
 
 @router.get("/export/{format}", response_class=Response, responses=FILE)
@@ -137,9 +137,9 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     data package for TAK), bundle (a zip with all of them)."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read(mission_id)
-    track = await services.journal.track(mission_id)
+    tracks = await services.journal.tracks(mission_id)
     return Response(
-        await asyncio.to_thread(EXPORTS[format], recorded, track),
+        await asyncio.to_thread(EXPORTS[format], recorded, tracks),
         media_type=MEDIA_TYPES[format],
         headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'},
     )

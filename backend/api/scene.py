@@ -19,10 +19,11 @@ from fastapi.responses import RedirectResponse
 from websockets.asyncio.client import ClientConnection
 
 from backend.api.dependencies import PrincipalDep, ServicesDep
-from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, conflict, not_found
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
 from backend.api.services import Services
 from backend.events import Recorded
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
+from backend.reasons.request import SceneSilent, TooManyScenes
 from backend.scene.server import SUBPROTOCOL
 from backend.scene.views import SceneViews, TooManyViews
 from backend.wire.scene import SceneRequest, SceneView
@@ -45,10 +46,11 @@ class ServicesSource:
         self._services = services
 
     def flying(self) -> str | None:
-        return self._services.missions.active_mission_id
+        active = self._services.missions.flights.active
+        return None if active is None else active.mission_id
 
     def telemetry(self) -> Telemetry:
-        return self._services.missions.telemetry()
+        return self._services.missions.equipment.first.vehicle.telemetry()
 
     def now_s(self) -> float:
         return self._services.now()
@@ -61,7 +63,8 @@ class ServicesSource:
         return list(await self._services.journal.read(mission_id))
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
-        return await self._services.journal.track(mission_id)
+        tracks = await self._services.journal.tracks(mission_id)
+        return [point for track in tracks.values() for point in track]
 
 
 def scene_views(connection: HTTPConnection) -> SceneViews:
@@ -83,11 +86,11 @@ SceneViewsDep = Annotated[SceneViews, Depends(scene_views)]
 
 async def _show(views: SceneViews, services: Services, view_id: str, request: SceneRequest) -> SceneView:
     if request.mission_id is not None and await services.journal.mission(request.mission_id) is None:
-        raise not_found("mission", request.mission_id, "Reload the list of missions.")
+        raise not_found("mission", request.mission_id)
     try:
         return views.show(view_id, request)
     except TooManyViews as error:
-        raise conflict("Too many 3D views are open.", "Close one in another tab.") from error
+        raise ApiProblem(409, TooManyScenes()) from error
 
 
 @router.put("/views/{view_id}")
@@ -103,7 +106,7 @@ async def get_scene_view(view_id: ViewId, views: SceneViewsDep, principal: Princ
     """What a view shows now."""
     view = views.view(view_id)
     if view is None:
-        raise not_found("3D view", view_id, "Make it with PUT.")
+        raise not_found("scene", view_id)
     return view
 
 
@@ -131,7 +134,7 @@ async def scene_page(
     try:
         page = await views.page()
     except OSError as error:
-        raise ApiProblem(503, "No 3D view", f"The 3D server does not answer: {error}.", "Load it again.") from error
+        raise ApiProblem(503, SceneSilent()) from error
     tag = f'"{hashlib.sha256(page).hexdigest()[:16]}"'
     headers = {"etag": tag, "cache-control": "no-cache", "content-security-policy": _policy(request)}
     if request.headers.get("if-none-match") == tag:

@@ -15,15 +15,27 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
+from pydantic import JsonValue
 
-from backend.api import maps, missions, planning, recordings, review, scene, system
+from backend.api import maps, missions, planning, read_export, recordings, review, scene, system
 from backend.commands import Command
 from backend.events import Event
+from backend.reasons import REASONS
+from backend.reasons.adapter import BY_NAME
 from backend.spec import Area
 from backend.wire.messages import LiveMessage
 from backend.wire.problem import Problem
 
-ROUTERS = (system.router, missions.router, recordings.router, review.router, planning.router, maps.router, scene.router)
+ROUTERS = (
+    system.router,
+    missions.router,
+    recordings.router,
+    review.router,
+    read_export.router,
+    planning.router,
+    maps.router,
+    scene.router,
+)
 
 UNIONS: dict[str, Any] = {"LiveMessage": LiveMessage, "Event": Event, "Command": Command, "Area": Area}
 """Named unions of the live channel and the journal: pydantic writes them in place, the page wants them by name."""
@@ -38,7 +50,7 @@ def operation_id(route: APIRoute) -> str:
 def settle_names(schemas: dict[str, Any]) -> dict[str, str]:
     """pydantic's Foo-Output becomes Foo; Foo-Input becomes FooInput, or Foo when both are the same. Old name -> new.
 
-    A tag (`kind`, `type`) is what a union is told apart by, so a request must carry it although it has a default.
+    A tag (`kind`, `type`) tells the members of a union apart, so a request must carry it although it has a default.
     """
     for name, schema in schemas.items():
         tags = [key for key, value in schema.get("properties", {}).items() if "const" in value]
@@ -57,9 +69,12 @@ def settle_names(schemas: dict[str, Any]) -> dict[str, str]:
     return names
 
 
-def renamed(schema: Any, names: dict[str, str]) -> Any:
+def renamed(schema: JsonValue, names: dict[str, str]) -> Any:
     """The same schema with every reference under its new name, without the titles pydantic makes of field names."""
     prefix = "#/components/schemas/"
+    if isinstance(schema, dict) and BY_NAME in schema:
+        described = {key: value for key, value in schema.items() if key == "description"}
+        return {"$ref": prefix + names[str(schema[BY_NAME])], **described}
     if isinstance(schema, dict):
         return {
             key: renamed(value, names)
@@ -82,6 +97,7 @@ def wire_schema(version: str) -> dict[str, Any]:
         app.add_api_route(SCHEMA_ONLY + name, lambda: None, response_model=union, methods=["GET"], name=name)
     document = get_openapi(title=app.title, version=app.version, routes=app.routes)
     paths, schemas = document["paths"], document["components"]["schemas"]
+    schemas |= REASONS.described("#/components/schemas/{model}")
     for name in UNIONS:
         schema = paths[SCHEMA_ONLY + name]["get"]["responses"]["200"]["content"]["application/json"]["schema"]
         schema.pop("title", None)

@@ -16,7 +16,7 @@ from hardware.payload.session import PayloadHub
 from hardware.ports import DirectionFinder
 
 if TYPE_CHECKING:
-    from backend.mission.service import MissionService
+    from backend.mission.room import MissionRoom
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Services:
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
     """
 
-    missions: MissionService
+    missions: MissionRoom
     journal: SqlJournal
     hub: Hub
     settings: Settings

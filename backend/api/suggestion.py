@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, Place, Polygon
+from backend.spec import MissionSpec, Polygon
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 WIDTH_M, HEIGHT_M = 313.0, 200.0
 """As wide as the field system's area, and deeper, so that a newcomer's search takes more than two places."""
@@ -14,8 +14,8 @@ NAME = "New search"
 
 def suggested_mission(home: Place) -> MissionSpec:
     """All other values are the specification's defaults. The home lies on the area's southern edge."""
-    frame = LocalFrame(GeoPoint(home.lat, home.lon))
+    frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
-    ring = [(point.lon_deg, point.lat_deg) for point in (frame.to_geo(x, y) for x, y in corners)]
+    ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     return MissionSpec(name=NAME, area=Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]]))

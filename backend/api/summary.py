@@ -9,26 +9,22 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 
-from backend.events import (
-    AreaChanged,
-    BeliefUpdated,
-    MissionDrafted,
-    MissionEdited,
-    MissionEnded,
-    MissionStarted,
-    Recorded,
-)
-from backend.mission.ports import TrackPoint
-from backend.mission.state import GROUND
+from backend.events import Recorded
+from backend.ports import TrackPoint
+from backend.search.state import EmitterState, SearchState, evolve
 from backend.store.digest import EPOCH, MissionDigest
 from backend.store.entries import SweepEntry
-from backend.wire.resources import Mission, MissionSummary, SweepRecord, TrackFact
+from backend.wire.resources import EmitterFound, Mission, MissionSummary, SweepRecord, TrackFact
+from planner.reasons import NoBearingYet
 
 DETAIL_KINDS = (
     "mission_drafted",
     "mission_edited",
     "area_changed",
+    "preflight_checked",
     "mission_started",
+    "bearing_measured",
+    "bearing_excluded",
     "belief_updated",
     "mission_ended",
 )
@@ -44,6 +40,8 @@ def _summary(digest: MissionDigest) -> dict[str, object]:
         "mission_id": digest.mission_id,
         "name": digest.name,
         "phase": digest.phase,
+        "flying": digest.flying,
+        "emitters": digest.emitters,
         "outcome": digest.outcome,
         "drafted_at_utc": _utc(digest.drafted_at_us),
         "started_at_utc": _utc(digest.started_at_us),
@@ -61,30 +59,30 @@ def mission_summary(digest: MissionDigest) -> MissionSummary:
 
 def mission(digest: MissionDigest, recorded: Sequence[Recorded]) -> Mission:
     """recorded: the mission's events of DETAIL_KINDS, in order."""
-    spec = home = belief = ended = None
+    search = SearchState()
     for record in recorded:
-        match record.event:
-            case MissionDrafted(spec=given) | MissionEdited(spec=given):
-                spec = given
-            case AreaChanged(search=search) if spec is not None:
-                spec = spec.searching(search)
-            case MissionStarted(home=place):
-                home = place
-            case BeliefUpdated() as updated:
-                belief = updated
-            case MissionEnded() as end:
-                ended = end
+        search = evolve(search, record.event, record.at_utc.timestamp())
     return Mission.model_validate(
         {
             **_summary(digest),
-            "spec": spec,
-            "editable": digest.phase in GROUND,
-            "home": home,
-            "estimate": belief.estimate if belief else None,
-            "localized": belief.localized if belief else False,
-            "not_yet": belief.not_yet if belief else ["no bearing was taken yet"],
-            "outcome_reason": ended.reason if ended else None,
+            "spec": search.mission,
+            "editable": search.stage in ("draft", "ready"),
+            "home": search.home,
+            "localized": all(e.belief is not None and e.belief.localized for e in search.emitters.values()),
+            "found": [_found(emitter) for emitter in search.emitters.values()],
+            "outcome_reason": search.outcome_reason,
         }
+    )
+
+
+def _found(emitter: EmitterState) -> EmitterFound:
+    belief = emitter.belief
+    return EmitterFound(
+        emitter_id=emitter.emitter_id,
+        bearings=len(emitter.bearings),
+        estimate=None if belief is None else belief.estimate,
+        localized=belief is not None and belief.localized,
+        not_yet=[NoBearingYet()] if belief is None else belief.not_yet,
     )
 
 
@@ -95,6 +93,8 @@ def sweep_record(entry: SweepEntry) -> SweepRecord:
         {
             "sweep_id": entry.sweep_id,
             "mission_id": entry.mission_id,
+            "craft_id": entry.craft_id,
+            "emitter_id": entry.emitter_id,
             "place_number": entry.place_number,
             "attempt": entry.attempt,
             "began_at_utc": datetime.fromtimestamp(began_s if math.isfinite(began_s) else 0.0, UTC),

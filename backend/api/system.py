@@ -3,41 +3,51 @@
 from __future__ import annotations
 
 import time
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 
 from backend.api.dependencies import ServicesDep
-from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.suggestion import suggested_mission
+from backend.craft.equipment import CraftEquipment
+from backend.events import FIRST_CRAFT
 from backend.live.snapshot import telemetry_message
+from backend.reasons.safety import NoLink
 from backend.spec import Place
 from backend.version import VERSION
 from backend.wire.messages import TelemetryMessage
 from backend.wire.resources import DatabaseHealth, Defaults, Health, Payload, PayloadList, VehicleHealth
 
-NO_VEHICLE = "No vehicle answers on the link. Check its power and the radio; the server keeps listening."
-
+CraftId = Annotated[str, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 router = APIRouter(prefix="/api", tags=["system"], responses=PROBLEM_RESPONSES)
 
 
 @router.get("/health")
 async def health(services: ServicesDep) -> Health:
     """Which parts answer; never waits for one."""
-    settings, telemetry, report = services.settings, services.missions.telemetry(), services.journal.report()
+    settings, report = services.settings, services.journal.report()
+    vehicles = [_vehicle(craft) for craft in services.missions.equipment.crafts.values()]
     kind = "sqlite" if settings.async_database_url.startswith("sqlite") else "postgresql"
     return Health(
-        state="ok" if telemetry.connected and report.state == "ok" else "degraded",
+        state="ok" if report.state == "ok" and all(vehicle.connected for vehicle in vehicles) else "degraded",
         version=VERSION,
         uptime_s=time.monotonic() - services.began_monotonic_s,
-        database=DatabaseHealth(state=report.state, kind=kind, detail=report.detail, spooled=report.spooled),
-        vehicle=VehicleHealth(
-            connected=telemetry.connected,
-            autopilot=telemetry.autopilot,
-            detail="" if telemetry.connected else NO_VEHICLE,
-        ),
+        database=DatabaseHealth(state=report.state, kind=kind, reason=report.reason, spooled=report.spooled),
+        vehicles=vehicles,
         viewers=services.hub.viewers(),
         simulated=settings.simulated,
         time_factor=settings.time_factor,
+    )
+
+
+def _vehicle(craft: CraftEquipment) -> VehicleHealth:
+    telemetry = craft.vehicle.telemetry()
+    return VehicleHealth(
+        craft_id=craft.craft_id,
+        connected=telemetry.connected,
+        autopilot=telemetry.autopilot,
+        reason=None if telemetry.connected else NoLink(),
     )
 
 
@@ -75,14 +85,17 @@ async def list_payloads(services: ServicesDep) -> PayloadList:
 @router.get("/defaults")
 async def defaults(services: ServicesDep) -> Defaults:
     """A specification to start from, its area around the vehicle's home."""
-    telemetry, settings = services.missions.telemetry(), services.settings
+    telemetry, settings = services.missions.equipment.first.vehicle.telemetry(), services.settings
     known = telemetry.home or telemetry.position
-    home = Place(lat=known.lat_deg, lon=known.lon_deg) if known else None
+    home = known if known else None
     fallback = Place(lat=settings.home_lat_deg, lon=settings.home_lon_deg)
     return Defaults(spec=suggested_mission(home or fallback), home=home)
 
 
 @router.get("/vehicle")
-async def vehicle(services: ServicesDep) -> TelemetryMessage:
-    """The vehicle as last heard, each value with its age."""
-    return telemetry_message(services.missions.telemetry(), services.now())
+async def vehicle(services: ServicesDep, craft: CraftId = FIRST_CRAFT) -> TelemetryMessage:
+    """A craft's vehicle as last heard, each value with its age."""
+    equipment = services.missions.equipment.crafts.get(craft)
+    if equipment is None:
+        raise not_found("craft", craft)
+    return telemetry_message(craft, equipment.vehicle.telemetry(), services.now())

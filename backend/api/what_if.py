@@ -11,44 +11,48 @@ from collections.abc import Iterator, Sequence
 from backend.api.another_antenna import AnotherAntenna
 from backend.api.beliefs import FOLDED_KINDS
 from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, SweepRejected
-from backend.mission.area import corner_of
-from backend.mission.localization import Localization, localization
-from backend.mission.planning import next_place
-from backend.mission.state import MissionState, evolve
-from backend.spec import MissionSpec, Place
+from backend.reasons import Reason, carried
+from backend.search.area import corner_of
+from backend.search.localization import Localization, localization
+from backend.search.planning import next_place
+from backend.search.state import SearchState, evolve
+from backend.spec import MissionSpec
 from backend.wire.belief_frame import encode_belief
 from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from planner.types import PlannerError
 
 SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected", "recording_imported")
 """The events that the answer depends on: a sweep that was rejected may tell something through another antenna, and
-the antenna that flew is told at the start or the import."""
+the antenna that flew is named at the start or the import."""
 
 
 def what_if(
     mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest, antenna: AnotherAntenna | None = None
 ) -> WhatIf | None:
-    """None when the mission never had so many bearings. Heavy (a plan of one thread): call it off the event loop.
+    """None when the mission had fewer bearings. Heavy (a plan of one thread): call it off the event loop.
 
-    recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken anew, None: they stay as flown.
+    recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken again, None: they stay as flown.
     """
-    state, flown = _flown(recorded, wanted.bearings)
+    state, flown = _flown(recorded, wanted.emitter_id, wanted.bearings)
     if state is None:
         return None
     home = state.home or corner_of(state.mission.area)
     mission = changed(state.mission, wanted)
-    task = localization(mission, home, state.home_amsl_m)
+    task = localization(mission, home, wanted.emitter_id)
+    bearings = state.emitters[task.emitter_id].bearings
     supposed: list[SweepFact] = []
     said = [task.belief_fact([])]
-    for sweeps in _sweeps_of_each(recorded, state.bearings):
+    for sweeps in _sweeps_of_each(recorded, bearings):
         supposed += _taken(sweeps, supposed, mission, wanted, antenna)
         said.append(task.belief_fact(_bearings(supposed)))
     fact, belief = said[-1]
-    platform = state.bearings[-1].place if state.bearings else home
-    number = max((fact.place_number for fact in state.bearings), default=0) + 1
+    platform = bearings[-1].place if bearings else home
+    number = max((fact.place_number for fact in bearings), default=0) + 1
     plan, no_plan = _plan(task, _bearings(supposed), platform, number)
-    frame = encode_belief(mission_id, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True)
+    frame = encode_belief(
+        mission_id, task.emitter_id, 0, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True
+    )
     return WhatIf(
         steps=[_step(count, then, flown.get(count)) for count, (then, _) in enumerate(said)],
         belief=fact,
@@ -72,14 +76,21 @@ def changed(mission: MissionSpec, wanted: WhatIfRequest) -> MissionSpec:
     )
 
 
-def _flown(recorded: Sequence[Recorded], bearings: int) -> tuple[MissionState | None, dict[int, BeliefUpdated]]:
-    """The last state of so many counted bearings, and what was said in flight after each number of them."""
-    state, found, said = MissionState(), None, {}
+def _flown(
+    recorded: Sequence[Recorded], emitter_id: str | None, bearings: int
+) -> tuple[SearchState | None, dict[int, BeliefUpdated]]:
+    """The last state with this number of counted bearings, and what was said in flight after each number of them.
+
+    emitter_id None: of the first emitter.
+    """
+    state, found = SearchState(), None
+    said: dict[int, BeliefUpdated] = {}
     for record in recorded:
         state = evolve(state, record.event, record.at_utc.timestamp())
-        if isinstance(record.event, BeliefUpdated):
+        wanted = emitter_id or next(iter(state.emitters), "")
+        if isinstance(record.event, BeliefUpdated) and record.event.emitter_id == wanted:
             said[record.event.bearings] = record.event
-        if state.spec is not None and len(state.bearings) == bearings:
+        if wanted in state.emitters and len(state.emitters[wanted].bearings) == bearings:
             found = state
     return found, said
 
@@ -87,10 +98,11 @@ def _flown(recorded: Sequence[Recorded], bearings: int) -> tuple[MissionState | 
 def _sweeps_of_each(recorded: Sequence[Recorded], counted: Sequence[BearingMeasured]) -> Iterator[list[SweepFact]]:
     """For each counted bearing the sweeps that were rejected since the one before, and its own."""
     ids = {fact.bearing_id for fact in counted}
+    emitters = {fact.emitter_id for fact in counted}
     sweeps: list[SweepFact] = []
     for record in recorded:
         match record.event:
-            case SweepRejected() as rejected:
+            case SweepRejected(emitter_id=emitter_id) as rejected if emitter_id in emitters:
                 sweeps.append(rejected)
             case BearingMeasured(bearing_id=bearing_id) as measured if bearing_id in ids:
                 yield [*sweeps, measured]
@@ -127,13 +139,13 @@ def _bearings(sweeps: Sequence[SweepFact]) -> list[BearingMeasured]:
 
 def _plan(
     task: Localization, measured: Sequence[BearingMeasured], platform: Place, number: int
-) -> tuple[PlanChosen | None, str]:
+) -> tuple[PlanChosen | None, Reason | None]:
     belief = task.planning_belief(task.planner_bearings(measured))
-    here = task.frame.to_enu(GeoPoint(platform.lat, platform.lon))
+    here = task.frame.to_enu(platform)
     try:
-        return next_place(task, belief, measured, here, number, (), threads=1), ""
+        return next_place(task, belief, measured, here, number, (), threads=1), None
     except PlannerError as error:
-        return None, str(error)
+        return None, carried(error.reason)
 
 
 def _step(bearings: int, then: BeliefUpdated, flown: BeliefUpdated | None) -> WhatIfStep:

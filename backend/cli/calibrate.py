@@ -13,7 +13,9 @@ from hardware.direction_finding.calibration import calibrate as calibrate_sweeps
 from hardware.direction_finding.pattern_file import PatternError, load_pattern, save_pattern
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
+from hardware.reasons.table import PlaceNotStated
+from planner.reason import remedy_of, sentence_of, text_of
 
 
 def calibrate(
@@ -36,9 +38,9 @@ def calibrate(
         lat, lon = parse_place(emitter)
         sweeps = _sweeps(files, tag)
         if check is not None:
-            _check(sweeps, check, GeoPoint(lat, lon), json_)
+            _check(sweeps, check, Place(lat, lon), json_)
             return
-        measured = calibrate_sweeps(sweeps, GeoPoint(lat, lon), name, polarization)
+        measured = calibrate_sweeps(sweeps, Place(lat, lon), name, polarization)
         if out is not None:
             save_pattern(measured.pattern, out)
     except (RecordingError, PatternError, CalibrationError, ValueError) as error:
@@ -66,30 +68,30 @@ def calibrate(
 
 
 def _sweeps(files: list[Path], tag: str | None) -> list[Sweep]:
-    sweeps = []
+    sweeps: list[Sweep] = []
     for file in files:
         recording = read_recording(file, tag)
-        for line in recording.remarks:
-            remark(line)
+        for reason in recording.remarks:
+            remark(sentence_of(reason))
         for recorded in recording.sweeps:
             if not recorded.place_known:
-                raise RecordingError(f"{file}: does not tell where it was recorded; add columns lat and lon")
+                raise RecordingError(PlaceNotStated(str(file)))
             sweeps.append(recorded.sweep)
     return sweeps
 
 
-def _check(sweeps: list[Sweep], path: Path, emitter: GeoPoint, as_json: bool) -> None:
+def _check(sweeps: list[Sweep], path: Path, emitter: Place, as_json: bool) -> None:
     pattern = load_pattern(path)
     checks = [check_antenna(sweep, pattern, emitter) for sweep in sweeps]
     if as_json:
         print_json(
             {
                 "ok": all(c.ok for c in checks),
-                "checks": [{"ok": c.ok, "detail": c.detail, "remedy": c.remedy} for c in checks],
+                "checks": [{"ok": c.ok, "detail": text_of(c.reason), "remedy": remedy_of(c.reason)} for c in checks],
             }
         )
     else:
         for c in checks:
-            typer.echo(f"ok: {c.detail}" if c.ok else f"NOT OK: {c.detail}. To do: {c.remedy}")
+            typer.echo(f"{'ok' if c.ok else 'NOT OK'}: {sentence_of(c.reason)}")
     if not all(c.ok for c in checks):
         raise typer.Exit(1)

@@ -7,13 +7,21 @@ from typing import Any, NoReturn
 
 import typer
 
+from planner.reason import ReasonedError, sentence_of
+
 BAD_INPUT = 2
 
 
 def stop(message: object) -> NoReturn:
     """One line on stderr, exit code 2."""
-    typer.echo(f"crossfix: {' '.join(str(message).split())}", err=True)
+    typer.echo(f"crossfix: {words_of(message)}", err=True)
     raise typer.Exit(BAD_INPUT)
+
+
+def words_of(message: object) -> str:
+    """On one line; of an error with a reason, the remedy too."""
+    words = sentence_of(message.reason) if isinstance(message, ReasonedError) else str(message)
+    return " ".join(words.split())
 
 
 def remark(message: str) -> None:

@@ -14,14 +14,16 @@ from backend.cli.edge import print_json, remark, stop
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
 from hardware.direction_finding.table_file import RecordingError
 from hardware.frame import LocalFrame, compass_to_angle
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
 from planner.belief.verdict import verdict
 from planner.geometry import convex_hull
+from planner.options import Estimator
+from planner.reason import sentence_of, text_of
 from planner.types import (
     Bearing,
-    Estimator,
     InconsistentBearings,
     LinearMotion,
     LocalizationRule,
@@ -81,8 +83,8 @@ def localize(
     """
     try:
         recorded = read_bearings(file, sigma)
-        for line in recorded.remarks:
-            remark(line)
+        for reason in recorded.remarks:
+            remark(sentence_of(reason))
         chosen = _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
@@ -105,17 +107,15 @@ def _known_estimator(name: str) -> Estimator:
 def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) -> list[RecordedBearing]:
     tags = sorted({b.tag for b in bearings if b.tag is not None})
     if tag is None and len(tags) > 1:
-        raise RecordingError(f"{file}: holds bearings of several tags ({', '.join(tags)}); choose one with --tag")
+        raise ValueError(f"{file} holds bearings of several tags ({', '.join(tags)}); choose one with --tag")
     chosen = [b for b in bearings if tag is None or b.tag == tag]
     if not chosen:
-        raise RecordingError(f"{file}: holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
+        raise ValueError(f"{file} holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
     return chosen
 
 
-def _middle(bearings: list[RecordedBearing]) -> GeoPoint:
-    return GeoPoint(
-        float(np.mean([b.place.lat_deg for b in bearings])), float(np.mean([b.place.lon_deg for b in bearings]))
-    )
+def _middle(bearings: list[RecordedBearing]) -> Place:
+    return Place(float(np.mean([b.place.lat for b in bearings])), float(np.mean([b.place.lon for b in bearings])))
 
 
 def _audible(bearings: list[RecordedBearing], frame: LocalFrame, range_m: float | None) -> Region:
@@ -132,19 +132,19 @@ def _read_area(path: Path, frame: LocalFrame) -> Region:
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror}); check the path") from error
+        raise RecordingError(FileUnreadable(str(path), error.strerror or str(error))) from error
     except ValueError as error:
-        raise RecordingError(f"{path}: is not GeoJSON ({error})") from error
+        raise ValueError(f"{path} is not GeoJSON ({error})") from error
     try:
         rings = _rings(data)
         region = tuple(
-            np.array([frame.to_enu(GeoPoint(float(p[1]), float(p[0]))) for p in ring[:-1]], dtype=np.float64)
+            np.array([frame.to_enu(Place(float(p[1]), float(p[0]))) for p in ring[:-1]], dtype=np.float64)
             for ring in rings
         )
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise RecordingError(f"{path}: holds no usable GeoJSON polygon ({error})") from error
+        raise ValueError(f"{path} holds no usable GeoJSON polygon ({error})") from error
     if not region:
-        raise RecordingError(f"{path}: holds no GeoJSON polygon; draw the area as Polygon or MultiPolygon")
+        raise ValueError(f"{path} holds no GeoJSON polygon; draw the area as Polygon or MultiPolygon")
     return region
 
 
@@ -169,7 +169,7 @@ def _localize(
     threshold: float,
     estimator: Estimator,
 ) -> dict[str, Any]:
-    bearings = []
+    bearings: list[Bearing] = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
         bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
@@ -186,15 +186,15 @@ def _localize(
         "c95": None,
         "consistent": judged.consistent,
         "localized": judged.localized,
-        "not_yet": list(judged.reasons),
+        "not_yet": [text_of(reason) for reason in judged.reasons],
         "bearings": len(bearings),
     }
     if belief is not None:
         spread = estimate(belief, problem.estimator)
         place = frame.to_geo(spread.x, spread.y)
         outline = [frame.to_geo(x, y) for x, y in confidence_region(belief)]
-        ring = [[round(p.lon_deg, 8), round(p.lat_deg, 8)] for p in (*outline, outline[0])]
-        answer["estimate"] = {"lat": round(place.lat_deg, 8), "lon": round(place.lon_deg, 8)}
+        ring = [[round(p.lon, 8), round(p.lat, 8)] for p in (*outline, outline[0])]
+        answer["estimate"] = {"lat": round(place.lat, 8), "lon": round(place.lon, 8)}
         answer["expected_rmse_m"] = round(spread.expected_rmse, 3)
         answer["c95"] = {"type": "Polygon", "coordinates": [ring]}
     return answer
@@ -211,5 +211,5 @@ def _text(answer: dict[str, Any]) -> str:
         f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.0f} m, "
         f"from {answer['bearings']} bearings"
     ]
-    lines.append("localized" if answer["localized"] else "\n".join(answer["not_yet"]))
+    lines.append("localized" if answer["localized"] else f"not yet localized: {' '.join(answer['not_yet'])}")
     return "\n".join(lines)

@@ -26,8 +26,6 @@ from hardware.payload.configuration import (
 from hardware.payload.spool import Spool, SpoolError
 from hardware.ports import ReceiverError
 from hardware.sdr.device import FORMS, receiver_from
-from hardware.sdr.pulses import PulseSetting
-from hardware.sdr.spectrum import SpectrumError
 
 UNIT = """[Unit]
 Description=Crossfix payload agent
@@ -97,7 +95,7 @@ def payload(
             typer.echo(f"wrote {config}; start with: crossfix payload --config {config}", err=True)
             return
         agent = _agent(configuration)
-    except (ConfigurationError, ReceiverError, SpoolError, SpectrumError) as error:
+    except (ConfigurationError, ReceiverError, SpoolError) as error:
         stop(error)
     except OSError as error:
         stop(f"{config}: {error.strerror or error}")
@@ -107,13 +105,7 @@ def payload(
 
 
 def _agent(configuration: PayloadConfiguration) -> PayloadAgent:
-    width, period = configuration.pulse_width_s, configuration.pulse_period_s
-    if (width is None) != (period is None):
-        raise ConfigurationError("a pulsed tag needs both --pulse-width-s and --pulse-period-s")
-    setting = PulseSetting(width, period) if width is not None and period is not None else None
-    radio = receiver_from(
-        configuration.receiver, WallClock(), configuration.sample_rate_hz, configuration.gain_db, setting
-    )
+    radio = receiver_from(configuration.receiver, WallClock(), configuration.sample_rate_hz, configuration.gain_db)
     spool = Spool(configuration.data_dir / "samples.sqlite")
     settings = AgentSettings(configuration.servers, configuration.token, configuration.name, f"crossfix {VERSION}")
-    return PayloadAgent(settings, radio, spool, configuration.frequency_hz)
+    return PayloadAgent(settings, radio, spool, (configuration.channel,))

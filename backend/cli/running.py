@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import socket
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncGenerator, Generator, Sequence
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +16,9 @@ from pydantic import ValidationError
 from backend.api.services import Services
 from backend.main import create_app, server_config
 from backend.settings import Settings
-from backend.wiring import EmitterAroundHome, open_simulation
+from backend.simulation.emitters import EMITTERS, SimulatedEmitter
+from backend.simulation.receiver import EmittersAroundHome
+from backend.wiring import open_simulation
 
 
 class CannotServe(RuntimeError):
@@ -39,7 +41,7 @@ class RunningServer:
 
     url: str
     services: Services
-    receiver: EmitterAroundHome | None
+    receiver: EmittersAroundHome | None
     server: uvicorn.Server
     gone: asyncio.Task[None]
 
@@ -56,7 +58,7 @@ class _Server(uvicorn.Server):
         self.ready = asyncio.Event()
 
     @contextmanager
-    def capture_signals(self) -> Iterator[None]:
+    def capture_signals(self) -> Generator[None]:
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
@@ -65,11 +67,16 @@ class _Server(uvicorn.Server):
 
 
 @asynccontextmanager
-async def running_server(settings: Settings, leave_flying: bool = False) -> AsyncIterator[RunningServer]:
-    """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError."""
+async def running_server(
+    settings: Settings, leave_flying: bool = False, emitters: Sequence[SimulatedEmitter] = EMITTERS
+) -> AsyncGenerator[RunningServer]:
+    """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError.
+
+    emitters: what transmits in the simulated world.
+    """
     bound = _bind(settings.host, settings.port)
     try:
-        async with open_simulation(settings, leave_flying) as (services, receiver):
+        async with open_simulation(settings, leave_flying, emitters) as (services, receiver):
             app = create_app(settings, lambda _: nullcontext(services))
             server = _Server(server_config(settings, app))
             gone = asyncio.create_task(server.serve(sockets=[bound]))

@@ -11,8 +11,10 @@ import typer
 from backend.cli.edge import print_json, remark, stop
 from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
 from backend.settings import Settings
-from backend.store.journal import DatabaseAway, JournalUnavailable
+from backend.store.journal import DatabaseAway
 from backend.store.opening import DatabaseUnusable
+from backend.store.reading import JournalUnavailable
+from hardware.direction_finding.pattern_file import PatternError
 from hardware.ports import HardwareError
 
 
@@ -72,7 +74,7 @@ def serve(
         remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:
         asyncio.run(_serve(settings, json_))
-    except (CannotServe, DatabaseUnusable, HardwareError, ValueError) as error:
+    except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)
     except (DatabaseAway, JournalUnavailable) as error:
         stop(f"the database does not answer ({error}); try again when the machine is less busy")

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from backend.cli.edge import print_json, remark, stop
+from backend.cli.edge import print_json, remark, stop, words_of
+from planner.options import STUDY
+from planner.study.errors import StudyError
 from planner.types import PlannerError
 
 if TYPE_CHECKING:
@@ -50,11 +52,11 @@ def run(
     ] = None,
     selection: Annotated[
         str, typer.Option(help="rollout: sequential_halving, uniform, quadrant, sgd or bfgs.")
-    ] = "sequential_halving",
+    ] = STUDY.selection,
     sampling: Annotated[
         str, typer.Option(help="rollout: crn (common random numbers), pmc (independent) or deterministic.")
-    ] = "crn",
-    budget: Annotated[int, typer.Option(help="rollout: simulated flights a decision.")] = 3600,
+    ] = STUDY.sampling,
+    budget: Annotated[int, typer.Option(help="rollout: simulated flights a decision.")] = STUDY.budget,
     actions: Annotated[
         str | None, typer.Option(help="Grid of places compared, columns x rows. Default: the scenario's, 20x20.")
     ] = None,
@@ -105,9 +107,9 @@ def run(
             )
         ]
         if runs < 1 or workers < 1:
-            raise PlannerError(f"--runs and --workers must be 1 or more, got {runs} and {workers}")
+            raise StudyError(f"--runs and --workers must be 1 or more, got {runs} and {workers}")
         summaries = _fly(study, cells, runs, results, workers, scheduler)
-    except PlannerError as error:
+    except (PlannerError, StudyError) as error:
         _refuse(error, json_)
     except KeyboardInterrupt:
         remark(f"broken off; what was flown is in {results}, the same command goes on from there")
@@ -136,7 +138,7 @@ def report(
         summaries, drawn = study.report(results, figures, remark, paths)
         if markdown is not None:
             markdown.write_text(study.table.markdown(summaries) + "\n", encoding="utf-8")
-    except PlannerError as error:
+    except (PlannerError, StudyError) as error:
         _refuse(error, json_)
     except OSError as error:
         _refuse(f"{error.filename}: {error.strerror}", json_)
@@ -151,7 +153,7 @@ def report(
 def _refuse(error: object, json_: bool) -> NoReturn:
     """One line on stderr; for programs an object on stdout as well."""
     if json_:
-        print_json({"error": " ".join(str(error).split())})
+        print_json({"error": words_of(error)})
     stop(error)
 
 
@@ -179,7 +181,7 @@ def _fly(
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    summaries = []
+    summaries: list[Summary] = []
     with Progress(*columns, console=Console(file=sys.stderr)) as bars:
         for cell in cells:
             fields = cell.fields()

@@ -16,6 +16,7 @@ from hardware.readings import BearingReading
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
 from hardware.sdr.spectrum import SpectrumError
+from planner.reason import sentence_of
 
 
 def sweep(
@@ -70,8 +71,8 @@ def sweep(
         place = parse_place(at) if at is not None else None
     except (RecordingError, PatternError, SpectrumError, ValueError) as error:
         stop(error)
-    for line in recording.remarks:
-        remark(line)
+    for reason in recording.remarks:
+        remark(sentence_of(reason))
     finder = SparseDirectionFinder(minimum_quality=minimum_quality)
     answers: list[dict[str, Any]] = []
     for recorded in recording.sweeps:
@@ -95,14 +96,14 @@ def _pulses(width_s: float | None, period_s: float | None) -> PulseSetting | Non
 
 def _answer(recorded: RecordedSweep, reading: BearingReading, place: tuple[float, float] | None) -> dict[str, Any]:
     position = recorded.sweep.position
-    here = place or ((position.lat_deg, position.lon_deg) if recorded.place_known else (None, None))
+    here = place or ((position.lat, position.lon) if recorded.place_known else (None, None))
     known = reading.sigma_deg < 180.0
     return {
         "bearing_deg": round(reading.bearing_deg, 3) % 360.0 if known else None,
         "sigma_deg": round(reading.sigma_deg, 3) if known else None,
         "quality": round(reading.quality, 4),
         "accepted": reading.accepted,
-        "reason": reading.reason,
+        "reason": "" if reading.reason is None else sentence_of(reading.reason),
         "tag": recorded.sweep.tag,
         "lat": here[0],
         "lon": here[1],

@@ -11,16 +11,16 @@ from __future__ import annotations
 import asyncio
 from collections import OrderedDict, deque
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from itertools import islice
 from typing import Literal
 
 from backend.events import Recorded
 from backend.live.snapshot import telemetry_message
-from backend.mission.ports import Status
+from backend.ports import Status
 from backend.wire.belief_frame import encode_belief
-from backend.wire.messages import EventMessage, StatusMessage, SweepProgress
+from backend.wire.messages import CraftStatusMessage, EventMessage, StatusMessage, SweepProgress
 from hardware.readings import Telemetry
 from planner.belief.grid import GridBelief
 
@@ -29,15 +29,26 @@ FEEDS = 8
 STALLED_S = 3.0
 PROGRESS_POINTS = 360
 
-SlotName = Literal["telemetry", "status", "sweep_progress", "belief"]
+SlotKind = Literal["telemetry", "status", "sweep_progress", "belief"]
+SlotName = tuple[SlotKind, str]
+"""A kind of value, and the craft or emitter that it speaks of ("" for the server's own)."""
+STATUS: SlotName = ("status", "")
 ReadEvents = Callable[[str, int], Awaitable[list[Recorded]]]
 
 
 class BeliefFrame:
-    """A belief in the encodings that somebody asked for."""
+    """The belief of one event, in the encodings that somebody asked for."""
 
-    def __init__(self, mission_id: str, bearings: int, belief: GridBelief, corners: list[tuple[float, float]]) -> None:
-        self._content = (mission_id, bearings, belief.density, corners)
+    def __init__(
+        self,
+        mission_id: str,
+        emitter_id: str,
+        seq: int,
+        bearings: int,
+        belief: GridBelief,
+        corners: list[tuple[float, float]],
+    ) -> None:
+        self._content = (mission_id, emitter_id, seq, bearings, belief.density, corners)
         self._encoded: dict[bool, bytes] = {}
 
     def encoded(self, lite: bool) -> bytes:
@@ -64,11 +75,10 @@ class Feed:
 
     last_seq: int = 0
     ring: deque[str] = field(default_factory=lambda: deque(maxlen=RING))
-    progress: Slot = field(default_factory=Slot)
-    belief: Slot = field(default_factory=Slot)
+    slots: dict[SlotName, Slot] = field(default_factory=dict[SlotName, Slot])
 
     def add(self, record: Recorded) -> bool:
-        """False when it was known already. After a gap the ring begins anew: viewers read the gap in the journal."""
+        """False when it was known already. After a gap the ring begins again: viewers read the gap in the journal."""
         if record.seq <= self.last_seq:
             return False
         if self.ring and record.seq != self.last_seq + 1:
@@ -108,23 +118,22 @@ class Viewer:
     lite: bool
     cursor: int
     wake: asyncio.Event = field(default_factory=asyncio.Event)
-    seen: dict[SlotName, int] = field(default_factory=dict)
+    seen: dict[SlotName, int] = field(default_factory=dict[SlotName, int])
     dropped: int = 0
     sending_since: float | None = None
-    sent_at: dict[SlotName, float] = field(default_factory=dict)
-    withheld: set[SlotName] = field(default_factory=set)
+    sent_at: dict[SlotName, float] = field(default_factory=dict[SlotName, float])
+    withheld: set[SlotName] = field(default_factory=set[SlotName])
 
 
 class Hub:
-    """backend.mission.ports.Publisher; `read` gives stored events after a number. Lives on one event loop."""
+    """backend.ports.Publisher; `read` gives stored events after a number. Lives on one event loop."""
 
     def __init__(self, read: ReadEvents, now: Callable[[], float]) -> None:
         self.read = read
         self._now = now
         self._viewers: set[Viewer] = set()
         self._feeds: OrderedDict[str, Feed] = OrderedDict()
-        self._telemetry = Slot()
-        self._status = Slot()
+        self._slots: dict[SlotName, Slot] = {STATUS: Slot()}
 
     # Publisher
 
@@ -133,48 +142,64 @@ class Hub:
             feed = self.feed(record.mission_id)
             if feed.add(record):
                 if record.event.kind in {"sweep_started", "sweep_rejected", "bearing_measured"}:
-                    feed.progress.put(None)
+                    for (kind, _), slot in feed.slots.items():
+                        if kind == "sweep_progress":
+                            slot.put(None)
                 self._wake(record.mission_id)
 
-    def telemetry(self, telemetry: Telemetry, now_s: float) -> None:
-        self._telemetry.put(telemetry_message(telemetry, now_s).model_dump_json())
+    def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None:
+        slot = self._slots.setdefault(("telemetry", craft_id), Slot())
+        slot.put(telemetry_message(craft_id, telemetry, now_s).model_dump_json())
         self._wake(None)
 
     def sweep_progress(
-        self, mission_id: str, place_number: int, heading_deg: list[float], power_db: list[float], turned_deg: float
+        self,
+        mission_id: str,
+        craft_id: str,
+        emitter_id: str,
+        place_number: int,
+        heading_deg: list[float],
+        power_db: list[float],
+        turned_deg: float,
     ) -> None:
         step = -(-len(heading_deg) // PROGRESS_POINTS) or 1
         message = SweepProgress(
             mission_id=mission_id,
+            craft_id=craft_id,
+            emitter_id=emitter_id,
             place_number=place_number,
             heading_deg=[round(heading, 1) for heading in heading_deg[::step]],
             power_db=[round(power, 1) for power in power_db[::step]],
             turned_deg=turned_deg,
         )
-        self.feed(mission_id).progress.put(message.model_dump_json())
+        self._put(mission_id, ("sweep_progress", craft_id), message.model_dump_json())
+
+    def _put(self, mission_id: str, name: SlotName, value: str | BeliefFrame) -> None:
+        self.feed(mission_id).slots.setdefault(name, Slot()).put(value)
         self._wake(mission_id)
 
     def belief(
-        self, mission_id: str, bearings: int, belief: GridBelief, corners_lon_lat: list[tuple[float, float]]
+        self,
+        mission_id: str,
+        emitter_id: str,
+        seq: int,
+        bearings: int,
+        belief: GridBelief,
+        corners_lon_lat: list[tuple[float, float]],
     ) -> None:
-        self.feed(mission_id).belief.put(BeliefFrame(mission_id, bearings, belief, corners_lon_lat))
-        self._wake(mission_id)
+        frame = BeliefFrame(mission_id, emitter_id, seq, bearings, belief, corners_lon_lat)
+        self._put(mission_id, ("belief", emitter_id), frame)
 
     def status(self, status: Status) -> None:
         message = StatusMessage(
             at_utc=datetime.fromtimestamp(self._now(), UTC),
             mission_id=status.mission_id,
             phase=status.phase,
-            doing=status.doing,
-            waits_for=status.waits_for,
-            receiver=status.receiver,
-            receiver_power_db=status.receiver_power_db,
-            receiver_age_s=status.receiver_age_s,
+            crafts=[CraftStatusMessage.model_validate(asdict(craft)) for craft in status.crafts],
             viewers=len(self._viewers),
-            battery_to_return_percent=status.battery_to_return_percent,
             database=status.database,
         )
-        self._status.put(message.model_dump_json())
+        self._slots[STATUS].put(message.model_dump_json())
         self._wake(None)
 
     def watchers(self) -> int:
@@ -205,11 +230,9 @@ class Hub:
         self._viewers.discard(viewer)
 
     def slots(self, viewer: Viewer) -> dict[SlotName, Slot]:
-        slots: dict[SlotName, Slot] = {"telemetry": self._telemetry, "status": self._status}
-        if viewer.mission_id is not None:
-            feed = self.feed(viewer.mission_id)
-            slots |= {"sweep_progress": feed.progress, "belief": feed.belief}
-        return slots
+        if viewer.mission_id is None:
+            return dict(self._slots)
+        return self._slots | self.feed(viewer.mission_id).slots
 
     def feed(self, mission_id: str) -> Feed:
         """Feeds nobody asked for longest are forgotten; the journal has their events."""

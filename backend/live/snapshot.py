@@ -9,16 +9,17 @@ from backend.wire.messages import TelemetryMessage
 from hardware.readings import Telemetry
 
 
-def telemetry_message(telemetry: Telemetry, now_s: float, dropped: int = 0) -> TelemetryMessage:
+def telemetry_message(craft_id: str, telemetry: Telemetry, now_s: float, dropped: int = 0) -> TelemetryMessage:
     """`now_s`: UTC epoch seconds on the clock that stamped the telemetry. Numbers that are not finite become None."""
     place = telemetry.position
     north, east = telemetry.velocity_north_m_s, telemetry.velocity_east_m_s
     down = _finite(telemetry.velocity_down_m_s)
     return TelemetryMessage(
+        craft_id=craft_id,
         at_utc=datetime.fromtimestamp(now_s, UTC),
         connected=telemetry.connected,
-        lat=_finite(place.lat_deg) if place else None,
-        lon=_finite(place.lon_deg) if place else None,
+        lat=_finite(place.lat) if place else None,
+        lon=_finite(place.lon) if place else None,
         position_age_s=_age(telemetry.position_at_s, now_s),
         altitude_amsl_m=_finite(telemetry.altitude_amsl_m),
         altitude_relative_m=_finite(telemetry.altitude_relative_m),
@@ -34,7 +35,7 @@ def telemetry_message(telemetry: Telemetry, now_s: float, dropped: int = 0) -> T
         in_air=telemetry.in_air,
         mode=telemetry.mode,
         mode_age_s=_age(telemetry.mode_at_s, now_s),
-        controller=telemetry.controller,
+        who=telemetry.authority.who,
         autopilot=telemetry.autopilot,
         dropped=dropped,
     )

@@ -1,5 +1,7 @@
 """The loop that serves one viewer: stored events first, then whatever is new, at the viewer's own pace.
 
+The belief of an event goes out before the event: who hears of it has the picture already, or knows to ask for it.
+
 A lite viewer (a thin link) gets telemetry and the running sweep once a second only; events it gets as all others do.
 """
 
@@ -11,14 +13,14 @@ from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 
 from backend.events import Recorded
-from backend.live.hub import BeliefFrame, Hub, Slot, SlotName, Viewer, event_text
+from backend.live.hub import BeliefFrame, Hub, Slot, SlotKind, SlotName, Viewer, event_text
 
 Send = Callable[[str | bytes], Awaitable[None]]
 
 EVENTS_AT_ONCE = 50
-"""After so many events a look at the slots, so that telemetry lives while a long journal is caught up with."""
+"""After this many events a look at the slots, so that telemetry lives while a long journal is caught up with."""
 
-LITE_PERIOD_S: dict[SlotName, float] = {"telemetry": 1.0, "sweep_progress": 1.0}
+LITE_PERIOD_S: dict[SlotKind, float] = {"telemetry": 1.0, "sweep_progress": 1.0}
 """Least time between two values of a slot for a lite viewer, in the wall's seconds."""
 
 SEND_S = 20.0
@@ -35,14 +37,10 @@ async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
         if not waiting:
             viewer.wake.clear()
             waiting.extend(await _next_events(hub, viewer))
-        for _ in range(min(EVENTS_AT_ONCE, len(waiting))):
-            item = waiting.popleft()
-            await _send(viewer, send, item if isinstance(item, str) else event_text(item))
-            viewer.cursor += 1
         patience_s = None
         for name, slot in hub.slots(viewer).items():
-            missed = max(0, slot.version - viewer.seen[name] - 1)
-            if slot.version <= viewer.seen[name] and name not in viewer.withheld:
+            missed = max(0, slot.version - viewer.seen.get(name, 0) - 1)
+            if slot.version <= viewer.seen.get(name, 0) and name not in viewer.withheld:
                 continue
             viewer.seen[name] = slot.version
             viewer.withheld.discard(name)
@@ -53,15 +51,19 @@ async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
             elif slot.value is not None:
                 viewer.sent_at[name] = asyncio.get_running_loop().time()
                 await _send(viewer, send, _content(viewer, name, slot.value, missed))
+        for _ in range(min(EVENTS_AT_ONCE, len(waiting))):
+            item = waiting.popleft()
+            await _send(viewer, send, item if isinstance(item, str) else event_text(item))
+            viewer.cursor += 1
         if not waiting:
             await _woken(viewer, patience_s)
 
 
 def _too_early_s(viewer: Viewer, name: SlotName, slot: Slot) -> float:
     """How long a lite viewer's next value must still wait."""
-    if not viewer.lite or name not in LITE_PERIOD_S or name not in viewer.sent_at or slot.value is None:
+    if not viewer.lite or name[0] not in LITE_PERIOD_S or name not in viewer.sent_at or slot.value is None:
         return 0.0
-    return viewer.sent_at[name] + LITE_PERIOD_S[name] - asyncio.get_running_loop().time()
+    return viewer.sent_at[name] + LITE_PERIOD_S[name[0]] - asyncio.get_running_loop().time()
 
 
 async def _woken(viewer: Viewer, patience_s: float | None) -> None:
@@ -82,7 +84,7 @@ async def _next_events(hub: Hub, viewer: Viewer) -> Sequence[str | Recorded]:
 def _content(viewer: Viewer, name: SlotName, value: str | BeliefFrame, missed: int) -> str | bytes:
     if isinstance(value, BeliefFrame):
         return value.encoded(viewer.lite)
-    if name == "telemetry":
+    if name[0] == "telemetry":
         viewer.dropped += missed
         # `dropped` is the message's last field, the only one that differs between viewers
         return f"{value.removesuffix('0}')}{viewer.dropped}}}"

@@ -20,8 +20,19 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 from pmtiles.tile import Compression, HeaderDict, TileType, deserialize_header, zxy_to_tileid
+from pydantic import JsonValue
 
-from backend.maps.refusal import MapRefused
+from backend.maps.refusal import ArchiveUnusable
+from backend.reasons.maps import (
+    ArchiveDamaged,
+    ArchiveFault,
+    ArchivePart,
+    CompressionNotRead,
+    LooksLike,
+    NotAnArchive,
+    OldArchive,
+    TilesNotDrawable,
+)
 from backend.wire.maps import TileType as TileName
 
 HEADER_BYTES = 127
@@ -39,16 +50,24 @@ TILE_NAMES: dict[TileType, TileName] = {
     TileType.AVIF: "avif",
 }
 
-PARTS = {
-    "root directory": "root",
+PARTS: dict[str, ArchivePart] = {
+    "root": "directories",
     "metadata": "metadata",
-    "leaf directories": "leaf_directory",
-    "tiles": "tile_data",
+    "leaf_directory": "directories",
+    "tile_data": "tiles",
 }
+"""How the header's fields begin, and what they speak of."""
 
-MAKE_AGAIN = "Export or extract the map again, for example with `pmtiles extract`, and upload the new file."
-NOT_PMTILES = (
-    "Only PMTiles archives (.pmtiles, version 3) can be used. MBTiles files are converted with `pmtiles convert`."
+MAGIC: tuple[tuple[bytes, LooksLike], ...] = (
+    (b"SQLite format 3", "sqlite"),
+    (b"PK\x03\x04", "zip"),
+    (b"\x1f\x8b", "gzip"),
+    (b"II*\x00", "tiff"),
+    (b"MM\x00*", "tiff"),
+    (b"\x89PNG", "png"),
+    (b"\xff\xd8\xff", "jpeg"),
+    (b"{", "json"),
+    (b"<", "xml"),
 )
 
 
@@ -63,57 +82,37 @@ class Directory:
 
 
 def read_header(first_bytes: bytes) -> HeaderDict:
-    """The header of an archive that this program can show. MapRefused names what is not understood."""
+    """The header of an archive that this program can show. ArchiveUnusable names what is not understood."""
     if first_bytes[:7] != b"PMTiles":
-        kind = _what_it_is(first_bytes)
-        raise MapRefused(f"The file is not a PMTiles archive{kind}.", NOT_PMTILES)
+        raise ArchiveUnusable(NotAnArchive(_what_it_is(first_bytes)))
     if len(first_bytes) < HEADER_BYTES:
-        raise MapRefused("The PMTiles archive ends inside its header.", MAKE_AGAIN)
+        raise _damaged("header", "cut_off")
     if first_bytes[7] != 3:
-        raise MapRefused(f"The PMTiles archive has version {first_bytes[7]}; version 3 is needed.", NOT_PMTILES)
+        raise ArchiveUnusable(OldArchive(first_bytes[7]))
     try:
         header = deserialize_header(first_bytes[:HEADER_BYTES])
     except ValueError as error:
-        raise MapRefused(f"The PMTiles header is not valid: {error}.", MAKE_AGAIN) from error
+        raise _damaged("header", "unreadable") from error
     if header["tile_type"] not in TILE_NAMES:
-        raise MapRefused(
-            f"The archive's tiles are of type {header['tile_type'].name.lower()}, which the map cannot draw.",
-            "Vector tiles must be MVT, pictures PNG, JPEG, WebP or AVIF.",
-        )
+        raise ArchiveUnusable(TilesNotDrawable(header["tile_type"].name.lower()))
     for part in ("internal_compression", "tile_compression"):
         if header[part] not in (Compression.NONE, Compression.GZIP, Compression.UNKNOWN):
-            raise MapRefused(
-                f"The archive is compressed with {header[part].name.lower()}, which a browser cannot unpack.",
-                "Make it with gzip compression, the default of the PMTiles tools.",
-            )
-    if not header["min_zoom"] <= header["max_zoom"] <= FINEST_ZOOM:
-        raise MapRefused(
-            f"The archive names zooms {header['min_zoom']} to {header['max_zoom']}, which makes no sense.", MAKE_AGAIN
-        )
+            raise ArchiveUnusable(CompressionNotRead(header[part].name.lower()))
     west, south, east, north = bounds(header)
-    if not (-180 <= west < east <= 180 and -90 <= south < north <= 90):
-        raise MapRefused(
-            f"The archive's bounds (west {west}, south {south}, east {east}, north {north}) are not a box on Earth.",
-            MAKE_AGAIN,
-        )
+    on_earth = -180 <= west < east <= 180 and -90 <= south < north <= 90
+    if not on_earth or not header["min_zoom"] <= header["max_zoom"] <= FINEST_ZOOM:
+        raise _damaged("header", "senseless")
     return header
 
 
-def _what_it_is(first_bytes: bytes) -> str:
-    known = (
-        (b"SQLite format 3", ", it looks like an MBTiles or another SQLite file"),
-        (b"PK\x03\x04", ", it is a zip file"),
-        (b"\x1f\x8b", ", it is gzip-compressed"),
-        (b"II*\x00", ", it is a TIFF picture"),
-        (b"MM\x00*", ", it is a TIFF picture"),
-        (b"\x89PNG", ", it is a PNG picture"),
-        (b"\xff\xd8\xff", ", it is a JPEG picture"),
-        (b"{", ", it looks like JSON"),
-        (b"<", ", it looks like XML or a web page"),
-    )
+def _damaged(part: ArchivePart, fault: ArchiveFault) -> ArchiveUnusable:
+    return ArchiveUnusable(ArchiveDamaged(part, fault))
+
+
+def _what_it_is(first_bytes: bytes) -> LooksLike | None:
     if not first_bytes:
-        return ": it is empty"
-    return next((words for magic, words in known if first_bytes.startswith(magic)), "")
+        return "empty"
+    return next((kind for magic, kind in MAGIC if first_bytes.startswith(magic)), None)
 
 
 def bounds(header: HeaderDict) -> tuple[float, float, float, float]:
@@ -133,17 +132,13 @@ class Archive:
 
     def check(self) -> None:
         """Refuse an archive that is cut off or whose first tiles are not what its header says."""
-        for words, part in PARTS.items():
-            end = self.header[f"{part}_offset"] + self.header[f"{part}_length"]
-            if end > self.size:
-                raise MapRefused(
-                    f"The archive is incomplete: its {words} end at byte {end}, the file at byte {self.size}.",
-                    "Copy or download the whole file again.",
-                )
+        for name, part in PARTS.items():
+            if self.header[f"{name}_offset"] + self.header[f"{name}_length"] > self.size:
+                raise _damaged(part, "cut_off")
         self.metadata()
         first = next(self.tiles(), None)
         if first is None:
-            raise MapRefused("The archive holds no tile.", MAKE_AGAIN)
+            raise _damaged("tiles", "missing")
         self._check_tile(first)
 
     def metadata(self) -> dict[str, Any]:
@@ -154,11 +149,11 @@ class Archive:
             "metadata",
         )
         try:
-            data = json.loads(raw) if raw else {}
+            data: JsonValue = json.loads(raw) if raw else {}
         except ValueError as error:
-            raise MapRefused(f"The archive's metadata are not valid JSON ({error}).", MAKE_AGAIN) from error
+            raise _damaged("metadata", "unreadable") from error
         if not isinstance(data, dict):
-            raise MapRefused("The archive's metadata are not a JSON object.", MAKE_AGAIN)
+            raise _damaged("metadata", "senseless")
         return data
 
     def tiles(self) -> Iterator[bytes]:
@@ -190,53 +185,52 @@ class Archive:
 
     def _tiles(self, offset: int, length: int, depth: int) -> Iterator[bytes]:
         if depth >= DEEPEST_DIRECTORY:
-            raise MapRefused("The archive's directories point to each other without end.", MAKE_AGAIN)
+            raise _damaged("directories", "endless")
         directory = self._directory(offset, length)
         for run, at, size in zip(directory.run_length, directory.offset, directory.length, strict=True):
             if run == 0:
                 yield from self._tiles(self.header["leaf_directory_offset"] + int(at), int(size), depth + 1)
             elif size > MOST_TILE_BYTES:
-                raise MapRefused(f"A tile of the archive has {size} bytes; more than any map needs.", MAKE_AGAIN)
+                raise _damaged("tiles", "too_large")
             else:
                 yield self._read(self.header["tile_data_offset"] + int(at), int(size), "tiles")
 
     def _check_tile(self, tile: bytes) -> None:
         if self.header["tile_type"] is TileType.MVT:
             if self.header["tile_compression"] is Compression.GZIP:
-                _gunzip(tile, MOST_TILE_BYTES, "first tile")
+                _gunzip(tile, MOST_TILE_BYTES, "first_tile")
             return
         try:
             with Image.open(BytesIO(tile)) as picture:
                 found = (picture.format or "").lower()
         except (UnidentifiedImageError, OSError, Image.DecompressionBombError) as error:
-            raise MapRefused("The archive's first tile is not a picture that can be read.", MAKE_AGAIN) from error
-        stated = TILE_NAMES[self.header["tile_type"]]
-        if found != stated:
-            raise MapRefused(f"The archive says its tiles are {stated}, but the first one is {found}.", MAKE_AGAIN)
+            raise _damaged("first_tile", "unreadable") from error
+        if found != TILE_NAMES[self.header["tile_type"]]:
+            raise _damaged("first_tile", "not_as_stated")
 
     def _load_directory(self, offset: int, length: int) -> Directory:
         raw = self._unpack(self._read(offset, length, "directories"), MOST_DIRECTORY_BYTES, "directories")
         return parse_directory(raw)
 
-    def _unpack(self, data: bytes, most: int, what: str) -> bytes:
-        return _gunzip(data, most, what) if self.header["internal_compression"] is Compression.GZIP else data
+    def _unpack(self, data: bytes, most: int, part: ArchivePart) -> bytes:
+        return _gunzip(data, most, part) if self.header["internal_compression"] is Compression.GZIP else data
 
-    def _read(self, offset: int, length: int, what: str) -> bytes:
+    def _read(self, offset: int, length: int, part: ArchivePart) -> bytes:
         if offset < 0 or not 0 <= length <= MOST_DIRECTORY_BYTES or offset + length > self.size:
-            raise MapRefused(f"The archive is damaged: its {what} lie outside of the file.", MAKE_AGAIN)
+            raise _damaged(part, "cut_off")
         with self.path.open("rb") as file:
             file.seek(offset)
             return file.read(length)
 
 
-def _gunzip(data: bytes, most: int, what: str) -> bytes:
+def _gunzip(data: bytes, most: int, part: ArchivePart) -> bytes:
     unpacker = zlib.decompressobj(wbits=31)
     try:
         unpacked = unpacker.decompress(data, most)
     except zlib.error as error:
-        raise MapRefused(f"The archive is damaged: its {what} cannot be unpacked.", MAKE_AGAIN) from error
+        raise _damaged(part, "unreadable") from error
     if unpacker.unconsumed_tail or not unpacker.eof:
-        raise MapRefused(f"The archive is damaged: its {what} are cut off or far too large.", MAKE_AGAIN)
+        raise _damaged(part, "too_large" if unpacker.unconsumed_tail else "cut_off")
     return unpacked
 
 
@@ -248,13 +242,13 @@ def parse_directory(raw: bytes) -> Directory:
     numbers = parse_varints(raw)
     count = int(numbers[0]) if len(numbers) else -1
     if count < 1 or len(numbers) != 1 + 4 * count:
-        raise MapRefused("The archive is damaged: one of its directories cannot be read.", MAKE_AGAIN)
+        raise _damaged("directories", "unreadable")
     difference, run_length, length, stored = numbers[1:].reshape(4, count)
     behind = np.concatenate(([0], np.cumsum(length)[:-1]))
     anchor = np.maximum.accumulate(np.where(stored > 0, np.arange(count), 0))
     offset = stored[anchor] - 1 + behind - behind[anchor]
     if stored[0] == 0:
-        raise MapRefused("The archive is damaged: one of its directories has no first offset.", MAKE_AGAIN)
+        raise _damaged("directories", "senseless")
     return Directory(np.cumsum(difference), run_length, length, offset)
 
 
@@ -263,10 +257,10 @@ def parse_varints(raw: bytes) -> NDArray[np.int64]:
     data = np.frombuffer(raw, np.uint8)
     last = np.flatnonzero(data < 0x80)
     if len(last) == 0 or last[-1] != len(data) - 1:
-        raise MapRefused("The archive is damaged: a directory ends inside a number.", MAKE_AGAIN)
+        raise _damaged("directories", "cut_off")
     first = np.concatenate(([0], last[:-1] + 1))
     place = np.arange(len(data)) - np.repeat(first, last - first + 1)
     if place.max() > 8:
-        raise MapRefused("The archive is damaged: a directory holds a number that is too large.", MAKE_AGAIN)
+        raise _damaged("directories", "senseless")
     parts = (data & 0x7F).astype(np.int64) << (7 * place)
     return np.add.reduceat(parts, first)

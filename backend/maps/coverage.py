@@ -7,7 +7,7 @@ north-west. Areas are compared in that plane; over a mission's few kilometres it
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +15,11 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
-from shapely.validation import explain_validity
 
 from backend.maps.refusal import MapRefused
+from backend.reasons.maps import AreaOnMaps, BeyondWebMaps
+from backend.reasons.search import AreaEmpty, TooFewCorners
+from backend.search.area import why_invalid
 from backend.spec import Area, MultiPolygon
 from backend.wire.maps import Coverage, MapCoverage, ZoomCoverage
 
@@ -64,16 +66,12 @@ def coverage(area: Area, maps: Iterable[TileSet]) -> Coverage:
     )
 
 
-def _summary(covered: bool, fraction: float, maps: list[MapCoverage]) -> str:
+def _summary(covered: bool, fraction: float, maps: Sequence[MapCoverage]) -> AreaOnMaps:
     if not maps:
-        return "There is no offline map: the plain grid is shown."
+        return AreaOnMaps("no_map", 0.0)
     if covered:
-        whole = [(entry.metres_per_pixel, entry.name) for entry in maps if entry.metres_per_pixel is not None]
-        fineness = " The finest, {1}, has {0:.2g} m a pixel.".format(*min(whole)) if whole else ""
-        return f"The whole area is on the offline maps.{fineness}"
-    if fraction == 0:
-        return "No offline map shows the area finely enough to fly by: the plain grid is shown."
-    return f"The offline maps show {math.floor(fraction * 100)} % of the area; the rest is plain grid."
+        return AreaOnMaps("whole", 100.0)
+    return AreaOnMaps("not_finely" if fraction == 0 else "partly", math.floor(fraction * 100))
 
 
 def _of_map(plane: BaseGeometry, latitude: float, tiles: TileSet) -> tuple[MapCoverage, BaseGeometry]:
@@ -127,7 +125,7 @@ def tiles_over(plane: BaseGeometry, zoom: int) -> NDArray[np.int64] | None:
     if len(x) * len(y) > 4 * MOST_TILES:
         return None
     tiles = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    shared = shapely.area(shapely.intersection(tile_squares(tiles, zoom), plane))
+    shared = shapely.area(shapely.intersection(tile_squares(tiles, zoom), plane))  # pyright: ignore[reportUnknownMemberType]
     tiles = tiles[shared > 0]
     return tiles if len(tiles) <= MOST_TILES else None
 
@@ -136,7 +134,9 @@ def tile_squares(tiles: NDArray[np.int64], zoom: int) -> NDArray[np.object_]:
     """The tiles as squares of the plane."""
     corner = tiles / 2**zoom
     size = 1 / 2**zoom
-    return shapely.box(corner[:, 0], corner[:, 1], corner[:, 0] + size, corner[:, 1] + size)
+    west: NDArray[np.float64] = corner[:, 0]
+    north: NDArray[np.float64] = corner[:, 1]
+    return shapely.box(west, north, west + size, north + size)
 
 
 def to_plane(area: Area) -> BaseGeometry:
@@ -144,14 +144,13 @@ def to_plane(area: Area) -> BaseGeometry:
     try:
         geometry = shape(area.model_dump())
     except (ValueError, IndexError, shapely.errors.GEOSException) as error:
-        raise MapRefused(f"The area is not a polygon: {error}.", "Draw the area again.") from error
+        raise MapRefused(TooFewCorners("area")) from error
     if not geometry.is_empty and not geometry.is_valid:
-        reason = explain_validity(geometry)
-        raise MapRefused(f"The area is not a valid polygon: {reason}.", "Draw it without crossings.")
+        raise MapRefused(why_invalid(geometry, "area"))
     if geometry.is_empty or geometry.area == 0:
-        raise MapRefused("The area is empty.", "Draw an area with at least three corners.")
+        raise MapRefused(AreaEmpty("area"))
     if max(abs(geometry.bounds[1]), abs(geometry.bounds[3])) > HIGHEST_LATITUDE:
-        raise MapRefused("The area lies beyond 85 degrees of latitude, where web maps end.", "Fly with the plain grid.")
+        raise MapRefused(BeyondWebMaps())
     return shapely.transform(geometry, _project)
 
 

@@ -8,6 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from pmtiles.tile import TileType
+from pydantic import JsonValue
 
 from backend.maps.archive import TILE_NAMES, Archive, bounds
 from backend.wire.maps import MapPackage, VectorLayer
@@ -47,18 +48,20 @@ def plain_text(markup: Any) -> str:
     return re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]*>", "", markup))).strip()[:MOST_WORDS]
 
 
-def vector_layers(stated: Any) -> list[VectorLayer]:
+def vector_layers(stated: JsonValue) -> list[VectorLayer]:
     """The `vector_layers` of the metadata (MBTiles 1.3); entries without an id are left out."""
-    layers = []
+    layers: list[VectorLayer] = []
     for entry in stated if isinstance(stated, list) else []:
-        if not (isinstance(entry, dict) and isinstance(entry.get("id"), str)):
+        if not (isinstance(entry, dict) and isinstance(layer_id := entry.get("id"), str)):
             continue
-        zooms = [entry.get(name) for name in ("minzoom", "maxzoom")]
-        low, high = (zoom if isinstance(zoom, int) and 0 <= zoom <= 30 else None for zoom in zooms)
+        low, high = (
+            zoom if isinstance(zoom, int) and 0 <= zoom <= 30 else None
+            for zoom in (entry.get("minzoom"), entry.get("maxzoom"))
+        )
         fields = entry.get("fields")
         layers.append(
             VectorLayer(
-                id=entry["id"],
+                id=layer_id,
                 description=str(entry.get("description") or "")[:MOST_WORDS],
                 min_zoom=low,
                 max_zoom=high,

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from backend.maps.schemas import SCHEMAS, Rule
+from backend.reasons.maps import MapDrawnPlainly
 from backend.wire.maps import MapLayers, MapPackage, VectorLayer
 
 Theme = Literal["light", "dark"]
@@ -66,19 +67,19 @@ def map_layers(package: MapPackage, theme: Theme, tile_pixels: int | None) -> Ma
     for number, layer in enumerate(layers):
         layer["id"] = f"{source_id}-{number}-{layer['source-layer']}"
         layer["source"] = source_id
-    return MapLayers(source_id=source_id, source=source, layers=layers, notes=notes)
+    return MapLayers(source_id=source_id, source=source, layers=layers, notes=[*notes])
 
 
-def _vector(package: MapPackage, colours: dict[str, str]) -> tuple[list[Layer], list[str]]:
+def _vector(package: MapPackage, colours: dict[str, str]) -> tuple[list[Layer], list[MapDrawnPlainly]]:
     there = {layer.id for layer in package.vector_layers}
     if not there:
-        return [], ["The archive does not say which layers its tiles have, so nothing of it can be drawn."]
+        return [], [MapDrawnPlainly("layers_not_named")]
     for _, known_by, rules in SCHEMAS:
         if known_by <= there:
             drawn = [rule for rule in rules if rule.tile_layer in there]
             return [layer for rule in drawn for layer in _by_rule(rule, colours)], []
     layers = [drawn for layer in package.vector_layers for drawn in _by_geometry(layer, colours)]
-    return layers, ["The map's layers follow no schema that is known here; all of them are drawn alike."]
+    return layers, [MapDrawnPlainly("schema_unknown")]
 
 
 def _by_rule(rule: Rule, colours: dict[str, str]) -> Iterator[Layer]:
@@ -101,8 +102,11 @@ def _by_rule(rule: Rule, colours: dict[str, str]) -> Iterator[Layer]:
         return
     if rule.role == "road":
         yield {**base, **_line(colours["casing"], rule.width + 1.5)}
-    dashes = {"path": [2, 1.5], "border": [4, 2]}.get(rule.role)
+    dashes = _DASHES.get(rule.role)
     yield {**base, **_line(colours[rule.role], rule.width, dashes)}
+
+
+_DASHES: dict[str, list[float]] = {"path": [2, 1.5], "border": [4, 2]}
 
 
 def _line(colour: str, width: float, dashes: list[float] | None = None) -> Layer:

@@ -5,40 +5,45 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from backend.maps.refusal import MapRefused
+from backend.reasons.maps import GeometryFault, LeftOut, MoreLeftOut, PartLeftOut, TooManyFeatures
 from backend.wire.maps import Box, OverlayCollection, OverlayFeature
 
 MOST_FEATURES = 50_000
 MOST_NOTES = 20
 MOST_PROPERTIES = 50
 MOST_TEXT = 4000
+MOST_NAME = 200
+"""Characters of a name in a note."""
 
 
 @dataclass
 class Reading:
-    features: list[OverlayFeature] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    features: list[OverlayFeature] = field(default_factory=list[OverlayFeature])
+    notes: list[LeftOut] = field(default_factory=list[LeftOut])
     unnamed_notes: int = 0
 
     def add(self, geometry: dict[str, Any], properties: dict[str, Any]) -> None:
         if len(self.features) >= MOST_FEATURES:
-            raise MapRefused(
-                f"The overlay has more than {MOST_FEATURES} features.",
-                "Leave out what is not needed, or make a map package (PMTiles) of it.",
-            )
+            raise MapRefused(TooManyFeatures(MOST_FEATURES))
         self.features.append(OverlayFeature(geometry=geometry, properties=plain_properties(properties)))
 
-    def note(self, sentence: str) -> None:
+    def note(self, left_out: LeftOut) -> None:
         if len(self.notes) < MOST_NOTES:
-            self.notes.append(sentence[:500])
+            self.notes.append(left_out)
         else:
             self.unnamed_notes += 1
 
-    def all_notes(self) -> list[str]:
-        more = [f"{self.unnamed_notes} more parts were left out."] if self.unnamed_notes else []
-        return self.notes + more
+    def leave_out(self, part: Literal["feature", "placemark"], number: int, name: object, fault: GeometryFault) -> None:
+        """name: as the file calls it; only a text that is not empty is one."""
+        called = f' "{name[:MOST_NAME]}"' if isinstance(name, str) and name else ""
+        self.note(PartLeftOut(part, f"{number}{called}", fault))
+
+    def all_notes(self) -> list[LeftOut]:
+        more = [MoreLeftOut(self.unnamed_notes)] if self.unnamed_notes else []
+        return [*self.notes, *more]
 
     def collection(self) -> OverlayCollection:
         return OverlayCollection(features=self.features)

@@ -23,8 +23,16 @@ import anyio.to_thread
 
 from backend.maps.archive import HEADER_BYTES, Archive, read_header
 from backend.maps.description import describe
-from backend.maps.refusal import MapRefused, NoRoom, NotStored
+from backend.maps.refusal import ArchiveUnusable, MapRefused, NotStored
+from backend.reasons.maps import (
+    MapLabelDamaged,
+    MapUnusable,
+    NoRoomForMap,
+    PutByHand,
+    UploadIncomplete,
+)
 from backend.wire.maps import MapPackage
+from hardware.reasons.table import FileUnreadable
 
 BLOCK_BYTES = 2**20
 ID_DIGITS = 16
@@ -44,24 +52,27 @@ class MapFolder:
         self.directory.mkdir(parents=True, exist_ok=True)
         return max(0, shutil.disk_usage(self.directory).free - self.reserve_bytes)
 
-    def packages(self) -> tuple[list[MapPackage], list[str]]:
-        """All maps by name, and a sentence for each file that is none."""
+    def packages(self) -> tuple[list[MapPackage], list[MapUnusable]]:
+        """All maps by name, and the files that are none."""
         self.directory.mkdir(parents=True, exist_ok=True)
-        found, unusable = [], []
+        found: list[MapPackage] = []
+        unusable: list[MapUnusable] = []
         for path in sorted(self.directory.glob("*.pmtiles")):
             if not re.fullmatch(r"[0-9a-f]{16}", path.stem):
-                unusable.append(f"{path.name} was put into the map folder by hand; upload it here instead.")
+                unusable.append(MapUnusable(path.name, PutByHand()))
                 continue
             try:
                 found.append(self.package(path.stem))
-            except (MapRefused, OSError, ValueError) as error:
-                unusable.append(f"{path.name}: {error}")
+            except ArchiveUnusable as error:
+                unusable.append(MapUnusable(path.name, error.reason))
+            except OSError as error:
+                unusable.append(MapUnusable(path.name, FileUnreadable(path.name, error.strerror or str(error))))
         return sorted(found, key=lambda package: package.name.casefold()), unusable
 
     def path(self, map_id: str) -> Path:
         path = self.directory / f"{map_id}.pmtiles"
         if not path.is_file():
-            raise NotStored(map_id)
+            raise NotStored("map", map_id)
         return path
 
     def archive(self, map_id: str) -> Archive:
@@ -78,7 +89,7 @@ class MapFolder:
             label = json.loads((self.directory / f"{map_id}.json").read_text("utf-8"))
             return str(label["name"]), datetime.fromisoformat(label["added_at_utc"])
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise MapRefused("The map's label is missing or damaged.", "Upload the map again.") from error
+            raise ArchiveUnusable(MapLabelDamaged()) from error
 
     def delete(self, map_id: str) -> None:
         self.path(map_id).unlink()
@@ -89,7 +100,7 @@ class MapFolder:
     ) -> MapPackage:
         """Write an upload to disk block by block, check it, and make it a map. Nothing is left of a refused one.
 
-        Raises MapRefused as soon as the header shows that the file is none, NoRoom when it does not fit.
+        Raises MapRefused as soon as the header shows that the file is none, or when it does not fit.
         """
         if announced_bytes is not None:
             self._must_fit(announced_bytes, self.room_bytes())
@@ -104,10 +115,7 @@ class MapFolder:
                     held.clear()
             await anyio.to_thread.run_sync(self._write, upload, bytes(held))
             if announced_bytes is not None and upload.size != announced_bytes:
-                raise MapRefused(
-                    f"Only {upload.size} of {announced_bytes} bytes arrived.",
-                    "Upload it again; nothing was kept.",
-                )
+                raise MapRefused(UploadIncomplete(upload.size, announced_bytes))
             return await anyio.to_thread.run_sync(self._keep, upload, name, now)
         finally:
             upload.discard()
@@ -126,10 +134,7 @@ class MapFolder:
 
     def _must_fit(self, size: int, room: int) -> None:
         if size > room:
-            raise NoRoom(
-                f"The file does not fit: {size / 1e6:.0f} MB more are needed, {room / 1e6:.0f} MB may be used.",
-                f"Delete maps that are not needed. {self.reserve_bytes / 1e6:.0f} MB stay free for the journal.",
-            )
+            raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
 
     def _keep(self, upload: _Upload, name: str, added_at: datetime) -> MapPackage:
         upload.finish()

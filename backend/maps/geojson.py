@@ -4,37 +4,40 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, TypeVar
 
-from backend.maps.features import Reading
-from backend.maps.refusal import MapRefused
+from pydantic import JsonValue
+
+from backend.maps.features import MOST_NAME, Reading
+from backend.maps.refusal import MapRefused, PartUnusable
+from backend.reasons.maps import NotReadableAs, OtherCoordinates
 
 SMALLEST_LINE, SMALLEST_RING = 2, 4
 DEEPEST_COLLECTION = 8
 WGS84_NAMES = ("CRS84", "EPSG::4326", "EPSG:4326", "WGS84")
-EXPECTED = "Export the overlay as GeoJSON in WGS84 (longitude, latitude), or as KML."
+
+T = TypeVar("T")
 
 
 def read_geojson(content: bytes) -> Reading:
     """All features of a document; those that cannot be drawn are named in `notes`. MapRefused: it is no GeoJSON."""
     try:
-        document = json.loads(content.decode("utf-8-sig"), parse_constant=_no_constant)
+        document: JsonValue = json.loads(content.decode("utf-8-sig"), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:
-        raise MapRefused(f"The file is not valid JSON: {error}.", EXPECTED) from error
+        raise MapRefused(NotReadableAs("geojson", "not_json")) from error
     if not isinstance(document, dict) or "type" not in document:
-        raise MapRefused("The file is JSON, but no GeoJSON: it has no `type`.", EXPECTED)
+        raise MapRefused(NotReadableAs("geojson", "no_type"))
     _refuse_other_systems(document.get("crs"))
     reading = Reading()
-    for label, feature in _features(document):
+    for number, feature in enumerate(_features(document), start=1):
         properties = feature.get("properties")
         plain = properties if isinstance(properties, dict) else {}
-        name = plain.get("name") or plain.get("Name") or plain.get("title")
-        where = f'{label} "{name}"' if isinstance(name, str) else label
         try:
             for geometry in plain_geometries(feature.get("geometry")):
                 reading.add(geometry, plain)
-        except MapRefused as error:
-            reading.note(f"{where} is left out: {error}")
+        except PartUnusable as error:
+            name = plain.get("name") or plain.get("Name") or plain.get("title")
+            reading.leave_out("feature", number, name, error.fault)
     return reading
 
 
@@ -42,35 +45,35 @@ def _no_constant(name: str) -> float:
     raise ValueError(f"{name} is no JSON number")
 
 
-def _refuse_other_systems(crs: Any) -> None:
+def _refuse_other_systems(crs: JsonValue) -> None:
     """The `crs` member of old GeoJSON: other coordinate systems would be drawn at the wrong place."""
     if crs is None:
         return
     properties = crs.get("properties") if isinstance(crs, dict) else None
     name = properties.get("name") if isinstance(properties, dict) else None
     if not (isinstance(name, str) and any(known in name for known in WGS84_NAMES)):
-        raise MapRefused(f"The file uses the coordinate system {name or crs!r}, not WGS84.", EXPECTED)
+        raise MapRefused(OtherCoordinates(str(name or crs)[:MOST_NAME]))
 
 
-def _features(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def _features(document: dict[str, JsonValue]) -> Iterator[dict[str, JsonValue]]:
     if document["type"] == "FeatureCollection":
         features = document.get("features")
         if not isinstance(features, list):
-            raise MapRefused("The FeatureCollection has no list of `features`.", EXPECTED)
-        for number, feature in enumerate(features, start=1):
-            yield f"Feature {number}", feature if isinstance(feature, dict) else {"geometry": feature}
+            raise MapRefused(NotReadableAs("geojson", "no_features"))
+        for feature in features:
+            yield feature if isinstance(feature, dict) else {"geometry": feature}
     elif document["type"] == "Feature":
-        yield "The feature", document
+        yield document
     else:
-        yield "The geometry", {"geometry": document}
+        yield {"geometry": document}
 
 
-def plain_geometries(geometry: Any, depth: int = 0) -> Iterator[dict[str, Any]]:
-    """The geometry checked and in two dimensions; a GeometryCollection becomes its members."""
+def plain_geometries(geometry: JsonValue, depth: int = 0) -> Iterator[dict[str, Any]]:
+    """The geometry checked and in two dimensions; a GeometryCollection becomes its members. Raises PartUnusable."""
     if depth > DEEPEST_COLLECTION:
-        raise MapRefused(f"its geometries are nested more than {DEEPEST_COLLECTION} deep.")
+        raise PartUnusable("nested_too_deep")
     if not isinstance(geometry, dict):
-        raise MapRefused("it has no geometry.")
+        raise PartUnusable("missing")
     kind = geometry.get("type")
     if kind == "GeometryCollection":
         members = geometry.get("geometries")
@@ -78,55 +81,53 @@ def plain_geometries(geometry: Any, depth: int = 0) -> Iterator[dict[str, Any]]:
             yield from plain_geometries(member, depth + 1)
         return
     if not isinstance(kind, str) or kind not in READERS:
-        raise MapRefused(f"a geometry of type {kind!r} is not known.")
+        raise PartUnusable("type_unknown")
     yield {"type": kind, "coordinates": READERS[kind](geometry.get("coordinates"))}
 
 
-def _position(value: Any) -> list[float]:
+def _position(value: JsonValue) -> list[float]:
     if not isinstance(value, list) or len(value) < 2:
-        raise MapRefused(f"{_shown(value)} is not a position of longitude and latitude.")
-    lon, lat = value[0], value[1]
-    if not all(isinstance(part, int | float) and not isinstance(part, bool) for part in (lon, lat)):
-        raise MapRefused(f"the position {_shown(value)} does not consist of numbers.")
+        raise PartUnusable("no_position")
+    lon, lat = _number(value[0]), _number(value[1])
     if not (abs(lon) <= 180 and abs(lat) <= 90):
-        hint = "longitude and latitude may be swapped" if abs(lon) <= 90 and abs(lat) <= 180 else "it may be in metres"
-        raise MapRefused(f"the position {_shown(value[:2])} is not on Earth; {hint}.")
+        raise PartUnusable("swapped" if abs(lon) <= 90 and abs(lat) <= 180 else "in_metres")
     return [float(lon), float(lat)]
 
 
-def _shown(value: Any) -> str:
-    text = json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+def _number(value: JsonValue) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise PartUnusable("not_numbers")
+    return value
 
 
-def _list(value: Any, read: Callable[[Any], Any], fewest: int, what: str) -> list[Any]:
+def _list(value: JsonValue, read: Callable[[JsonValue], T], fewest: int) -> list[T]:
     if not isinstance(value, list) or len(value) < fewest:
-        raise MapRefused(f"{what} needs at least {fewest} {'entry' if fewest == 1 else 'entries'}.")
+        raise PartUnusable("too_few_positions")
     return [read(part) for part in value]
 
 
-def _line(value: Any) -> list[Any]:
-    return _list(value, _position, SMALLEST_LINE, "a line")
+def _line(value: JsonValue) -> list[list[float]]:
+    return _list(value, _position, SMALLEST_LINE)
 
 
-def _ring(value: Any) -> list[Any]:
-    ring = _list(value, _position, SMALLEST_RING - 1, "a ring")
+def _ring(value: JsonValue) -> list[list[float]]:
+    ring = _list(value, _position, SMALLEST_RING - 1)
     if ring[0] != ring[-1]:
         ring.append(ring[0])
     if len(ring) < SMALLEST_RING:
-        raise MapRefused("a ring needs at least three corners.")
+        raise PartUnusable("too_few_positions")
     return ring
 
 
-def _polygon(value: Any) -> list[Any]:
-    return _list(value, _ring, 1, "a polygon")
+def _polygon(value: JsonValue) -> list[list[list[float]]]:
+    return _list(value, _ring, 1)
 
 
-READERS: dict[str, Callable[[Any], list[Any]]] = {
+READERS: dict[str, Callable[[JsonValue], list[Any]]] = {
     "Point": _position,
-    "MultiPoint": lambda value: _list(value, _position, 1, "a MultiPoint"),
+    "MultiPoint": lambda value: _list(value, _position, 1),
     "LineString": _line,
-    "MultiLineString": lambda value: _list(value, _line, 1, "a MultiLineString"),
+    "MultiLineString": lambda value: _list(value, _line, 1),
     "Polygon": _polygon,
-    "MultiPolygon": lambda value: _list(value, _polygon, 1, "a MultiPolygon"),
+    "MultiPolygon": lambda value: _list(value, _polygon, 1),
 }

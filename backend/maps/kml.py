@@ -12,26 +12,19 @@ import zipfile
 import zlib
 from collections import Counter
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args
 from xml.etree.ElementTree import Element, ParseError
 
 from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
-from backend.maps.features import Reading
+from backend.maps.features import MOST_NAME, Reading
 from backend.maps.geojson import DEEPEST_COLLECTION, plain_geometries
-from backend.maps.refusal import MapRefused
+from backend.maps.refusal import MapRefused, PartUnusable
+from backend.reasons.maps import FileLeftOut, KindLeftOut, NotDrawn, NotReadableAs
 
 MOST_KML_BYTES = 100 * 2**20
-NOT_DRAWN = {
-    "NetworkLink": "a link to another file",
-    "GroundOverlay": "a picture on the ground",
-    "ScreenOverlay": "a picture on the screen",
-    "PhotoOverlay": "a photo",
-    "Model": "a 3D model",
-    "Tour": "a tour",
-}
-EXPECTED = "Save the overlay from its program as KML or KMZ with placemarks, or as GeoJSON."
+NOT_DRAWN: tuple[NotDrawn, ...] = get_args(NotDrawn)
 
 Style = dict[str, Any]
 
@@ -48,18 +41,18 @@ def read_kmz(content: bytes) -> Reading:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             names = [name for name in archive.namelist() if name.casefold().endswith(".kml")]
             if not names:
-                raise MapRefused("The archive holds no KML file.", EXPECTED)
+                raise MapRefused(NotReadableAs("kmz", "no_kml_inside"))
             main = "doc.kml" if "doc.kml" in names else names[0]
             with archive.open(main) as file:
                 kml = file.read(MOST_KML_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise MapRefused(f"The KMZ archive cannot be unpacked: {error}.", EXPECTED) from error
+        raise MapRefused(NotReadableAs("kmz", "not_unpacked")) from error
     if len(kml) > MOST_KML_BYTES:
-        raise MapRefused("The KML file in the archive is far too large when unpacked.", EXPECTED)
+        raise MapRefused(NotReadableAs("kmz", "too_large"))
     reading = read_kml(kml)
     for other in names:
         if other != main:
-            reading.note(f"The archive's second file {other} is left out.")
+            reading.note(FileLeftOut(other[:MOST_NAME]))
     return reading
 
 
@@ -68,27 +61,26 @@ def read_kml(content: bytes) -> Reading:
     try:
         root = fromstring(content, forbid_dtd=True)
     except (ParseError, ValueError, LookupError) as error:
-        reason = "it holds a document type definition" if isinstance(error, DefusedXmlException) else str(error)
-        raise MapRefused(f"The file is not valid XML: {reason}.", EXPECTED) from error
+        fault = "document_type" if isinstance(error, DefusedXmlException) else "not_xml"
+        raise MapRefused(NotReadableAs("kml", fault)) from error
     if _tag(root) != "kml":
-        raise MapRefused(f"The file is XML, but no KML: its first element is <{_tag(root)}>.", EXPECTED)
+        raise MapRefused(NotReadableAs("kml", "other_xml"))
     reading = Reading()
     styles = _shared_styles(root)
     for number, placemark in enumerate((each for each in root.iter() if _tag(each) == "Placemark"), start=1):
-        name = _text(placemark, "name")
-        where = f'Placemark {number} "{name}"' if name else f"Placemark {number}"
         try:
             geometries = [found for child in placemark for found in _geometries(child)]
             if not geometries:
-                raise MapRefused("it has no geometry that can be drawn.")
+                raise PartUnusable("missing")
             properties = {**_attributes(placemark), **_style_of(placemark, styles)}
             for geometry in [plain for found in geometries for plain in plain_geometries(found)]:
                 reading.add(geometry, properties)
-        except MapRefused as error:
-            reading.note(f"{where} is left out: {error}")
-    for tag, count in Counter(_tag(each) for each in root.iter()).items():
-        if tag in NOT_DRAWN:
-            reading.note(f"{NOT_DRAWN[tag][0].upper()}{NOT_DRAWN[tag][1:]} ({tag}, {count} times) is left out.")
+        except PartUnusable as error:
+            reading.leave_out("placemark", number, _text(placemark, "name"), error.fault)
+    counts = Counter(_tag(each) for each in root.iter())
+    for kind in NOT_DRAWN:
+        if counts[kind]:
+            reading.note(KindLeftOut(kind, counts[kind]))
     return reading
 
 
@@ -107,7 +99,7 @@ def _text(element: Element, tag: str) -> str:
 
 def _geometries(element: Element, depth: int = 0) -> Iterator[dict[str, Any]]:
     if depth > DEEPEST_COLLECTION:
-        raise MapRefused(f"its geometries are nested more than {DEEPEST_COLLECTION} deep.")
+        raise PartUnusable("nested_too_deep")
     match _tag(element):
         case "Point":
             positions = _coordinates(element)
@@ -122,6 +114,8 @@ def _geometries(element: Element, depth: int = 0) -> Iterator[dict[str, Any]]:
         case "Track":
             places = [(child.text or "").split() for child in element if _tag(child) == "coord"]
             yield {"type": "LineString", "coordinates": [_numbers(place) for place in places]}
+        case _:
+            return
 
 
 def _rings(polygon: Element) -> Iterator[list[list[float]]]:
@@ -143,7 +137,7 @@ def _numbers(parts: list[str]) -> list[float]:
     try:
         return [float(part) for part in parts[:2]]
     except ValueError as error:
-        raise MapRefused(f"its coordinates {','.join(parts)[:60]!r} are not numbers.") from error
+        raise PartUnusable("not_numbers") from error
 
 
 def _attributes(placemark: Element) -> dict[str, Any]:

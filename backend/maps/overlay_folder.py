@@ -6,22 +6,21 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Literal
 
 from backend.maps.features import Reading
 from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml, read_kmz
 from backend.maps.refusal import MapRefused, NotStored
+from backend.reasons.maps import NothingToDraw, NotReadableAs, OverlayFormat
 from backend.wire.maps import Overlay, OverlayCollection
 
 MOST_OVERLAY_BYTES = 20 * 10**6
 ID_DIGITS = 16
-
-Format = Literal["geojson", "kml", "kmz"]
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,7 @@ class OverlayFolder:
 
     def overlays(self) -> list[Overlay]:
         """By name."""
-        found = [Overlay.model_validate_json(path.read_bytes()) for path in self.directory.glob("*.json")]
+        found = [_description(path) for path in self.directory.glob("*.json")]
         return sorted(found, key=lambda overlay: overlay.name.casefold())
 
     def collection(self, overlay_id: str) -> OverlayCollection:
@@ -45,8 +44,7 @@ class OverlayFolder:
         """Read a file and keep what it holds. MapRefused when there is nothing in it that can be drawn."""
         kind, reading = read_overlay(content)
         if not reading.features:
-            notes = " ".join(reading.all_notes())
-            raise MapRefused(f"The file holds nothing that can be drawn. {notes}".strip(), "Use another file.")
+            raise MapRefused(NothingToDraw(tuple(reading.all_notes())))
         overlay_id = hashlib.sha256(content).hexdigest()[:ID_DIGITS]
         overlay = Overlay(
             overlay_id=overlay_id,
@@ -54,7 +52,7 @@ class OverlayFolder:
             format=kind,
             features=len(reading.features),
             bounds=reading.bounds(),
-            notes=reading.all_notes(),
+            notes=[*reading.all_notes()],
             added_at_utc=added_at,
         )
         self.directory.mkdir(parents=True, exist_ok=True)
@@ -65,7 +63,7 @@ class OverlayFolder:
     def _path(self, overlay_id: str) -> Path:
         path = self.directory / f"{overlay_id}.geojson"
         if not path.is_file():
-            raise NotStored(overlay_id)
+            raise NotStored("overlay", overlay_id)
         return path
 
     def _write(self, name: str, text: str) -> None:
@@ -74,7 +72,14 @@ class OverlayFolder:
         os.replace(part, self.directory / name)
 
 
-def read_overlay(content: bytes) -> tuple[Format, Reading]:
+def _description(path: Path) -> Overlay:
+    """Notes that were stored as sentences, before they had names, are dropped."""
+    stored = json.loads(path.read_bytes())
+    named = [note for note in stored["notes"] if not isinstance(note, str)]
+    return Overlay.model_validate_json(json.dumps({**stored, "notes": named}))
+
+
+def read_overlay(content: bytes) -> tuple[OverlayFormat, Reading]:
     """By what the file is, not by its name."""
     start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if content.startswith(b"PK\x03\x04"):
@@ -83,5 +88,4 @@ def read_overlay(content: bytes) -> tuple[Format, Reading]:
         return "kml", read_kml(content)
     if start in (b"{", b"["):
         return "geojson", read_geojson(content)
-    what = "empty" if not content else "neither GeoJSON nor KML nor KMZ"
-    raise MapRefused(f"The file is {what}.", "Export the overlay as GeoJSON or KML.")
+    raise MapRefused(NotReadableAs(None, "other_format" if content else "empty"))

@@ -1,19 +1,49 @@
-"""How the map rooms say no: what is wrong, and how to mend it."""
+"""What the map room raises; each error says why, as a reason."""
 
 from __future__ import annotations
 
+from typing import Literal
 
-class MapRefused(ValueError):
-    """A file or an area that cannot be used. The message is a sentence for the operator, `remedy` what he can do."""
-
-    def __init__(self, detail: str, remedy: str = "") -> None:
-        super().__init__(detail)
-        self.remedy = remedy
-
-
-class NoRoom(MapRefused):
-    """The file is larger than what may be stored."""
+from backend.reasons import Reason, carried
+from backend.reasons.maps import ArchiveReason, GeometryFault
+from backend.reasons.request import NothingThere
+from planner.reason import ReasonedError
 
 
-class NotStored(LookupError):
+class MapRefused(ReasonedError):
+    """A file, or an area, cannot be used as a map, as an overlay or on one."""
+
+    @property
+    def reason(self) -> Reason:
+        return carried(super().reason)
+
+
+class ArchiveUnusable(MapRefused):
+    """A file is no map that can be shown."""
+
+    def __init__(self, reason: ArchiveReason) -> None:
+        super().__init__(reason)
+        self._why: ArchiveReason = reason
+
+    @property
+    def reason(self) -> ArchiveReason:
+        return self._why
+
+
+class NotStored(ReasonedError, LookupError):
     """There is no map or overlay with this id."""
+
+    def __init__(self, what: Literal["map", "overlay"], which: str) -> None:
+        super().__init__(NothingThere(what, which))
+
+    @property
+    def reason(self) -> Reason:
+        return carried(super().reason)
+
+
+class PartUnusable(Exception):
+    """One feature of a file cannot be drawn; the others can."""
+
+    def __init__(self, fault: GeometryFault) -> None:
+        super().__init__(fault)
+        self.fault: GeometryFault = fault

@@ -1,123 +1,28 @@
-"""What the mission machine asks for. The runner carries it out in order; the machine itself touches nothing."""
+"""What a mission asks for: its search's and its craft's wishes, each addressed, and the answer to a command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from backend.events import Event
-from backend.mission.inputs import TimerName
-from backend.spec import Place
+from backend.craft.effects import CraftEffect
+from backend.reasons import Reason
+from backend.search.effects import Record, SearchElsewhere, UpdateBelief
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
-    """Append this fact to the journal, then show it."""
+class OfCraft:
+    """A craft's effect, but for its facts and answers."""
 
-    event: Event
+    craft_id: str
+    effect: CraftEffect
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """Answer the command."""
+    """Answer the command. reason: why it was refused, None when it was accepted."""
 
     command_id: str
-    accepted: bool
-    reason: str
-    remedy: str
+    reason: Reason | None
 
 
-@dataclass(frozen=True, slots=True)
-class CancelWork:
-    """Stop the running step (take-off, flight, turn, planning) at once; its result no longer counts."""
-
-
-@dataclass(frozen=True, slots=True)
-class TakeOff:
-    altitude_relative_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class SearchElsewhere:
-    """From now on in the area that was just changed."""
-
-
-@dataclass(frozen=True, slots=True)
-class UpdateBelief:
-    """Fold all counted bearings into the belief. Survives CancelWork: it moves nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class PlanNext:
-    """Choose measurement place `place_number`, none of `avoid`."""
-
-    place_number: int
-    avoid: tuple[Place, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class FlyTo:
-    place_number: int
-    place: Place
-    altitude_amsl_m: float
-    speed_m_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Measure:
-    """Turn once on the spot and listen."""
-
-    place_number: int
-    attempt: int
-
-
-@dataclass(frozen=True, slots=True)
-class HoldVehicle:
-    pass
-
-
-@dataclass(frozen=True, slots=True)
-class ReturnHome:
-    """The autopilot's own return. `hold_first`: brake before it (abort)."""
-
-    hold_first: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Land:
-    pass
-
-
-@dataclass(frozen=True, slots=True)
-class ReleasePilotLatch:
-    pass
-
-
-@dataclass(frozen=True, slots=True)
-class StartTimer:
-    """Deliver TimerExpired(name) after so many seconds; a running timer of that name starts anew."""
-
-    name: TimerName
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class CancelTimer:
-    name: TimerName
-
-
-Flight = TakeOff | FlyTo | Measure | ReturnHome | Land
-"""Effects that move the vehicle."""
-
-Effect = (
-    Record
-    | Reply
-    | CancelWork
-    | SearchElsewhere
-    | UpdateBelief
-    | PlanNext
-    | HoldVehicle
-    | ReleasePilotLatch
-    | StartTimer
-    | CancelTimer
-    | Flight
-)
+Effect = Record | Reply | OfCraft | UpdateBelief | SearchElsewhere

@@ -1,35 +1,35 @@
-"""What a running mission holds in its hands: ports, and the two or three things that are not the specification's."""
+"""What the mission room works with: the craft there are, and where facts are kept and shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from backend.mission.ports import Journal, Publisher
-from hardware.direction_finding.antenna import AntennaPattern
-from hardware.ports import Clock, DirectionFinder, Receiver, Vehicle
+from backend.craft.equipment import CraftEquipment
+from backend.ports import Journal, Publisher
+from hardware.ports import Clock
+
+DatabaseState = Literal["ok", "slow", "lost"]
 
 
-def _ok() -> Literal["ok", "slow", "lost"]:
+def _ok() -> DatabaseState:
     return "ok"
 
 
 @dataclass(frozen=True, slots=True)
-class Equipment:
-    """Made by the wiring. watch_consoles: False where nobody is meant to watch (headless demo).
+class MissionEquipment:
+    """Made by the wiring. crafts: by id. software: version, for the record. threads: how many the planner may use."""
 
-    threads: how many the planner may use. software: version, for the record.
-    """
-
-    vehicle: Vehicle
-    receiver: Receiver
-    finder: DirectionFinder
-    pattern: AntennaPattern
+    crafts: Mapping[str, CraftEquipment]
     journal: Journal
     publisher: Publisher
     clock: Clock
     software: str
-    watch_consoles: bool = True
     threads: int = 2
-    database: Callable[[], Literal["ok", "slow", "lost"]] = _ok
+    database: Callable[[], DatabaseState] = _ok
+
+    @property
+    def first(self) -> CraftEquipment:
+        """The craft that a draft is planned for, while it names none."""
+        return next(iter(self.crafts.values()))

@@ -1,88 +1,106 @@
-"""The mission machine: transition(state, input, at) -> (state, effects). No await, no clock, no input or output.
+"""The mission machine: it hands each input to the search or to a craft, and each what the other did to it.
 
-Every input is answered in every state. The rules that hold throughout (design, section 4): hold and abort act at once
-in every phase of flight; in hold and manual nothing moves until an operator resumes, orders the return or aborts (or,
-in hold, the console-lost timer runs out); a pilot's takeover silences everything; ended missions stay ended.
+transition(state, input, at) -> (state, effects). Pure like the two machines that it binds.
 """
 
 from __future__ import annotations
 
-from typing import assert_never
+from collections.abc import Collection
+from dataclasses import dataclass, field
 
+from backend.commands import Abort, AcknowledgeAlert, ChangeArea, ExcludeBearing, ForCraft, Hold, Return, Start
+from backend.craft import machine as craft_machine
+from backend.craft.effects import CraftEffect, LeaveSearch
+from backend.craft.inputs import CraftInput, CraftOrdered, SearchChanged
 from backend.events import (
+    AreaChanged,
+    BearingExcluded,
     BearingMeasured,
     BeliefUpdated,
-    ControlTaken,
-    HoldOrdered,
-    LinkLost,
-    LinkRestored,
-    MissionEdited,
-    PlaceReached,
-    PreflightChecked,
-    ReturnOrdered,
+    CommandAccepted,
+    CommandRefused,
+    CraftSource,
+    Event,
+    MissionStarted,
     ServerRestarted,
-    TookOff,
 )
-from backend.mission import operator
-from backend.mission.effects import (
-    CancelTimer,
-    CancelWork,
-    Effect,
-    HoldVehicle,
-    Land,
-    ReturnHome,
-    StartTimer,
-    UpdateBelief,
-)
-from backend.mission.inputs import (
-    Arrived,
-    BatteryLow,
-    BatteryReported,
-    BeliefReady,
-    Commanded,
-    Edited,
-    FailsafeActs,
-    FailsafeStopped,
-    HomeReached,
-    Input,
-    Interrupted,
-    InTheAir,
-    Landed,
-    Link,
-    LinkDown,
-    LinkUp,
-    NothingToPlan,
-    NotStored,
-    PilotTookOver,
-    Planned,
-    PreflightDone,
-    Restarted,
-    SweepRefused,
-    SweepTaken,
-    TimerExpired,
-    WorkFailed,
-    WorkVetoed,
-)
-from backend.mission.state import AUTOMATIC, GROUND, HOMEWARD, TERMINAL, MissionState
-from backend.mission.step import (
-    LOCALIZED,
-    Step,
-    alert,
-    clear_alerts,
-    end,
-    finish,
-    forget_failsafe,
-    go_home,
-    go_on,
-    hold,
-    measure,
-    refuse_flight,
-    why_not_yet,
-)
+from backend.mission.effects import Effect, OfCraft, Reply
+from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
+from backend.mission.state import MissionState, evolve, newcomer
+from backend.reasons import Reason, refusals
+from backend.search import machine as search_machine
+from backend.search.effects import Record, Refuse, SearchEffect, UpdateBelief
+from backend.search.inputs import SearchInput, SearchOrdered, SearchOver
 
-LANDING_PATIENCE_S = 120.0
-UNSURE_PLACE_M = 5.0
-"""A vehicle that hovers stays within this; what it reports beyond is told."""
+FOR_ALL = (Hold, Return, Abort)
+"""Orders that name no craft are for every one."""
+
+
+@dataclass(slots=True)
+class _Transition:
+    state: MissionState
+    at_s: float
+    effects: list[Effect] = field(default_factory=list[Effect])
+    facts: list[Event] = field(default_factory=list[Event])
+
+    def record(self, event: Event) -> None:
+        self.state = evolve(self.state, event, self.at_s)
+        self.effects.append(Record(event))
+        self.facts.append(event)
+
+    def to_search(self, given: SearchInput) -> Reason | None:
+        """Why it was refused, None when it was taken."""
+        _, asked = search_machine.transition(self.state.search, given, self.at_s)
+        return self._take(asked, None)
+
+    def to_craft(self, craft_id: str, given: CraftInput) -> Reason | None:
+        craft = self.state.crafts.get(craft_id) or newcomer(self.state, craft_id)
+        _, asked = craft_machine.transition(craft, self.state.search, given, self.at_s)
+        return self._take(asked, craft_id)
+
+    def _take(self, asked: tuple[SearchEffect, ...] | tuple[CraftEffect, ...], craft_id: str | None) -> Reason | None:
+        refused = None
+        for effect in asked:
+            match effect:
+                case Record(event=event):
+                    self.record(event)
+                case Refuse(reason=reason):
+                    refused = reason
+                case LeaveSearch():
+                    self._leave(effect)
+                case _ if craft_id is not None:
+                    self.effects.append(OfCraft(craft_id, effect))  # type: ignore[arg-type]
+                case _:
+                    self.effects.append(effect)  # type: ignore[arg-type]
+        return refused
+
+    def _leave(self, leaving: LeaveSearch) -> None:
+        """The search goes on while another craft searches."""
+        if not any(craft.searching for craft in self.state.crafts.values()):
+            self.to_search(SearchOver(leaving.because, leaving.outcome))
+
+    def react(self) -> None:
+        """What the facts so far mean to the others: beliefs to fold, craft that waited for them."""
+        facts, self.facts = self.facts, []
+        if any(isinstance(fact, BearingMeasured | BearingExcluded | AreaChanged | MissionStarted) for fact in facts):
+            self.update_beliefs()
+        if any(_changes_the_search(fact) for fact in facts):
+            for craft in self.state.engaged:
+                self.to_craft(craft.craft_id, SearchChanged())
+
+    def update_beliefs(self) -> None:
+        asked = {effect.emitter_id for effect in self.effects if isinstance(effect, UpdateBelief)}
+        search, drafted = self.state.search, self.state.search.stage in ("draft", "ready")
+        for emitter in search.emitters.values():
+            stale = not emitter.belief_current and (emitter.measured or not drafted)
+            if stale and emitter.emitter_id not in asked:
+                self.effects.append(UpdateBelief(emitter.emitter_id))
+
+
+def _changes_the_search(fact: Event) -> bool:
+    """A craft's own bearing is part of what it is doing already."""
+    foreign = isinstance(fact, BearingMeasured) and not isinstance(fact.source, CraftSource)
+    return foreign or isinstance(fact, BeliefUpdated | BearingExcluded)
 
 
 def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionState, tuple[Effect, ...]]:
@@ -90,307 +108,77 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
 
     The new state is the fold of the recorded facts onto the old one.
     """
-    step = Step(state, at_s)
+    now = _Transition(state, at_s)
     match given:
         case Commanded():
-            operator.answer(step, given)
-        case Edited(spec=spec):
-            if state.phase in GROUND:
-                step.record(MissionEdited(spec=spec))
-                step.go("draft", "edited")
-        case PreflightDone():
-            _preflight(step, given)
-        case InTheAir() | Planned() | NothingToPlan() | Arrived() | SweepTaken() | SweepRefused():
-            _finished(step, given)
-        case BeliefReady():
-            _belief(step, given)
-        case WorkFailed():
-            _failed(step, given)
-        case WorkVetoed(vetoes=vetoes):
-            if state.phase in AUTOMATIC:
-                refuse_flight(step, vetoes)
-        case PilotTookOver():
-            _pilot(step, given)
-        case FailsafeActs(mode=mode):
-            if state.phase in AUTOMATIC | {"hold"} and not state.pilot_has_control:
-                step.do(CancelWork())
-                _failsafe_flies(step, f"it went into {mode} because it had not heard from here")
-                step.go("hold", "the autopilot is bringing the vehicle home")
-        case FailsafeStopped(mode=mode):
-            if state.phase == "hold" and not state.pilot_has_control:
-                text = f"the autopilot's own way home ended in {mode}, perhaps by an earlier order"
-                alert(step, "vehicle", "caution", text, "look at the vehicle, then hold or resume")
-        case LinkDown():
-            _link_down(step, given)
-        case LinkUp():
-            _link_up(step, given)
-        case BatteryLow() | BatteryReported() | HomeReached() | Landed():
-            _vehicle(step, given)
-        case TimerExpired():
-            _timer(step, given)
-        case NotStored(detail=detail):
-            if state.phase not in GROUND:
-                text = f"not everything of this mission can be stored: {detail}"
-                alert(step, "storage", "warning", text, "it is kept beside the journal's spool; the flight goes on")
-        case Interrupted(detail=detail):
-            if state.phase not in GROUND and state.phase not in TERMINAL:
-                clear_alerts(step, *(alert_id.rsplit("-", 1)[0] for alert_id in state.open_alerts))
-                end(step, "failed", "failed", f"interrupted: {detail}{why_not_yet(state)}")
-        case Restarted():
-            _restarted(step, given)
+            _command(now, given)
+        case ToCraft(craft_id=craft_id, given=to_craft):
+            if craft_id in state.crafts:
+                now.to_craft(craft_id, to_craft)
+        case ServerCameBack():
+            if state.engaged or state.search.stage == "open":
+                now.record(ServerRestarted())
+                if state.search.stage != "ended":
+                    now.update_beliefs()
         case _:
-            assert_never(given)
-    return step.state, tuple(step.effects)
+            now.to_search(given)
+    now.react()
+    return now.state, tuple(now.effects)
 
 
-def _preflight(step: Step, given: PreflightDone) -> None:
-    passed = all(check.ok or not check.blocking for check in given.checks)
-    if step.state.phase in TERMINAL:
+def _command(now: _Transition, given: Commanded) -> None:
+    """Carry out or refuse. A command id that was answered before gets the same answer and does nothing."""
+    before = now.state.answered.get(given.command_id)
+    if before is not None:
+        now.effects.append(Reply(given.command_id, before.reason))
         return
-    step.record(PreflightChecked(passed=passed, checks=list(given.checks)))
-    if step.state.phase in GROUND:
-        step.go("ready" if passed else "draft", "preflight passed" if passed else "preflight failed")
-
-
-def _finished(step: Step, given: InTheAir | Planned | NothingToPlan | Arrived | SweepTaken | SweepRefused) -> None:
-    """A step's result counts only in the phase that asked for it."""
-    state = step.state
-    match given:
-        case InTheAir() if state.phase == "taking_off":
-            step.record(TookOff(place=given.place, altitude_relative_m=given.altitude_relative_m))
-            go_on(step, "at altitude")
-        case Planned(choice=choice, vetoes=vetoes) if state.phase == "planning":
-            if vetoes:
-                refuse_flight(step, vetoes)
-            else:
-                step.record(choice)
-                go_on(step, f"to place {choice.place_number}")
-        case NothingToPlan(reason=reason) if state.phase == "planning":
-            go_home(step, f"not localized: {reason}{why_not_yet(state)}")
-        case Arrived() if state.phase == "flying":
-            step.record(
-                PlaceReached(
-                    place_number=state.place_number,
-                    place=given.place,
-                    distance_m=given.distance_m,
-                    flight_time_s=given.flight_time_s,
-                )
-            )
-            measure(step, "place reached")
-        case SweepTaken(bearing=bearing) if state.phase == "measuring":
-            step.record(bearing)
-            _doubt_place(step, bearing)
-            go_on(step, "bearing taken")
-        case SweepRefused(sweep=sweep) if state.phase == "measuring":
-            step.record(sweep)
-            if step.state.chosen is None:
-                go_on(step, f"no usable bearing here: {sweep.reason}")
-            else:
-                measure(step, f"taken again: {sweep.reason}")
-        case _:
-            return
-
-
-def _doubt_place(step: Step, bearing: BearingMeasured) -> None:
-    if bearing.drift_m > UNSURE_PLACE_M:
-        text = f"the place of bearing {bearing.place_number} is unsure by {bearing.drift_m:.0f} m; it counts for less"
-        alert(step, "place", "caution", text, "its reported position jumped, or wind moved it: look at GPS and wind")
+    refused = _carry_out(now, given)
+    kind = given.command.kind
+    if refused is None:
+        now.record(CommandAccepted(command_id=given.command_id, command=kind, by=given.by))
     else:
-        clear_alerts(step, "place")
+        now.record(CommandRefused(command_id=given.command_id, command=kind, by=given.by, reason=refused))
+    now.effects.append(Reply(given.command_id, refused))
 
 
-def _doubt_heading(step: Step, belief: BeliefUpdated) -> None:
-    offset_deg, std_error_deg = belief.heading_offset_deg, belief.heading_offset_std_error_deg
-    if offset_deg is not None and std_error_deg is not None:
-        text = (
-            f"the bearings of this flight disagree by a common offset of about {offset_deg:+.0f} "
-            f"± {std_error_deg:.0f} degrees: the place found may be wrong"
-        )
-        alert(step, "heading", "caution", text, "check compass and antenna mounting; one wrong place looks alike")
-    else:
-        clear_alerts(step, "heading")
-
-
-def _belief(step: Step, given: BeliefReady) -> None:
-    state = step.state
-    if given.bearing_ids != state.bearing_ids or state.belief_current:
-        return
-    fact: BeliefUpdated = given.fact
-    step.record(fact)
-    _doubt_heading(step, fact)
-    if state.phase == "planning":
-        go_on(step, "belief updated")
-    elif fact.localized and state.phase in ("flying", "measuring"):
-        go_home(step, LOCALIZED)
-
-
-def _failed(step: Step, given: WorkFailed) -> None:
-    phase, way_home = step.state.phase, given.step in ("return", "land")
-    if phase in GROUND or step.state.pilot_has_control:
-        return
-    unheard = "vehicle" in step.state.links_down and (way_home or given.step == "hold")
-    remedy = "it is ordered again when the vehicle is heard" if unheard else given.remedy
-    alert(step, "failure", "warning", given.detail, remedy)
-    if phase == "taking_off" and given.step == "take_off" and given.in_air is False:
-        step.do(CancelWork())
-        end(step, "failed", "failed", given.detail)
-    elif phase in AUTOMATIC or (phase in HOMEWARD and way_home and not unheard):
-        hold(step, given.detail)
-
-
-def _pilot(step: Step, given: PilotTookOver) -> None:
-    state = step.state
-    if state.phase in GROUND or state.pilot_has_control:
-        return
-    step.do(CancelWork())
-    for name in ("console_hold", "console_return", "landing"):
-        step.do(CancelTimer(name))
-    step.record(ControlTaken(mode=given.mode, detail=given.detail))
-    if state.phase not in TERMINAL:
-        forget_failsafe(step)
-        if given.perhaps_failsafe:
-            text = f"the pilot or the autopilot's own failsafe has control: {given.detail}"
-        else:
-            text = f"the pilot has control: {given.detail}"
-        alert(step, "pilot", "caution", text, "resume when he has given it back")
-        step.go("manual", given.detail)
-
-
-def _concerned(state: MissionState, link: Link) -> bool:
-    """An aborted mission's vehicle still flies home."""
-    return state.phase not in GROUND | TERMINAL or (state.phase == "aborted" and link == "vehicle")
-
-
-def _link_down(step: Step, given: LinkDown) -> None:
-    state = step.state
-    if not _concerned(state, given.link) or given.link in state.links_down:
-        return
-    step.record(LinkLost(link=given.link, detail=given.detail))
-    match given.link:
-        case "vehicle":
-            text = f"vehicle link lost: {given.detail}"
-            alert(step, "vehicle", "warning", text, "its failsafe acts; restore the link")
-            if state.phase in AUTOMATIC:
-                step.do(CancelWork())
-                step.go("hold", "vehicle link lost")
-        case "receiver":
-            alert(step, "receiver", "caution", f"receiver: {given.detail}", "check the receiver, then resume")
-            if state.phase == "measuring":
-                hold(step, f"receiver: {given.detail}")
-        case "payload":
-            alert(step, "payload", "caution", f"payload link lost: {given.detail}", "check the companion's link")
-        case "console":
-            step.do(StartTimer("console_hold", state.mission.timers.console_lost_hold_s))
-            step.do(StartTimer("console_return", state.mission.timers.console_lost_return_s))
+def _carry_out(now: _Transition, given: Commanded) -> Reason | None:
+    command, state = given.command, now.state
+    match command:
+        case AcknowledgeAlert(alert_id=alert_id) if alert_id not in open_alert_ids(state):
+            return refusals.NoSuchAlert()
+        case ChangeArea() | ExcludeBearing() | AcknowledgeAlert():
+            held = all(craft.phase == "hold" and not craft.taken_over for craft in state.engaged)
+            return now.to_search(SearchOrdered(given.by, command, given.search.objections, held))
         case _:
-            assert_never(given.link)
+            return _order(now, given, command)
 
 
-def _link_up(step: Step, given: LinkUp) -> None:
-    state = step.state
-    if not _concerned(state, given.link) or given.link not in state.links_down:
-        return
-    step.record(LinkRestored(link=given.link, outage_s=given.outage_s))
-    clear_alerts(step, given.link)
-    if given.link == "console":
-        step.do(CancelTimer("console_hold"))
-        step.do(CancelTimer("console_return"))
-    elif given.link == "vehicle" and not state.pilot_has_control:
-        _heard_again(step, given.going_home)
+def _order(now: _Transition, given: Commanded, command: ForCraft) -> Reason | None:
+    """Refused only when no craft that was meant takes it."""
+    wanted = crafts_meant(now.state, command, given.contexts if isinstance(command, Start) else ())
+    if not wanted:
+        return refusals.NoSuchCraft(command.craft_id or "")
+    refused: list[Reason | None] = []
+    for craft_id in wanted:
+        context = given.contexts.get(craft_id, Context())
+        ordered = CraftOrdered(given.by, command, context.objections, context.start, context.on_ground)
+        refused.append(now.to_craft(craft_id, ordered))
+    return None if None in refused else refused[0]
 
 
-def _heard_again(step: Step, going_home: bool) -> None:
-    """What was ordered last is ordered again: the vehicle may not have heard it."""
-    state = step.state
-    if state.phase in HOMEWARD or (state.phase == "aborted" and state.homebound):
-        clear_alerts(step, "failure")
-        step.do(Land() if state.phase == "landing" else ReturnHome())
-    elif state.phase == "hold" and going_home:
-        _failsafe_flies(step, "its failsafe acted while the link was lost")
-    elif state.phase in ("hold", "aborted") and not going_home:
-        step.do(HoldVehicle())
+def crafts_meant(state: MissionState, command: ForCraft, joining: Collection[str] = ()) -> tuple[str, ...]:
+    """The ids of the craft that a command is for; none when it names one that the mission has not, or none of several.
+    joining: craft that may be started for it."""
+    if command.craft_id is not None:
+        known_or_joins = command.craft_id in state.crafts or command.craft_id in joining
+        return (command.craft_id,) if known_or_joins else ()
+    engaged = tuple(craft.craft_id for craft in state.engaged)
+    if isinstance(command, FOR_ALL) and engaged:
+        return engaged
+    known = engaged or tuple(state.crafts)
+    return known if len(known) == 1 else ()
 
 
-def _vehicle(step: Step, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
-    phase = step.state.phase
-    match given:
-        case BatteryLow(detail=detail) if phase in AUTOMATIC or phase in ("hold", "manual"):
-            alert(step, "battery", "warning", detail, "return home now")
-            if phase in AUTOMATIC:
-                step.record(ReturnOrdered(by="mission", reason=detail))
-                go_home(step, detail)
-        case BatteryReported():
-            clear_alerts(step, "battery")
-        case HomeReached() if phase == "returning":
-            step.go("landing", "above home")
-            step.do(StartTimer("landing", LANDING_PATIENCE_S))
-        case Landed() if phase in HOMEWARD:
-            finish(step, step.state.return_reason)
-        case Landed() if phase == "manual":
-            finish(step, "the vehicle landed while the pilot or its own failsafe had control")
-        case Landed() if phase == "hold" or (phase in AUTOMATIC and phase != "taking_off"):
-            _on_the_ground(step)
-        case _:
-            return
-
-
-def _on_the_ground(step: Step) -> None:
-    """The mission did not bring it down (a failsafe did, or a return from before a restart). What it found is kept."""
-    if step.state.localized:
-        step.do(CancelWork())
-        finish(step, "the vehicle landed")
-        return
-    text = "the vehicle landed while the mission was held"
-    if step.state.phase in AUTOMATIC:
-        text = "the vehicle landed without being told to"
-        step.do(CancelWork())
-        step.go("hold", text)
-    if not any(alert_id.startswith("ground-") for alert_id in step.state.open_alerts):
-        forget_failsafe(step)
-        alert(step, "ground", "warning", text, "resume to take off again, abort to end the mission")
-
-
-def _timer(step: Step, given: TimerExpired) -> None:
-    phase = step.state.phase
-    match given.name:
-        case "console_hold" if phase in AUTOMATIC:
-            step.record(HoldOrdered(by="mission", reason="no console is connected"))
-            alert(step, "console", "warning", "no console is connected", "connect a console and resume")
-            hold(step, "no console is connected")
-        case "console_return" if phase in AUTOMATIC or phase == "hold":
-            step.record(ReturnOrdered(by="mission", reason="no console came back"))
-            go_home(step, "no console came back")
-        case "landing" if phase == "landing":
-            step.do(Land())
-        case _:
-            return
-
-
-def _restarted(step: Step, given: Restarted) -> None:
-    """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
-    state = step.state
-    if state.phase in GROUND or state.phase in TERMINAL:
-        return
-    step.record(ServerRestarted(detail=given.detail))
-    clear_alerts(step, "vehicle", "receiver", "console", "payload")
-    if state.pilot_has_control:
-        step.do(UpdateBelief())
-        return
-    if given.pilot:
-        step.record(ControlTaken(mode="unknown", detail="the pilot had control when the server came back"))
-        step.go("manual", "the pilot had control when the server came back")
-    elif given.going_home:
-        if state.phase in HOMEWARD:
-            _failsafe_flies(step, "the return was ordered before the server was away")
-        else:
-            _failsafe_flies(step, "its failsafe acted while the server was away")
-        step.go("hold", "the server restarted; the autopilot is bringing the vehicle home")
-    else:
-        step.do(HoldVehicle())
-        step.go("hold", "the server restarted")
-    step.do(UpdateBelief())
-
-
-def _failsafe_flies(step: Step, why: str) -> None:
-    remedy = "resume to go on searching, or let it land"
-    alert(step, "vehicle", "caution", f"the autopilot is on its own way home: {why}", remedy)
+def open_alert_ids(state: MissionState) -> frozenset[str]:
+    owners = (state.search, *state.crafts.values())
+    return frozenset(raised.alert_id for owner in owners for raised in owner.open_alerts)

@@ -9,14 +9,15 @@ import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Sequence
 
-from backend.events import Event
-from backend.mission.ports import FactRefused, Journal, JournalUnavailable, Publisher
+from backend.events import Event, Recorded
+from backend.ports import FactRefused, Journal, JournalUnavailable, Publisher
 
 log = logging.getLogger("crossfix.mission")
 
 RETRY_S = 0.5
 
 Work = Callable[[], Awaitable[None]]
+OnShown = Callable[[Sequence[Recorded]], None]
 
 
 class Outbox:
@@ -41,27 +42,32 @@ class Outbox:
         self.failing = False
         self.refused = 0
 
-    def record(self, events: Sequence[Event]) -> None:
-        """Append together, then show. When the journal refuses them together, each by itself."""
+    def record(self, events: Sequence[Event], on_shown: OnShown | None = None) -> None:
+        """Append together, then show. When the journal refuses them together, each by itself.
+
+        on_shown: called with what was appended, right after it was shown: what belongs to an event goes out with it.
+        """
 
         async def append() -> None:
             try:
-                await self._append(events)
+                await self._append(events, on_shown)
             except FactRefused:
                 for event in events:
-                    await self._append_or_keep_aside(event)
+                    await self._append_or_keep_aside(event, on_shown)
 
         if events:
             self.after(append)
 
-    async def _append(self, events: Sequence[Event]) -> None:
+    async def _append(self, events: Sequence[Event], on_shown: OnShown | None) -> None:
         recorded = await self._journal.append(self._mission_id, events)
         self.last_seq = recorded[-1].seq
         self._publisher.events(recorded)
+        if on_shown is not None:
+            on_shown(recorded)
 
-    async def _append_or_keep_aside(self, event: Event) -> None:
+    async def _append_or_keep_aside(self, event: Event, on_shown: OnShown | None) -> None:
         try:
-            await self._append([event])
+            await self._append([event], on_shown)
         except FactRefused as error:
             await self._journal.keep_aside(self._mission_id, [event], str(error))
             self._refuse(f"{event.kind}: {error}")

@@ -69,6 +69,8 @@ def belief_surface(belief: GridBelief, height_m: float) -> Surface | None:
     """
     density, block = coarsened(belief.density)
     share = np.pad(density / density.max(), 1)
+    ny: int
+    nx: int
     ny, nx = share.shape
     cell = belief.h * block
     x = belief.x0 + (np.arange(nx) - 0.5) * cell

@@ -9,19 +9,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from backend.mission.errors import MissionInputError
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
 from backend.scene.colours import PALETTES
 from backend.scene.composition import compose, story_belief
 from backend.scene.content import Content, Story, VehicleMark, content, flown_path, read_story, vehicle_mark
 from backend.scene.flight import moving
 from backend.scene.items import Scene
 from backend.scene.sources import SceneSource
-from backend.scene.words import in_language
+from backend.search.errors import MissionInputError
 from backend.wire.scene import SceneRequest
 from planner.belief.grid import GridBelief
 
 BELIEFS_KEPT = 32
+
+BeliefKey = tuple[str, str, int, tuple[str, ...]]
+"""Mission, emitter, specification, bearings."""
+
 MOVING_LAYERS = frozenset({"path", "vehicle"})
 
 
@@ -42,10 +45,10 @@ class Composer:
 
     def __init__(self, source: SceneSource) -> None:
         self._source = source
-        self._beliefs: OrderedDict[tuple[str, int, tuple[str, ...]], GridBelief | None] = OrderedDict()
+        self._beliefs: OrderedDict[BeliefKey, GridBelief | None] = OrderedDict()
 
     async def take(self, mission_id: str, request: SceneRequest) -> Take | None:
-        """The whole scene anew. None when there is nothing to show yet."""
+        """The whole scene, composed again. None when there is nothing to show yet."""
         recorded = await self._source.read(mission_id)
         track = await self._source.track(mission_id)
         story = await asyncio.to_thread(read_story, recorded, request.seq)
@@ -64,8 +67,8 @@ class Composer:
             return None
         return TrackPoint(
             at_s=self._source.now_s(),
-            lat_deg=heard.position.lat_deg,
-            lon_deg=heard.position.lon_deg,
+            lat_deg=heard.position.lat,
+            lon_deg=heard.position.lon,
             altitude_amsl_m=float("nan") if heard.altitude_amsl_m is None else heard.altitude_amsl_m,
             altitude_relative_m=heard.altitude_relative_m,
             heading_deg=float("nan") if heard.heading_deg is None else heard.heading_deg,
@@ -81,15 +84,15 @@ class Composer:
         path = _longer(take.content.path, mark)
         shown = replace(take.content, path=path, vehicle=mark)
         palette = PALETTES[take.request.theme]
-        moved = in_language(moving(shown, palette, take.scene.extent_m), take.request.language)
-        fresh = [item for item in moved if item.layer not in take.request.hidden]
+        fresh = [item for item in moving(shown, palette, take.scene.extent_m) if item.layer not in take.request.hidden]
         names = {item.name for item in fresh}
         still = [item for item in take.scene.items if item.layer not in MOVING_LAYERS and item.name not in names]
         return replace(take, content=shown, scene=replace(take.scene, items=(*still, *fresh)))
 
     async def _belief(self, story: Story) -> GridBelief | None:
         """None when the specification makes no sense (a draft far from any home)."""
-        key = (story.mission_id, hash(story.state.mission.model_dump_json()), story.state.bearing_ids)
+        emitter, spec = story.emitter, story.state.search.mission
+        key = (story.mission_id, emitter.emitter_id, hash(spec.model_dump_json()), emitter.bearing_ids)
         if key not in self._beliefs:
             self._beliefs[key] = await asyncio.to_thread(_belief_or_none, story)
             while len(self._beliefs) > BELIEFS_KEPT:
@@ -115,7 +118,7 @@ def _compose(
     shown = content(story, track, now)
     if now is not None:
         shown = replace(shown, path=flown_path(story.frame, track))
-    return shown, compose(shown, belief, request.hidden, request.belief_height_m, request.theme, request.language)
+    return shown, compose(shown, belief, request.hidden, request.belief_height_m, request.theme)
 
 
 def _longer(path: np.ndarray, mark: VehicleMark) -> np.ndarray:

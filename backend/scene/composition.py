@@ -7,8 +7,7 @@ from collections.abc import Collection, Sequence
 import shapely
 
 from backend.events import Recorded
-from backend.mission.localization import localization
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
 from backend.scene.belief_surface import belief_surface, peak_height_m
 from backend.scene.colours import PALETTES, Theme
 from backend.scene.content import Content, Story, content, read_story
@@ -16,9 +15,8 @@ from backend.scene.findings import findings
 from backend.scene.flight import flight
 from backend.scene.items import Item, Scene
 from backend.scene.surroundings import surroundings
-from backend.scene.words import in_language
-from backend.spec import Place
-from backend.wire.scene import SceneLanguage, SceneLayer
+from backend.search.localization import localization
+from backend.wire.scene import SceneLayer
 from planner.belief.grid import GridBelief
 
 
@@ -35,8 +33,8 @@ def scene_items(
 ) -> Scene | None:
     """The scene after event `upto_seq` (None: the last). None when there is nothing drafted to show.
 
-    recorded: all events of one mission in order. belief: the one of that moment, None: not drawn. track: the flown path
-    in time order. vehicle: where it is now; None: where the track ends.
+    recorded: all events of one mission in order. belief: the one of that moment about `Story.emitter`, None: not drawn.
+    track: the flown path in time order. vehicle: where it is now; None: where the track ends.
     """
     story = read_story(recorded, upto_seq)
     if story is None:
@@ -45,13 +43,13 @@ def scene_items(
 
 
 def story_belief(story: Story) -> GridBelief:
-    """The belief of a story, rebuilt from its bearings exactly as the flight computed it; the prior before any.
+    """The belief about the emitter that the story shows, rebuilt from its bearings exactly as the flight computed it.
 
-    Raises MissionInputError when the specification makes no sense. Heavy: call it off the event loop.
+    Before any bearing it is the prior. Raises MissionInputError when the specification makes no sense. Heavy: call it
+    off the event loop.
     """
-    state, origin = story.state, story.frame.origin
-    task = localization(state.mission, Place(lat=origin.lat_deg, lon=origin.lon_deg), state.home_amsl_m)
-    return task.planning_belief(task.planner_bearings(state.bearings))
+    task = localization(story.state.search.mission, story.frame.origin, story.emitter.emitter_id)
+    return task.planning_belief(task.planner_bearings(story.emitter.bearings))
 
 
 def compose(
@@ -60,7 +58,6 @@ def compose(
     hidden: Collection[SceneLayer] = (),
     belief_height_m: float | None = None,
     theme: Theme = "dark",
-    language: SceneLanguage = "en",
 ) -> Scene:
     palette = PALETTES[theme]
     west, south, east, north = shapely.union_all([shown.area, shown.fence]).bounds
@@ -78,7 +75,7 @@ def compose(
     unwanted = set(hidden)
     return Scene(
         mission_id=shown.mission_id,
-        items=tuple(in_language((item for item in items if item.layer not in unwanted), language)),
+        items=tuple(item for item in items if item.layer not in unwanted),
         centre=(*middle, 0.0),
         extent_m=extent,
         background=palette.sky,

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from backend.events import BearingMeasured, PlanChosen, Recorded, SweepRejected
-from backend.mission import area as areas
-from backend.mission.errors import MissionInputError
-from backend.mission.ports import TrackPoint
 from backend.mission.state import MissionState, evolve
-from backend.spec import Place
+from backend.ports import TrackPoint
+from backend.search import area as areas
+from backend.search.errors import MissionInputError
+from backend.search.state import EmitterState
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +64,10 @@ class NextPlace:
 
 @dataclass(frozen=True, slots=True)
 class EstimateMark:
+    """name: of the emitter, empty when it is the only one."""
+
+    emitter_id: str
+    name: str
     x: float
     y: float
     expected_rmse_m: float
@@ -83,8 +87,8 @@ class VehicleMark:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """home: None before the start. path: (n, 3), in time order. next_place: where it flies or measures now, None when
-    the mission is over or the place is not chosen yet. seq: the last event that is in here."""
+    """home: None before the start. path: (n, 3), in time order. next_places: where the craft fly or measure now;
+    none when the mission is over or no place is chosen yet. seq: the last event that is in here."""
 
     mission_id: str
     seq: int
@@ -96,8 +100,8 @@ class Content:
     home: tuple[float, float] | None
     sweeps: tuple[SweepMark, ...]
     candidates: tuple[CandidateMark, ...]
-    next_place: NextPlace | None
-    estimate: EstimateMark | None
+    next_places: tuple[NextPlace, ...]
+    estimates: tuple[EstimateMark, ...]
     path: NDArray[np.float64]
     vehicle: VehicleMark | None
 
@@ -114,10 +118,17 @@ class Story:
     rejected: tuple[SweepRejected, ...]
     plan: PlanChosen | None
 
+    @property
+    def emitter(self) -> EmitterState:
+        """The one whose belief is shown: the first that is not localized, else the first."""
+        search = self.state.search
+        return next(iter(search.wanted or search.emitters.values()))
+
 
 def read_story(recorded: Sequence[Recorded], upto_seq: int | None = None) -> Story | None:
     """The mission after event `upto_seq` (None: the last). None when nothing is drafted by then."""
-    state, rejected, plan = MissionState(), [], None
+    state, plan = MissionState(), None
+    rejected: list[SweepRejected] = []
     seq, at_s = 0, 0.0
     for record in recorded:
         if upto_seq is not None and record.seq > upto_seq:
@@ -128,24 +139,24 @@ def read_story(recorded: Sequence[Recorded], upto_seq: int | None = None) -> Sto
             rejected.append(record.event)
         elif isinstance(record.event, PlanChosen):
             plan = record.event
-    if state.spec is None:
+    if state.search.spec is None:
         return None
     return Story(recorded[0].mission_id, seq, at_s, state, local_frame(state), tuple(rejected), plan)
 
 
 def local_frame(state: MissionState) -> LocalFrame:
     """Around the home; before the start around the middle of the area."""
-    if state.home is not None:
-        return LocalFrame(GeoPoint(state.home.lat, state.home.lon))
-    return LocalFrame(areas.centre_of(state.mission.area))
+    if state.search.home is not None:
+        return LocalFrame(state.search.home)
+    return LocalFrame(areas.centre_of(state.search.mission.area))
 
 
 def content(story: Story, track: Sequence[TrackPoint], vehicle: TrackPoint | None) -> Content:
     """`track`: the flown path; points after the story's last event are left out. `vehicle`: where it is now; None:
     where the path ends."""
     state, frame = story.state, story.frame
-    mission = state.mission
-    target = areas.area_geometry(mission.area, frame, "area", "the area")
+    mission = state.search.mission
+    target = areas.area_geometry(mission.area, frame, "area", "area")
     try:
         fence = areas.fence(mission, target, frame)
         no_fly = areas.no_fly(mission, frame)
@@ -153,7 +164,7 @@ def content(story: Story, track: Sequence[TrackPoint], vehicle: TrackPoint | Non
         fence, no_fly = target, ()
     path = flown_path(frame, [point for point in track if point.at_s <= story.at_s])
     now = vehicle or next((point for point in reversed(track) if point.at_s <= story.at_s), None)
-    over = state.outcome is not None
+    over = state.search.outcome is not None
     return Content(
         mission_id=story.mission_id,
         seq=story.seq,
@@ -162,11 +173,11 @@ def content(story: Story, track: Sequence[TrackPoint], vehicle: TrackPoint | Non
         no_fly=no_fly,
         flight_altitude_m=mission.flight.altitude_relative_m,
         highest_m=mission.flight.maximum_altitude_relative_m,
-        home=None if state.home is None else (0.0, 0.0),
+        home=None if state.search.home is None else (0.0, 0.0),
         sweeps=_sweeps(story),
         candidates=() if over else _candidates(story),
-        next_place=None if over else _next_place(story),
-        estimate=_estimate(story),
+        next_places=() if over else _next_places(story),
+        estimates=_estimates(story),
         path=path,
         vehicle=None if now is None else vehicle_mark(frame, now),
     )
@@ -176,9 +187,10 @@ def flown_path(frame: LocalFrame, track: Sequence[TrackPoint]) -> NDArray[np.flo
     """(n, 3) m; z is the height above the home. Points with an unknown number are left out."""
     if not track:
         return np.empty((0, 3))
-    lat, lon, height = np.array([(point.lat_deg, point.lon_deg, point.altitude_relative_m) for point in track], float).T
+    flown = np.array([(point.lat_deg, point.lon_deg, point.altitude_relative_m) for point in track], np.float64)
+    lat, lon, height = flown[:, 0], flown[:, 1], flown[:, 2]
     origin = frame.origin
-    east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, origin.lat_deg, origin.lon_deg, 0.0)
+    east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, origin.lat, origin.lon, 0.0)
     path = np.column_stack((east, north, height))
     return path[np.isfinite(path).all(axis=1)]
 
@@ -194,19 +206,19 @@ def vehicle_mark(frame: LocalFrame, point: TrackPoint) -> VehicleMark | None:
 
 
 def _xy(frame: LocalFrame, place: Place) -> tuple[float, float]:
-    return frame.to_enu(GeoPoint(place.lat, place.lon))
+    return frame.to_enu(place)
 
 
 def _sweeps(story: Story) -> tuple[SweepMark, ...]:
     """Rejected ones first, then the bearings, each in the order they were taken."""
     state = story.state
-    height = state.mission.flight.altitude_relative_m
-    marks = []
+    height = state.search.mission.flight.altitude_relative_m
+    marks: list[SweepMark] = []
     for event in story.rejected:
         x, y = _xy(story.frame, event.place)
         power = _power(event.binned_db)
         marks.append(SweepMark(event.place_number, x, y, height, None, 0.0, event.quality, False, (), power))
-    return (*marks, *(_bearing(story, event) for event in state.measured))
+    return (*marks, *(_bearing(story, event) for event in state.search.measured))
 
 
 def _bearing(story: Story, event: BearingMeasured) -> SweepMark:
@@ -215,11 +227,11 @@ def _bearing(story: Story, event: BearingMeasured) -> SweepMark:
         place_number=event.place_number,
         x=x,
         y=y,
-        z=max(0.0, event.altitude_amsl_m - story.state.home_amsl_m),
+        z=max(0.0, event.altitude_amsl_m - story.state.search.home_amsl_m),
         bearing_deg=event.bearing_deg,
         sigma_deg=event.sigma_deg,
         quality=event.quality,
-        counted=event.bearing_id not in story.state.excluded,
+        counted=event.bearing_id not in story.state.search.emitters[event.emitter_id].excluded,
         peaks=tuple((peak.bearing_deg, peak.weight) for peak in event.peaks),
         power_db=_power(event.binned_db),
     )
@@ -230,26 +242,35 @@ def _power(binned_db: Sequence[float | None]) -> NDArray[np.float64]:
 
 
 def _candidates(story: Story) -> tuple[CandidateMark, ...]:
-    marks = []
+    marks: list[CandidateMark] = []
     for fact in story.plan.candidates if story.plan else ():
-        x, y = story.frame.to_enu(GeoPoint(fact.lat, fact.lon))
+        x, y = story.frame.to_enu(Place(fact.lat, fact.lon))
         marks.append(CandidateMark(x, y, fact.value_s, fact.dropped_in_round))
     return tuple(marks)
 
 
-def _next_place(story: Story) -> NextPlace | None:
-    chosen = story.state.chosen
-    if chosen is None:
-        return None
-    x, y = _xy(story.frame, chosen.place)
-    return NextPlace(chosen.place_number, x, y, chosen.expected_time_s, chosen.source == "operator")
+def _next_places(story: Story) -> tuple[NextPlace, ...]:
+    marks: list[NextPlace] = []
+    for craft in story.state.crafts.values():
+        if (chosen := craft.chosen) is not None:
+            x, y = _xy(story.frame, chosen.place)
+            marks.append(
+                NextPlace(chosen.place_number, x, y, chosen.expected_time_s, by_operator=chosen.source == "operator")
+            )
+    return tuple(marks)
 
 
-def _estimate(story: Story) -> EstimateMark | None:
-    belief = story.state.belief
-    if belief is None or belief.estimate is None:
-        return None
-    found = belief.estimate
-    x, y = story.frame.to_enu(GeoPoint(found.lat, found.lon))
-    region = areas.area_geometry(found.c95, story.frame, "c95", "the confidence region")
-    return EstimateMark(x, y, found.expected_rmse_m, region, belief.localized)
+def _estimates(story: Story) -> tuple[EstimateMark, ...]:
+    """Of every emitter of which there is one."""
+    search = story.state.search
+    marks: list[EstimateMark] = []
+    for emitter in search.emitters.values():
+        if emitter.belief is None or (found := emitter.belief.estimate) is None:
+            continue
+        x, y = story.frame.to_enu(Place(found.lat, found.lon))
+        region = areas.area_geometry(found.c95, story.frame, "c95", "confidence_region")
+        name = search.mission.emitter(emitter.emitter_id).label if len(search.emitters) > 1 else ""
+        marks.append(
+            EstimateMark(emitter.emitter_id, name, x, y, found.expected_rmse_m, region, emitter.belief.localized)
+        )
+    return tuple(marks)

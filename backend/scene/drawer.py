@@ -13,7 +13,7 @@ from backend.scene.controls import add_controls
 from backend.scene.display import bytes_for, light_for
 from backend.scene.glb import glb
 from backend.scene.items import Item, Label, Lines, Scene, Surface, same, same_but_moved
-from backend.wire.scene import SceneLanguage, SceneLayer
+from backend.wire.scene import SceneLayer
 
 CAMERA_FROM, ABOVE, AIM = (0.42, -1.0, 0.72), (0.0, -0.02, 1.6), (0.0, 0.0, 0.04)
 """In extents from the middle: where the camera first stands (south-east and above), straight above, where it looks."""
@@ -41,16 +41,16 @@ class Window(Protocol):
 class Drawer:
     """One viewer's window. May be used by several threads, one at a time gets through."""
 
-    def __init__(self, window: Window, language: SceneLanguage = "en") -> None:
+    def __init__(self, window: Window) -> None:
         self._window = window
         self._drawn: dict[str, tuple[Item, Any]] = {}
         self._hidden: frozenset[SceneLayer] = frozenset()
         self._scene: Scene | None = None
         self._lock = threading.RLock()
-        add_controls(window.gui, self.hide, self.look, language)
+        add_controls(window.gui, self.hide, self.look)
 
     def draw(self, scene: Scene) -> int:
-        """Make the window show the scene; how many items were sent anew."""
+        """Make the window show the scene; how many items were sent again."""
         sent = 0
         with self._lock, self._window.atomic():
             self._set_up(scene)

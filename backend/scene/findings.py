@@ -33,9 +33,9 @@ def findings(content: Content, palette: Palette, extent_m: float, surface_top_m:
     for sweep in labelled.values():
         z = sweep.z + 0.02 * extent_m
         yield Label(f"places/{sweep.place_number}", "labels", str(sweep.place_number), (sweep.x, sweep.y, z))
-    if content.estimate is not None:
-        yield from _confidence(content.estimate.c95, palette, extent_m)
-        yield from _estimate(content.estimate, palette, extent_m, surface_top_m)
+    for mark in content.estimates:
+        yield from _confidence(mark, palette, extent_m)
+        yield from _estimate(mark, palette, extent_m, surface_top_m)
 
 
 def _rose(number: int, sweep: SweepMark, age: int, palette: Palette, extent_m: float) -> Iterator[Item]:
@@ -104,26 +104,27 @@ def _reach(sweep: SweepMark, area: BaseGeometry, extent_m: float) -> float:
     return float(np.linalg.norm(shapely.get_coordinates(crossing) - foot, axis=1).max())
 
 
-def _confidence(c95: BaseGeometry, palette: Palette, extent_m: float) -> Iterator[Item]:
+def _confidence(mark: EstimateMark, palette: Palette, extent_m: float) -> Iterator[Item]:
     """The smallest region with 95 % of the belief, as a low wall."""
-    top = 0.025 * extent_m
-    yield one_line("c95/foot", "c95", outline(c95, 0.4), palette.ink, 1.5)
-    yield one_line("c95/top", "c95", outline(c95, top), palette.ink, 2.5)
-    for number, ring in enumerate(rings(c95)):
+    top, name = 0.025 * extent_m, f"c95/{mark.emitter_id}"
+    yield one_line(f"{name}/foot", "c95", outline(mark.c95, 0.4), palette.ink, 1.5)
+    yield one_line(f"{name}/top", "c95", outline(mark.c95, top), palette.ink, 2.5)
+    for number, ring in enumerate(rings(mark.c95)):
         vertices, faces = wall(ring, 0.0, top)
-        yield Surface(f"c95/wall/{number}", "c95", vertices, faces, flat(palette.ink, 0.22, len(vertices)))
+        yield Surface(f"{name}/wall/{number}", "c95", vertices, faces, flat(palette.ink, 0.22, len(vertices)))
 
 
 def _estimate(mark: EstimateMark, palette: Palette, extent_m: float, surface_top_m: float) -> Iterator[Item]:
     """A pin that rises above the belief, with a circle of the expected error around its foot."""
-    top = surface_top_m + 0.07 * extent_m
+    top, name = surface_top_m + 0.07 * extent_m, f"estimate/{mark.emitter_id}"
     pin = segments([(mark.x, mark.y, 0.0), (mark.x, mark.y, top)])
-    yield one_line("estimate/pin", "estimate", pin, palette.ink, 2.5)
+    yield one_line(f"{name}/pin", "estimate", pin, palette.ink, 2.5)
     vertices, faces = ball(0.012 * extent_m)
     colour = palette.accent if mark.localized else palette.ink
     head = (mark.x, mark.y, top)
-    yield Surface("estimate/head", "estimate", vertices, faces, flat(colour, 1.0, len(vertices)), position=head)
+    yield Surface(f"{name}/head", "estimate", vertices, faces, flat(colour, 1.0, len(vertices)), position=head)
     ring = segments(circle(mark.x, mark.y, 0.5, mark.expected_rmse_m), closed=True)
-    yield one_line("estimate/error", "estimate", ring, colour, 2.5)
-    words = f"{'localized' if mark.localized else 'not yet'}  ± {mark.expected_rmse_m:.1f} m"
-    yield Label("estimate/label", "labels", words, (mark.x, mark.y, top + 0.02 * extent_m), size=1.15)
+    yield one_line(f"{name}/error", "estimate", ring, colour, 2.5)
+    state = "localized" if mark.localized else "not yet"
+    words = f"{mark.name}  {state}  ± {mark.expected_rmse_m:.1f} m".lstrip()
+    yield Label(f"{name}/label", "labels", words, (mark.x, mark.y, top + 0.02 * extent_m), size=1.15)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from backend.scene.colours import Palette, between, flat
 from backend.scene.content import CandidateMark, Content, NextPlace, VehicleMark
 from backend.scene.items import Item, Label, Lines, Surface
-from backend.scene.shapes import at_height, ball, box, circle, disc, fan, join, segments
+from backend.scene.shapes import Mesh, at_height, ball, box, circle, disc, fan, join, segments
 from backend.scene.surroundings import one_line
 
 PIECE = 200
@@ -24,8 +25,8 @@ SHADES = 4
 def flight(content: Content, palette: Palette, extent_m: float) -> Iterator[Item]:
     yield from moving(content, palette, extent_m)
     yield from _candidates(content, palette, extent_m)
-    if content.next_place is not None:
-        yield from _next_place(content.next_place, content, palette, extent_m)
+    for place in content.next_places:
+        yield from _next_place(place, content, palette, extent_m)
 
 
 def moving(content: Content, palette: Palette, extent_m: float) -> Iterator[Item]:
@@ -70,7 +71,7 @@ def multicopter(span_m: float, palette: Palette) -> tuple[np.ndarray, np.ndarray
     """Body, four arms with rotors, and an antenna to the front (north). span_m: from rotor to rotor across."""
     half, arm = span_m / 2, span_m / 2 / np.sqrt(2)
     body = box((-0.16 * half, -0.24 * half, -0.10 * half), (0.16 * half, 0.24 * half, 0.10 * half))
-    arms = []
+    arms: list[Mesh] = []
     for side in (1, -1):
         turn = np.array([[np.cos(np.pi / 4), side * -np.sin(np.pi / 4)], [side * np.sin(np.pi / 4), np.cos(np.pi / 4)]])
         vertices, faces = box((-half, -0.045 * half, -0.03 * half), (half, 0.045 * half, 0.03 * half))
@@ -93,7 +94,8 @@ def _candidates(content: Content, palette: Palette, extent_m: float) -> Iterator
     if not content.candidates:
         return
     last_round = max((mark.dropped_in_round or 0 for mark in content.candidates), default=0)
-    meshes, colours = [], []
+    meshes: list[Mesh] = []
+    colours: list[NDArray[np.uint8]] = []
     for mark in content.candidates:
         shade = _shade(mark, last_round)
         mesh = disc(mark.x, mark.y, content.flight_altitude_m, extent_m * (0.005 + 0.0022 * shade), 16)
@@ -120,18 +122,18 @@ def _shade(mark: CandidateMark, last_round: int) -> int:
 
 
 def _next_place(place: NextPlace, content: Content, palette: Palette, extent_m: float) -> Iterator[Item]:
-    height = content.flight_altitude_m
+    height, name = content.flight_altitude_m, f"next/{place.number}"
     post = segments([(place.x, place.y, 0.0), (place.x, place.y, height)])
-    yield one_line("next/post", "candidates", post, palette.accent, 2.0)
+    yield one_line(f"{name}/post", "candidates", post, palette.accent, 2.0)
     ring = segments(circle(place.x, place.y, height, 0.028 * extent_m), closed=True)
-    yield one_line("next/ring", "candidates", ring, palette.accent, 3.0)
+    yield one_line(f"{name}/ring", "candidates", ring, palette.accent, 3.0)
     vertices, faces = ball(0.011 * extent_m)
     colours = flat(palette.accent, 1.0, len(vertices))
-    yield Surface("next/ball", "candidates", vertices, faces, colours, position=(place.x, place.y, height))
+    yield Surface(f"{name}/ball", "candidates", vertices, faces, colours, position=(place.x, place.y, height))
     words = f"next: {place.number}"
     if place.expected_time_s is not None:
         words += f"  ({clock(place.expected_time_s)})"
-    yield Label("next/label", "labels", words, (place.x, place.y, height + 0.03 * extent_m))
+    yield Label(f"{name}/label", "labels", words, (place.x, place.y, height + 0.03 * extent_m))
 
 
 def clock(seconds: float) -> str:

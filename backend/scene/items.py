@@ -6,10 +6,10 @@ Frame: local east-north-up metres, the ground plane at z = 0 is the height of th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from backend.wire.scene import SceneLayer
 
@@ -95,5 +95,5 @@ def same_but_moved(one: Item, other: Item) -> bool:
 
 def _equal(one: object, other: object) -> bool:
     if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        return one is other or (one.shape == other.shape and bool((one == other).all()))
+        return one is other or np.array_equal(cast(ArrayLike, one), cast(ArrayLike, other))
     return one == other

@@ -4,6 +4,9 @@ viser runs an event loop in a thread of its own. A window is let in only when th
 comes from: whoever finds the private port by himself, a page of another site for example, is turned away.
 """
 
+# pyright: reportPrivateUsage=false, reportUnknownMemberType=false
+# (viser names no public way to see who connects, nor the types of these parts)
+
 from __future__ import annotations
 
 import contextlib

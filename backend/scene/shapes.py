@@ -42,7 +42,7 @@ def at_height(xy: ArrayLike, z: float) -> NDArray[np.float32]:
 
 def rings(geometry: BaseGeometry) -> list[NDArray[np.float64]]:
     """Outlines and holes of polygons, (n, 2) each, not closed."""
-    found = []
+    found: list[NDArray[np.float64]] = []
     for part in shapely.get_parts(geometry):
         if isinstance(part, Polygon) and not part.is_empty:
             found += [np.asarray(ring.coords)[:-1, :2] for ring in (part.exterior, *part.interiors)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from backend.events import Recorded
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
 from hardware.readings import Telemetry
 
 

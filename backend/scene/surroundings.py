@@ -6,11 +6,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
 from backend.scene.colours import Palette, flat
 from backend.scene.content import Content
 from backend.scene.items import Item, Label, Lines, Surface
 from backend.scene.shapes import at_height, box, circle, outline, plate, rings, segments, wall
+from backend.wire.scene import SceneLayer
 
 GROUND_Z, GRID_Z, AREA_Z, OUTLINE_Z = -0.6, -0.4, -0.2, 0.1
 """Flat things one above the other, so that none hides another by chance."""
@@ -22,7 +24,7 @@ def line_colours(count: int, colour: tuple[int, int, int]) -> np.ndarray:
     return np.tile(np.array(colour, np.uint8), (count, 2, 1))
 
 
-def one_line(name: str, layer, points: np.ndarray, colour: tuple[int, int, int], width_px: float) -> Lines:
+def one_line(name: str, layer: SceneLayer, points: np.ndarray, colour: tuple[int, int, int], width_px: float) -> Lines:
     return Lines(name, layer, points, line_colours(len(points), colour), width_px)
 
 
@@ -89,7 +91,7 @@ def _fence(content: Content, palette: Palette) -> Iterator[Item]:
         yield Surface(f"fence/wall/{number}", "fence", vertices, faces, flat(palette.fence, 0.06, len(vertices)))
 
 
-def _no_fly(number: int, zone, highest_m: float, palette: Palette) -> Iterator[Item]:
+def _no_fly(number: int, zone: BaseGeometry, highest_m: float, palette: Palette) -> Iterator[Item]:
     yield one_line(f"no_fly/{number}/foot", "no_fly", outline(zone, OUTLINE_Z), palette.no_fly, 2.0)
     yield one_line(f"no_fly/{number}/top", "no_fly", outline(zone, highest_m), palette.no_fly, 1.5)
     corners = np.concatenate([*rings(zone), np.empty((0, 2))])

@@ -41,7 +41,7 @@ class View:
     view_id: str
     request: SceneRequest
     idle_since: float
-    windows: dict[int, Drawer] = field(default_factory=dict)
+    windows: dict[int, Drawer] = field(default_factory=dict[int, Drawer])
     take: Take | None = None
     last_mission_id: str | None = None
     wake: asyncio.Event = field(default_factory=asyncio.Event)
@@ -132,7 +132,7 @@ class SceneViews:
         view = self._views.get(view_id)
         if view is None:
             return
-        view.windows[window.client_id] = Drawer(window, view.request.language)
+        view.windows[window.client_id] = Drawer(window)
         view.wake.set()
         if view.task is None or view.task.done():
             view.task = asyncio.create_task(self._keep_up(view))
@@ -150,11 +150,11 @@ class SceneViews:
 
     async def _keep_up(self, view: View) -> None:
         while view.windows:
-            anew = view.wake.is_set()
+            again = view.wake.is_set()
             view.wake.clear()
             try:
                 await self._refresh(view)
-                if anew or view.take is not None:
+                if again or view.take is not None:
                     await self._draw(view)
                 view.faults = 0
             except (OSError, RuntimeError, ValueError) as error:
@@ -169,7 +169,7 @@ class SceneViews:
                 continue
 
     async def _refresh(self, view: View) -> None:
-        """Compose anew when the request, the mission or its events changed; else only move the vehicle."""
+        """Compose again when the request, the mission or its events changed; else only move the vehicle."""
         request, mission_id = view.request, self._mission_of(view)
         if mission_id is None:
             view.take = None

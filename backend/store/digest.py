@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from typing import Literal
 
 from backend.events import (
     BearingExcluded,
@@ -13,12 +12,16 @@ from backend.events import (
     MissionDrafted,
     MissionEdited,
     MissionEnded,
+    MissionPhase,
     MissionStarted,
+    Outcome,
     Phase,
     PhaseChanged,
+    PreflightChecked,
     Recorded,
     SweepRejected,
 )
+from backend.mission.state import phase_of
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
@@ -31,19 +34,31 @@ def to_us(at: datetime) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MissionDigest:
-    """The columns of the missions table. `bearings`: those that count (taken and not excluded)."""
+    """The columns of the missions table.
+
+    crafts: what each craft that is engaged does, by id; flying: there is one, perhaps on its way home after the end.
+    emitters: how many are looked for. bearings: of all emitters, those that count (taken and not excluded).
+    """
 
     mission_id: str
     name: str
-    phase: Phase
-    outcome: Literal["localized", "not_localized", "aborted", "failed"] | None
+    phase: MissionPhase
+    outcome: Outcome | None
+    crafts: Mapping[str, Phase]
+    flying: bool
     drafted_at_us: int
     started_at_us: int | None
     ended_at_us: int | None
     mission_time_s: float | None
+    emitters: int
     bearings: int
     rejected_sweeps: int
     last_seq: int
+
+    @property
+    def unfinished(self) -> bool:
+        """It was started, and either is not over or has a craft that is not down."""
+        return self.started_at_us is not None and (self.ended_at_us is None or self.flying)
 
 
 def fold(before: MissionDigest | None, recorded: Sequence[Recorded]) -> MissionDigest:
@@ -66,29 +81,49 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             name=event.spec.name,
             phase="draft",
             outcome=None,
+            crafts={},
+            flying=False,
             drafted_at_us=at_us,
             started_at_us=None,
             ended_at_us=None,
             mission_time_s=None,
+            emitters=len(event.spec.emitters),
             bearings=0,
             rejected_sweeps=0,
             last_seq=record.seq,
         )
     digest = replace(digest, last_seq=record.seq)
     match event:
-        case MissionDrafted() | MissionEdited():
-            return replace(digest, name=event.spec.name)
-        case PhaseChanged():
-            return replace(digest, phase=event.after)
-        case MissionStarted():
-            return replace(digest, started_at_us=at_us)
+        case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
+            return _in_phase(replace(digest, name=spec.name, emitters=len(spec.emitters)), passed=False)
+        case PreflightChecked(passed=passed):
+            return _in_phase(digest, passed)
+        case MissionStarted(craft_id=craft_id):
+            first = at_us if digest.started_at_us is None else digest.started_at_us
+            return _with_craft(replace(digest, started_at_us=first), craft_id, "ground", engaged=True)
+        case PhaseChanged(craft_id=craft_id, after=after):
+            return _with_craft(digest, craft_id, after, engaged=after != "ground")
         case BearingMeasured():
             return replace(digest, bearings=digest.bearings + 1)
         case BearingExcluded():
             return replace(digest, bearings=digest.bearings - 1)
         case SweepRejected():
             return replace(digest, rejected_sweeps=digest.rejected_sweeps + 1)
-        case MissionEnded():
-            return replace(digest, outcome=event.outcome, ended_at_us=at_us, mission_time_s=event.mission_time_s)
+        case MissionEnded(outcome=outcome, mission_time_s=mission_time_s):
+            return _in_phase(replace(digest, outcome=outcome, ended_at_us=at_us, mission_time_s=mission_time_s))
         case _:
             return digest
+
+
+def _with_craft(digest: MissionDigest, craft_id: str, phase: Phase, engaged: bool) -> MissionDigest:
+    crafts = {**digest.crafts, craft_id: phase}
+    if not engaged:
+        del crafts[craft_id]
+    return _in_phase(replace(digest, crafts=crafts, flying=bool(crafts)))
+
+
+def _in_phase(digest: MissionDigest, passed: bool | None = None) -> MissionDigest:
+    """passed: what preflight says from now on, None as before."""
+    ready = digest.phase == "ready" if passed is None else passed
+    started = digest.started_at_us is not None
+    return replace(digest, phase=phase_of(digest.outcome, started, ready, digest.crafts.values()))

@@ -7,7 +7,7 @@ import base64
 import json
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from datetime import datetime, timedelta
 from typing import Any, Literal
@@ -18,13 +18,18 @@ from sqlalchemy import Table, select
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.ext.asyncio import AsyncConnection
 
-from backend.events import Event, Recorded
-from backend.mission.ports import FactRefused, TrackPoint
+from backend.events import FIRST_CRAFT, FORM, Event, Recorded
+from backend.ports import FactRefused, TrackPoint
+from backend.reasons.storage import WrittenElsewhere
+from backend.spec import FIRST_EMITTER
 from backend.store.digest import EPOCH, MissionDigest, fold, to_us
-from backend.store.tables import events, missions, sweeps, track
-from hardware.readings import GeoPoint, Sweep
+from backend.store.tables import events, missions, sweeps, tracks
+from backend.store.upgrade import FIRST_FORM, Imports, craft_of_sweep, imports_of, upgraded
+from hardware.readings import Place, Sweep
 
 EVENT: TypeAdapter[Event] = TypeAdapter(Event)
+ROW = (events.c.seq, events.c.at_us, events.c.kind, events.c.form, events.c.body)
+"""The columns of an EventRow."""
 
 
 class JournalConflict(FactRefused):
@@ -33,20 +38,43 @@ class JournalConflict(FactRefused):
 
 @dataclass(frozen=True, slots=True)
 class EventRow:
+    """As it was stored; form: see upgrade."""
+
     seq: int
     at_us: int
     kind: str
+    form: int
     body: str
 
 
 def to_row(seq: int, at_utc: datetime, event: Event) -> EventRow:
-    return EventRow(seq, to_us(at_utc), event.kind, event.model_dump_json())
+    return EventRow(seq, to_us(at_utc), event.kind, FORM, event.model_dump_json())
 
 
-def to_record(mission_id: str, row: EventRow) -> Recorded:
-    """Raises ValueError when the body is no event (a required number that was not finite, for one)."""
+def to_records(mission_id: str, rows: Sequence[EventRow], imports: Imports | None = None) -> list[Recorded]:
+    """Events of any form. imports: of the mission, beside those that `rows` name.
+
+    Raises ValueError when a body is no event (a required number that was not finite, for one).
+    """
+    known = {**(imports or {}), **imported_before(rows)}
+    return [_record(mission_id, row, known) for row in rows]
+
+
+def imported_before(rows: Iterable[EventRow]) -> dict[str, str]:
+    """What the rows of form 1 say about imported sweeps, for `to_records` of others of the mission."""
+    imported = (row for row in rows if row.form == FIRST_FORM and row.kind == "recording_imported")
+    return imports_of(json.loads(row.body) for row in imported)
+
+
+def _record(mission_id: str, row: EventRow, imports: Imports) -> Recorded:
     at_utc = EPOCH + timedelta(microseconds=row.at_us)
-    return Recorded(seq=row.seq, mission_id=mission_id, at_utc=at_utc, event=EVENT.validate_json(row.body))
+    if row.form == FORM:
+        event = EVENT.validate_json(row.body)
+    elif row.form == FIRST_FORM:
+        event = EVENT.validate_python(upgraded(json.loads(row.body), imports))
+    else:
+        raise ValueError(f"event {row.seq} of mission {mission_id} is of form {row.form}: a later Crossfix stored it")
+    return Recorded(seq=row.seq, mission_id=mission_id, at_utc=at_utc, event=event)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,23 +90,21 @@ class EventsEntry:
     async def write(self, connection: AsyncConnection) -> None:
         first, last = self.rows[0].seq, self.rows[-1].seq
         known = {
-            row.seq: row
+            row.seq: EventRow(*row)
             for row in await connection.execute(
-                select(events.c.seq, events.c.at_us, events.c.kind, events.c.body).where(
-                    events.c.mission_id == self.mission_id, events.c.seq.between(first, last)
-                )
+                select(*ROW).where(events.c.mission_id == self.mission_id, events.c.seq.between(first, last))
             )
         }
         for row in self.rows:
-            if row.seq in known and tuple(known[row.seq]) != (row.seq, row.at_us, row.kind, row.body):
-                raise JournalConflict(f"mission {self.mission_id}: event {row.seq} is already another one")
+            if row.seq in known and known[row.seq] != row:
+                raise JournalConflict(WrittenElsewhere(self.mission_id, row.seq))
         new = [row for row in self.rows if row.seq not in known]
         if not new:
             return
         before = await read_digest(connection, self.mission_id)
         if new[0].seq != (before.last_seq if before else 0) + 1:
-            raise JournalConflict(f"mission {self.mission_id}: event {new[0].seq} does not follow the last one")
-        after = asdict(fold(before, [to_record(self.mission_id, row) for row in new]))
+            raise JournalConflict(WrittenElsewhere(self.mission_id, new[0].seq))
+        after = asdict(fold(before, to_records(self.mission_id, new)))
         after["name"] = after["name"].replace("\x00", "")
         if before is None:
             await connection.execute(missions.insert().values(after))
@@ -88,16 +114,19 @@ class EventsEntry:
 
 
 async def read_digest(connection: AsyncConnection, mission_id: str) -> MissionDigest | None:
-    found = (await connection.execute(select(missions).where(missions.c.mission_id == mission_id))).one_or_none()
-    return None if found is None else MissionDigest(**found._mapping)
+    rows = await connection.execute(select(missions).where(missions.c.mission_id == mission_id))
+    found = rows.mappings().one_or_none()
+    return None if found is None else MissionDigest(**found)
 
 
 @dataclass(frozen=True, slots=True)
 class SweepEntry:
-    """One raw sweep. samples: see tables.sweeps."""
+    """One raw sweep. samples, craft_id: see tables.sweeps."""
 
     mission_id: str
     sweep_id: str
+    craft_id: str | None
+    emitter_id: str
     place_number: int
     attempt: int
     frequency_hz: float
@@ -123,7 +152,7 @@ class SweepEntry:
             heading_deg=heading_deg,
             power_db=power_db,
             frequency_hz=self.frequency_hz,
-            position=GeoPoint(self.lat_deg, self.lon_deg),
+            position=Place(self.lat_deg, self.lon_deg),
             altitude_amsl_m=math.nan if self.altitude_amsl_m is None else self.altitude_amsl_m,
             drift_m=math.nan if self.drift_m is None else self.drift_m,
             clipped_samples=self.clipped_samples,
@@ -132,16 +161,26 @@ class SweepEntry:
         )
 
 
-def sweep_entry(mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep) -> SweepEntry:
+def sweep_entry(
+    mission_id: str,
+    sweep_id: str,
+    craft_id: str | None,
+    emitter_id: str,
+    place_number: int,
+    attempt: int,
+    sweep: Sweep,
+) -> SweepEntry:
     samples = np.stack([sweep.at_s, sweep.heading_deg, sweep.power_db]).astype("<f8")
     return SweepEntry(
         mission_id=mission_id,
         sweep_id=sweep_id,
+        craft_id=craft_id,
+        emitter_id=emitter_id,
         place_number=place_number,
         attempt=attempt,
         frequency_hz=sweep.frequency_hz,
-        lat_deg=sweep.position.lat_deg,
-        lon_deg=sweep.position.lon_deg,
+        lat_deg=sweep.position.lat,
+        lon_deg=sweep.position.lon,
         altitude_amsl_m=_finite(sweep.altitude_amsl_m),
         drift_m=_finite(sweep.drift_m),
         clipped_samples=sweep.clipped_samples,
@@ -154,16 +193,18 @@ def sweep_entry(mission_id: str, sweep_id: str, place_number: int, attempt: int,
 @dataclass(frozen=True, slots=True)
 class TrackEntry:
     mission_id: str
+    craft_id: str
     points: tuple[TrackPoint, ...]
 
     def encode(self) -> bytes:
-        return _encode("track", {"mission_id": self.mission_id, "points": [asdict(point) for point in self.points]})
+        return _encode("track", asdict(self))
 
     async def write(self, connection: AsyncConnection) -> None:
         """Points without a finite place are left out: they say nothing about the path."""
         rows = [
             {
                 "mission_id": self.mission_id,
+                "craft_id": self.craft_id,
                 "at_us": round(point.at_s * 1e6),
                 "lat_deg": point.lat_deg,
                 "lon_deg": point.lon_deg,
@@ -177,22 +218,28 @@ class TrackEntry:
             if math.isfinite(point.lat_deg) and math.isfinite(point.lon_deg) and math.isfinite(point.at_s)
         ]
         if rows:
-            await _insert_new(connection, track, rows)
+            await _insert_new(connection, tracks, rows)
 
 
 Entry = EventsEntry | SweepEntry | TrackEntry
 
 
 def decode(payload: bytes) -> Entry:
+    """What `encode` made, or an older server: then it named neither form, craft nor emitter."""
     content = json.loads(payload)
     kind, fields_of = content["entry"], content["fields"]
     match kind:
         case "events":
-            return EventsEntry(fields_of["mission_id"], tuple(EventRow(**row) for row in fields_of["rows"]))
+            return EventsEntry(
+                fields_of["mission_id"], tuple(EventRow(**({"form": FIRST_FORM} | row)) for row in fields_of["rows"])
+            )
         case "sweep":
-            return SweepEntry(**{**fields_of, "samples": base64.b64decode(fields_of["samples"])})
+            before = {"craft_id": craft_of_sweep(fields_of["sweep_id"]), "emitter_id": FIRST_EMITTER}
+            return SweepEntry(**(before | fields_of | {"samples": base64.b64decode(fields_of["samples"])}))
         case "track":
-            return TrackEntry(fields_of["mission_id"], tuple(TrackPoint(**point) for point in fields_of["points"]))
+            craft_id = fields_of.get("craft_id", FIRST_CRAFT)
+            points = tuple(TrackPoint(**point) for point in fields_of["points"])
+            return TrackEntry(fields_of["mission_id"], craft_id, points)
         case _:
             raise ValueError(f"the spool holds an entry of unknown kind {kind!r}")
 

@@ -22,7 +22,8 @@ from sqlalchemy import exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, Recorded
-from backend.mission.ports import FactRefused, JournalUnavailable, TrackPoint
+from backend.ports import FactRefused, JournalUnavailable, TrackPoint
+from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, NothingStores
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
     Entry,
@@ -32,7 +33,7 @@ from backend.store.entries import (
     TrackEntry,
     decode,
     sweep_entry,
-    to_record,
+    to_records,
     to_row,
 )
 from backend.store.reading import StoredFacts, why
@@ -58,10 +59,11 @@ class DatabaseAway(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class DatabaseReport:
-    """`spooled`: entries on disk that wait for the database; `refused`: entries it will never take (kept in a file)."""
+    """reason: None when all is well. spooled: entries on disk that wait for the database. refused: entries that it will
+    never take (kept in a file)."""
 
     state: Literal["ok", "slow", "lost"]
-    detail: str
+    reason: DatabaseSilent | DatabaseSlow | DiskLow | None
     spooled: int
     refused: int
 
@@ -75,7 +77,7 @@ class Written:
 
 
 class SqlJournal:
-    """backend.mission.ports.Journal on SQLAlchemy, and what the API reads. Use `run` as a background task."""
+    """backend.ports.Journal on SQLAlchemy, and what the API reads. Use `run` as a background task."""
 
     def __init__(
         self,
@@ -130,10 +132,10 @@ class SqlJournal:
             at_utc = datetime.fromtimestamp(self._now(), UTC)
             entry = _entry(mission_id, len(known.recorded) + 1, at_utc, events)
             try:
-                recorded = [to_record(mission_id, row) for row in entry.rows]
+                recorded = to_records(mission_id, entry.rows)
                 after = fold(known.digest, recorded)
             except ValueError as error:
-                raise FactRefused(f"this cannot be stored: {' '.join(str(error).split())}") from error
+                raise FactRefused(FactUnfit("journal", " ".join(str(error).split()).rstrip("."))) from error
             try:
                 await self._store(entry)
             except JournalConflict:
@@ -145,12 +147,22 @@ class SqlJournal:
             self._forget_ended()
         return recorded
 
-    async def save_sweep(self, mission_id: str, sweep_id: str, place_number: int, attempt: int, sweep: Sweep) -> None:
-        await self._whole(self._save(sweep_entry(mission_id, sweep_id, place_number, attempt, sweep)))
+    async def save_sweep(
+        self,
+        mission_id: str,
+        sweep_id: str,
+        craft_id: str | None,
+        emitter_id: str,
+        place_number: int,
+        attempt: int,
+        sweep: Sweep,
+    ) -> None:
+        entry = sweep_entry(mission_id, sweep_id, craft_id, emitter_id, place_number, attempt, sweep)
+        await self._whole(self._save(entry))
 
-    async def save_track(self, mission_id: str, points: Sequence[TrackPoint]) -> None:
+    async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None:
         if points:
-            await self._whole(self._save(TrackEntry(mission_id, tuple(points))))
+            await self._whole(self._save(TrackEntry(mission_id, craft_id, tuple(points))))
 
     async def _save(self, entry: Entry) -> None:
         async with self._lock:
@@ -183,7 +195,7 @@ class SqlJournal:
                 if isinstance(entry, EventsEntry) and entry.mission_id == mission_id
                 for row in entry.rows
             ]
-            recorded += [to_record(mission_id, row) for row in waiting if row.seq > len(recorded)]
+            recorded += to_records(mission_id, [row for row in waiting if row.seq > len(recorded)])
             return Written(recorded, fold(None, recorded) if recorded else None)
         return self._written[mission_id]
 
@@ -197,13 +209,13 @@ class SqlJournal:
             except JournalConflict:
                 raise
             except REFUSED as error:
-                raise FactRefused(f"the database refuses it: {why(error)}") from error
+                raise FactRefused(FactUnfit("database", why(error))) from error
             else:
                 return
         try:
             await asyncio.to_thread(self._spool.append, entry.encode())
         except SpoolFull as error:
-            raise JournalUnavailable(f"The database is away ({self._fault}) and {error}.") from error
+            raise JournalUnavailable(NothingStores(self._fault or "it still takes what waited", str(error))) from error
         self._pending.append(entry)
         self._wake.set()
 
@@ -319,20 +331,18 @@ class SqlJournal:
         if self._pending:
             return
         for mission_id, known in list(self._written.items()):
-            if known.digest is not None and known.digest.ended_at_us is not None:
+            if known.digest is not None and known.digest.ended_at_us is not None and not known.digest.flying:
                 del self._written[mission_id]
 
     def report(self) -> DatabaseReport:
         waiting = len(self._pending)
         if self._fault is not None:
-            return DatabaseReport("lost", self._fault, waiting, self._refused)
+            return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
         if waiting or self._took_s > self._slow_s:
-            detail = f"the last answer took {self._took_s:.1f} s"
-            return DatabaseReport("slow", detail, waiting, self._refused)
+            return DatabaseReport("slow", DatabaseSlow(self._took_s), waiting, self._refused)
         if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:
-            detail = f"only {self._disk_free_bytes // 2**20} MB are left on the disk"
-            return DatabaseReport("slow", detail, 0, self._refused)
-        return DatabaseReport("ok", "", 0, self._refused)
+            return DatabaseReport("slow", DiskLow(self._disk_free_bytes), 0, self._refused)
+        return DatabaseReport("ok", None, 0, self._refused)
 
     async def close(self) -> None:
         """Wait for appends that run; what is spooled stays on disk for the next start."""
@@ -365,12 +375,12 @@ class SqlJournal:
         return await self._stored.missions()
 
     async def unfinished(self) -> list[str]:
-        """Missions that were started and have not ended, oldest start first. Asked at a start: a busy database is
-        waited for."""
+        """Missions that were started and have not ended, or whose craft is not down yet; oldest start first. Asked at a
+        start: a busy database is waited for."""
         known = {digest.mission_id: digest for digest in await self._patiently(self._stored.unfinished)}
         known |= {mission_id: written.digest for mission_id, written in self._written.items() if written.digest}
-        begun = [d for d in known.values() if d.started_at_us is not None and d.ended_at_us is None]
-        return [d.mission_id for d in sorted(begun, key=lambda d: (d.started_at_us, d.mission_id))]
+        going_on = [digest for digest in known.values() if digest.unfinished]
+        return [d.mission_id for d in sorted(going_on, key=lambda d: (d.started_at_us, d.mission_id))]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         for waiting in self._pending:
@@ -378,8 +388,9 @@ class SqlJournal:
                 return waiting
         return await self._stored.sweep(mission_id, sweep_id)
 
-    async def track(self, mission_id: str) -> list[TrackPoint]:
-        return await self._stored.track(mission_id)
+    async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
+        """By craft, in time order."""
+        return await self._stored.tracks(mission_id)
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:

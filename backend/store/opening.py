@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
 from sqlalchemy import make_url
 from sqlalchemy.exc import DBAPIError
 
+from backend.reasons.storage import AnotherServer, DatabaseUnfit, ForeignSpool
 from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
-from backend.store.spool import Spool, SpoolTaken, claim
+from backend.store.reading import why
+from backend.store.spool import Spool, SpoolForeign, SpoolTaken, claim
+from planner.reason import ReasonedError
 
 CLAIM_PATIENCE_S = 3.0
-REMEDY = "Check CROSSFIX_DATABASE_URL and that the disk can be written."
 
 
-class DatabaseUnusable(RuntimeError):
-    """The server cannot start: the message says why and what to try."""
+class DatabaseUnusable(ReasonedError, RuntimeError):
+    """The server cannot start."""
+
+    def __init__(self, reason: DatabaseUnfit | AnotherServer | ForeignSpool) -> None:
+        super().__init__(reason)
 
 
 @asynccontextmanager
-async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncIterator[SqlJournal]:
+async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
     """`now`: UTC epoch seconds of the mission's clock, stamped on every event. Raises DatabaseUnusable."""
     url = settings.async_database_url
     with _claimed(url):
@@ -33,7 +38,7 @@ async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncIte
 
 
 @contextmanager
-def _claimed(url: str) -> Iterator[None]:
+def _claimed(url: str) -> Generator[None]:
     """One server an SQLite file: two would fly and record the same mission. (A stale lock in PostgreSQL could keep a
     server out that restarts in flight; there the journal finds a second writer by its sequence numbers.)"""
     database = make_url(url).database
@@ -45,30 +50,27 @@ def _claimed(url: str) -> Iterator[None]:
         path.parent.mkdir(parents=True, exist_ok=True)
         lock = path.open("w")
     except OSError as error:
-        raise DatabaseUnusable(f"The database {database} cannot be used: {error}. {REMEDY}") from error
+        raise DatabaseUnusable(DatabaseUnfit(database, why(error))) from error
     with lock:
         try:
             claim(lock.fileno(), CLAIM_PATIENCE_S)
         except SpoolTaken:
-            raise DatabaseUnusable(
-                f"Another server uses the database {database}. Stop it, or start this one with another --data-dir."
-            ) from None
+            raise DatabaseUnusable(AnotherServer(database)) from None
         yield
 
 
 @asynccontextmanager
-async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> AsyncIterator[SqlJournal]:
+async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
     shown = url.split("@")[-1] if "@" in url else url
     try:
         await migrate(url)
         spool = await asyncio.to_thread(Spool, settings.spool_path, settings.spool_reserve_bytes, CLAIM_PATIENCE_S)
     except SpoolTaken as error:
-        raise DatabaseUnusable(
-            f"Another server uses {settings.spool_path}. Stop it, or start this one with another --data-dir."
-        ) from error
+        raise DatabaseUnusable(AnotherServer(str(settings.spool_path))) from error
+    except SpoolForeign as error:
+        raise DatabaseUnusable(ForeignSpool(str(settings.spool_path))) from error
     except (DBAPIError, OSError, ValueError) as error:
-        cause = error.orig if isinstance(error, DBAPIError) and error.orig else error
-        raise DatabaseUnusable(f"The database {shown} cannot be used: {cause}. {REMEDY}") from error
+        raise DatabaseUnusable(DatabaseUnfit(shown, why(error))) from error
     journal = SqlJournal(
         make_engine(url, settings.database_timeout_s),
         spool,

@@ -9,11 +9,13 @@ from typing import Any
 from sqlalchemy import Executable, exc, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import Recorded
-from backend.mission.ports import JournalUnavailable, TrackPoint
+from backend.events import FORM, Recorded
+from backend.ports import JournalUnavailable, TrackPoint
+from backend.reasons.storage import DatabaseSilent
 from backend.store.digest import MissionDigest
-from backend.store.entries import EventRow, SweepEntry, sweep_columns, to_record
-from backend.store.tables import events, missions, sweeps, track
+from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
+from backend.store.tables import events, missions, sweeps, tracks
+from backend.store.upgrade import OF_A_SWEEP, kinds_of_old
 
 
 class StoredFacts:
@@ -24,14 +26,17 @@ class StoredFacts:
         self._timeout_s = timeout_s
 
     async def read(self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None) -> list[Recorded]:
-        query = (
-            select(events.c.seq, events.c.at_us, events.c.kind, events.c.body)
-            .where(events.c.mission_id == mission_id, events.c.seq > after)
-            .order_by(events.c.seq)
-        )
+        query = select(*ROW).where(events.c.mission_id == mission_id, events.c.seq > after).order_by(events.c.seq)
         if kinds is not None:
-            query = query.where(events.c.kind.in_(list(kinds)))
-        return [to_record(mission_id, EventRow(*row)) for row in await self._fetch(query)]
+            query = query.where(events.c.kind.in_(kinds_of_old(kinds)))
+        rows = [EventRow(*row) for row in await self._fetch(query)]
+        whole = after == 0 and kinds is None
+        if whole or all(row.form == FORM or row.kind not in OF_A_SWEEP for row in rows):
+            return to_records(mission_id, rows)
+        imports = await self._fetch(
+            select(*ROW).where(events.c.mission_id == mission_id, events.c.kind == "recording_imported")
+        )
+        return to_records(mission_id, rows, imported_before(EventRow(*row) for row in imports))
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
         rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
@@ -42,8 +47,9 @@ class StoredFacts:
         return [MissionDigest(**row._mapping) for row in rows]
 
     async def unfinished(self) -> list[MissionDigest]:
-        started = missions.c.started_at_us.is_not(None) & missions.c.ended_at_us.is_(None)
-        return [MissionDigest(**row._mapping) for row in await self._fetch(select(missions).where(started))]
+        going_on = missions.c.ended_at_us.is_(None) | missions.c.flying
+        query = select(missions).where(missions.c.started_at_us.is_not(None) & going_on)
+        return [MissionDigest(**row._mapping) for row in await self._fetch(query)]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         columns = [sweeps.c[name] for name in sweep_columns()]
@@ -51,22 +57,25 @@ class StoredFacts:
         rows = await self._fetch(select(*columns).where(here))
         return SweepEntry(**rows[0]._mapping) if rows else None
 
-    async def track(self, mission_id: str) -> list[TrackPoint]:
-        columns = [column for column in track.c if column.name != "mission_id"]
-        rows = await self._fetch(select(*columns).where(track.c.mission_id == mission_id).order_by(track.c.at_us))
-        return [TrackPoint(row[0] / 1e6, *row[1:]) for row in rows]
+    async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
+        columns = [column for column in tracks.c if column.name != "mission_id"]
+        query = select(*columns).where(tracks.c.mission_id == mission_id).order_by(tracks.c.craft_id, tracks.c.at_us)
+        found: dict[str, list[TrackPoint]] = {}
+        for craft_id, at_us, *values in await self._fetch(query):
+            found.setdefault(craft_id, []).append(TrackPoint(at_us / 1e6, *values))
+        return found
 
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
             async with asyncio.timeout(self._timeout_s), self._engine.connect() as connection:
                 return list(await connection.execute(query))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise JournalUnavailable(f"The database does not answer: {why(error)}.") from error
+            raise JournalUnavailable(DatabaseSilent(why(error))) from error
 
 
 def why(error: BaseException) -> str:
-    """One line of what a driver says."""
+    """One line of what a driver says, without its full stop."""
     if isinstance(error, TimeoutError | exc.TimeoutError):
         return "no answer in time"
     cause = error.orig if isinstance(error, exc.DBAPIError) and error.orig else error
-    return str(cause).splitlines()[0] if str(cause) else type(cause).__name__
+    return str(cause).splitlines()[0].rstrip(".") if str(cause) else type(cause).__name__

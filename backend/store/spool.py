@@ -15,6 +15,9 @@ import time
 import zlib
 from pathlib import Path
 
+from backend.reasons.storage import ForeignSpool
+from planner.reason import ReasonedError
+
 MAGIC = b"CFSPOOL1"
 HEADER = struct.Struct("<8sQ")
 RECORD = struct.Struct("<II")
@@ -22,6 +25,10 @@ RECORD = struct.Struct("<II")
 
 class SpoolFull(RuntimeError):
     """Neither the reserve nor the disk has room for another entry."""
+
+
+class SpoolForeign(ReasonedError, ValueError):
+    """The file was made by something else; it is left alone."""
 
 
 class SpoolTaken(RuntimeError):
@@ -42,7 +49,7 @@ def claim(fd: int, patience_s: float) -> None:
 
 
 class Spool:
-    """One process owns the file, for as long as it lives. Raises SpoolTaken after `patience_s`."""
+    """One process owns the file, for as long as it lives. Raises SpoolTaken after `patience_s`, SpoolForeign."""
 
     def __init__(self, path: Path, reserve_bytes: int, patience_s: float = 0.0) -> None:
         self.path = path
@@ -53,7 +60,7 @@ class Spool:
             self._reserve(reserve_bytes)
             magic, self._generation = HEADER.unpack(os.pread(self._fd, HEADER.size, 0))
             if magic != MAGIC:
-                raise ValueError(f"{path} is not a journal spool: move it away and start again")
+                raise SpoolForeign(ForeignSpool(str(path)))
         except BaseException:
             os.close(self._fd)
             raise
@@ -72,7 +79,7 @@ class Spool:
         os.fsync(self._fd)
 
     def _scan(self) -> list[bytes]:
-        found = []
+        found: list[bytes] = []
         while True:
             head = os.pread(self._fd, RECORD.size, self._end)
             if len(head) < RECORD.size:
@@ -97,10 +104,10 @@ class Spool:
         try:
             written = os.pwrite(self._fd, record, self._end)
             if written < len(record):
-                raise SpoolFull("the disk is full: an event could not be kept")
+                raise SpoolFull("the disk is full")
             os.fdatasync(self._fd)
         except OSError as error:
-            raise SpoolFull(f"the spool could not be written: {error.strerror}") from error
+            raise SpoolFull(error.strerror or "it cannot be written") from error
         self._end += len(record)
         self._entries.append(payload)
 

@@ -1,13 +1,15 @@
-"""The database: missions, their events, raw sweeps and the thinned track. The same on SQLite and PostgreSQL.
+"""The database: missions, their events, raw sweeps and the thinned tracks. The same on SQLite and PostgreSQL.
 
 Times are UTC microseconds since the epoch, exact on both. An event's body is the JSON text that the wire sends, kept
-as text so that it is read back byte for byte.
+as text so that it is read back byte for byte; its form says in which words it was written (see upgrade).
 """
 
 from __future__ import annotations
 
 from sqlalchemy import (
+    JSON,
     BigInteger,
+    Boolean,
     Column,
     Double,
     ForeignKey,
@@ -30,10 +32,13 @@ missions = Table(
     Column("name", Text, nullable=False),
     Column("phase", String(20), nullable=False),
     Column("outcome", String(20)),
+    Column("crafts", JSON, nullable=False),
+    Column("flying", Boolean, nullable=False),
     Column("drafted_at_us", BigInteger, nullable=False),
     Column("started_at_us", BigInteger),
     Column("ended_at_us", BigInteger),
     Column("mission_time_s", Double),
+    Column("emitters", Integer, nullable=False),
     Column("bearings", Integer, nullable=False),
     Column("rejected_sweeps", Integer, nullable=False),
     Column("last_seq", Integer, nullable=False),
@@ -46,6 +51,7 @@ events = Table(
     Column("seq", Integer, nullable=False),
     Column("at_us", BigInteger, nullable=False),
     Column("kind", String(40), nullable=False),
+    Column("form", Integer, nullable=False),
     Column("body", Text, nullable=False),
     PrimaryKeyConstraint("mission_id", "seq"),
     Index("events_by_kind", "mission_id", "kind"),
@@ -56,6 +62,8 @@ sweeps = Table(
     metadata,
     Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
     Column("sweep_id", String(64), nullable=False),
+    Column("craft_id", String(40)),
+    Column("emitter_id", String(40), nullable=False),
     Column("place_number", Integer, nullable=False),
     Column("attempt", Integer, nullable=False),
     Column("frequency_hz", Double, nullable=False),
@@ -69,12 +77,14 @@ sweeps = Table(
     Column("samples", LargeBinary, nullable=False),
     PrimaryKeyConstraint("mission_id", "sweep_id"),
 )
-"""samples: (3, n) float64 little-endian in C order, zlib: at_s, heading_deg, power_db."""
+"""samples: (3, n) float64 little-endian in C order, zlib: at_s, heading_deg, power_db. craft_id: who took it, null when
+no craft did (a recording)."""
 
-track = Table(
-    "track",
+tracks = Table(
+    "tracks",
     metadata,
     Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
+    Column("craft_id", String(40), nullable=False),
     Column("at_us", BigInteger, nullable=False),
     Column("lat_deg", Double, nullable=False),
     Column("lon_deg", Double, nullable=False),
@@ -83,5 +93,5 @@ track = Table(
     Column("heading_deg", Double),
     Column("battery_percent", Double),
     Column("mode", Text),
-    PrimaryKeyConstraint("mission_id", "at_us"),
+    PrimaryKeyConstraint("mission_id", "craft_id", "at_us"),
 )

@@ -1,9 +1,11 @@
 """The binary frame of one belief: 4-byte little-endian header length, JSON header, body.
 
-Header: {"type": "belief", "mission_id", "bearings", "nx", "ny", "bounds": [[lon, lat] x 4: SW, SE, NE, NW],
-"encoding": "f32-shuffle-zlib" | "u8-log-zlib", "peak": float}. Body: ny rows of nx cells, south to north, west to
-east, probability a cell divided by `peak`. f32-shuffle-zlib: float32 little-endian, bytes shuffled (all first bytes,
+Header: {"type": "belief", "mission_id", "emitter_id", "seq", "bearings", "nx", "ny", "bounds": [[lon, lat] x 4: SW, SE,
+NE, NW], "encoding": "f32-shuffle-zlib" | "u8-log-zlib", "peak": float}. Body: ny rows of nx cells, south to north, west
+to east, probability a cell divided by `peak`. f32-shuffle-zlib: float32 little-endian, bytes shuffled (all first bytes,
 then all second ...), zlib level 1. u8-log-zlib: 0 = zero, else round(255 * (1 + log10(p) / 6)) clipped to 1..255.
+
+`seq`: number of the BeliefUpdated event that told of it; 0: of no event (a prior, or a belief that is only supposed).
 """
 
 from __future__ import annotations
@@ -25,6 +27,8 @@ DECADES = 6.0
 
 def encode_belief(
     mission_id: str,
+    emitter_id: str,
+    seq: int,
     bearings: int,
     density: NDArray[np.float64],
     corners_lon_lat: Sequence[tuple[float, float]],
@@ -40,6 +44,8 @@ def encode_belief(
     header = {
         "type": "belief",
         "mission_id": mission_id,
+        "emitter_id": emitter_id,
+        "seq": seq,
         "bearings": bearings,
         "nx": density.shape[1],
         "ny": density.shape[0],

@@ -7,13 +7,12 @@ import zipfile
 from collections.abc import Callable, Sequence
 
 from backend.events import Recorded
-from backend.mission.ports import TrackPoint
 from backend.version import VERSION
 from backend.wire import export
 from backend.wire.cot_export import cot_package
 from backend.wire.mcap_export import mcap
 
-Export = Callable[[Sequence[Recorded], Sequence[TrackPoint]], str | bytes]
+Export = Callable[[Sequence[Recorded], export.Tracks], str | bytes]
 
 FILES: dict[str, tuple[Export, str]] = {
     "mission.json": (export.journal_json, "everything: all events and the flown path"),
@@ -25,7 +24,7 @@ FILES: dict[str, tuple[Export, str]] = {
 }
 
 
-def bundle(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> bytes:
+def bundle(recorded: Sequence[Recorded], tracks: export.Tracks) -> bytes:
     """The zip; the same mission gives the same bytes."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
@@ -33,7 +32,7 @@ def bundle(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> bytes:
         notice = "Positions are WGS84, bearings degrees clockwise from true north, times UTC."
         _add(archive, "README.txt", f"A mission of crossfix {VERSION}.\n{notice}\n\n{contents}")
         for name, (make, _) in FILES.items():
-            _add(archive, name, make(recorded, track))
+            _add(archive, name, make(recorded, tracks))
     return stream.getvalue()
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -17,8 +17,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import pymap3d.vincenty
 
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact, Recorded
-from backend.mission.ports import TrackPoint
-from backend.mission.state import MissionState, evolve
+from backend.search.state import EmitterState, SearchState, evolve
+from backend.wire.export import Tracks
 
 SIGMAS_95 = 2.4477
 UNKNOWN = "9999999.0"
@@ -26,14 +26,14 @@ STALE = timedelta(days=1)
 RAY_M = 500.0
 
 
-def cot_package(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> bytes:
+def cot_package(recorded: Sequence[Recorded], tracks: Tracks) -> bytes:
     """A zip with a manifest and one file an event. The track is not part of it."""
     events = cot_events(recorded)
     mission = recorded[0].mission_id if recorded else "none"
     package = Element("MissionPackageManifest", version="2")
     configuration = SubElement(package, "Configuration")
     SubElement(configuration, "Parameter", name="uid", value=_uid(mission, "package"))
-    SubElement(configuration, "Parameter", name="name", value=_state(recorded)[0].mission.name if recorded else "empty")
+    SubElement(configuration, "Parameter", name="name", value=_state(recorded).mission.name if recorded else "empty")
     contents = SubElement(package, "Contents")
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -48,20 +48,32 @@ def cot_package(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> by
 
 
 def cot_events(recorded: Sequence[Recorded]) -> list[Element]:
-    """The emitter with its ellipse when there is an estimate, and a line for each bearing that counts."""
+    """Each emitter with its ellipse when there is an estimate, and a line for each bearing that counts."""
     if not recorded:
         return []
-    state, belief_at = _state(recorded)
-    mission_id, estimate = recorded[0].mission_id, state.belief.estimate if state.belief else None
-    events = []
-    if estimate is not None and belief_at is not None and state.belief is not None:
-        words = "localized" if state.belief.localized else "not yet localized"
-        label = state.mission.emitter.label
-        events.append(_emitter(mission_id, estimate, belief_at, f"{label}: {words}"))
-        events.append(_ellipse(mission_id, estimate, belief_at, label))
-    taken = {record.event.bearing_id: record.at_utc for record in recorded if isinstance(record.event, BearingMeasured)}
-    for number, fact in enumerate(state.bearings, start=1):
-        events.append(_bearing(mission_id, number, fact, taken[fact.bearing_id], estimate))
+    state, mission_id = _state(recorded), recorded[0].mission_id
+    times = {r.event.bearing_id: r.at_utc for r in recorded if isinstance(r.event, BearingMeasured)}
+    beliefs = {r.event.emitter_id: r.at_utc for r in recorded if isinstance(r.event, BeliefUpdated)}
+    events: list[Element] = []
+    for emitter in state.emitters.values():
+        label = state.mission.emitter(emitter.emitter_id).label
+        events += _events_of(f"{mission_id}/{emitter.emitter_id}", emitter, label, beliefs, times)
+    return events
+
+
+def _events_of(
+    key: str, emitter: EmitterState, label: str, beliefs: Mapping[str, datetime], times: Mapping[str, datetime]
+) -> list[Element]:
+    """key: what the events' ids are made from."""
+    belief = emitter.belief
+    events: list[Element] = []
+    estimate = None if belief is None else belief.estimate
+    if belief is not None and estimate is not None:
+        words, at = "localized" if belief.localized else "not yet localized", beliefs[emitter.emitter_id]
+        events.append(_emitter(key, estimate, at, f"{label}: {words}"))
+        events.append(_ellipse(key, estimate, at, label))
+    for number, fact in enumerate(emitter.bearings, start=1):
+        events.append(_bearing(key, number, fact, times[fact.bearing_id], estimate))
     return events
 
 
@@ -109,7 +121,7 @@ def _bearing(
 def _event(
     uid: str, kind: str, at: datetime, lat: float, lon: float, radius_m: float | None, amsl_m: float | None = None
 ) -> tuple[Element, Element]:
-    """`hae` is the height above the ellipsoid, which is not known here; heights above sea level are told beside it."""
+    """`hae` is the height above the ellipsoid, which is not known here; heights above sea level stand beside it."""
     event = Element("event", version="2.0", uid=uid, type=kind, how="m-g")
     for name, moment in (("time", at), ("start", at), ("stale", at + STALE)):
         event.set(name, moment.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ"))
@@ -121,14 +133,11 @@ def _event(
     return event, detail
 
 
-def _state(recorded: Sequence[Recorded]) -> tuple[MissionState, datetime | None]:
-    """The mission at its end, and when its belief was last updated."""
-    state, belief_at = MissionState(), None
+def _state(recorded: Sequence[Recorded]) -> SearchState:
+    state = SearchState()
     for record in recorded:
         state = evolve(state, record.event, record.at_utc.timestamp())
-        if isinstance(record.event, BeliefUpdated):
-            belief_at = record.at_utc
-    return state, belief_at
+    return state
 
 
 def _uid(mission_id: str, what: str) -> str:

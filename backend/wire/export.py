@@ -5,80 +5,87 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 from xml.sax.saxutils import escape
 
 import pymap3d.vincenty
 
-from backend.events import (
-    AreaChanged,
-    BearingMeasured,
-    BeliefUpdated,
-    MissionDrafted,
-    MissionEdited,
-    MissionStarted,
-    Recorded,
-    SweepStarted,
-)
-from backend.mission.ports import TrackPoint
-from backend.mission.state import MissionState, evolve
+from backend.events import FORM, BearingMeasured, CraftSource, MissionStarted, Recorded, SweepStarted
+from backend.ports import TrackPoint
+from backend.search.state import EmitterState, SearchState, evolve
 from backend.spec import Area, Place
 from backend.version import VERSION
 
+Tracks = Mapping[str, Sequence[TrackPoint]]
+"""The flown paths by craft id."""
 RAY_M = 500.0
 """Length of a bearing line when there is no estimate to reach."""
 
 
-def journal_json(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> str:
-    """Everything: each event as it was stored, and the flown path."""
+def journal_json(recorded: Sequence[Recorded], tracks: Tracks) -> str:
+    """Everything: each event as it was stored, and the flown paths."""
     mission_id = recorded[0].mission_id if recorded else ""
     return json.dumps(
         {
             "mission_id": mission_id,
             "software": f"crossfix {VERSION}",
+            "form": FORM,
             "events": [record.model_dump(mode="json") for record in recorded],
-            "track": [[_time(p.at_s), p.lat_deg, p.lon_deg, p.altitude_amsl_m, p.heading_deg] for p in track],
+            "tracks": {
+                craft_id: [[_time(p.at_s), p.lat_deg, p.lon_deg, p.altitude_amsl_m, p.heading_deg] for p in track]
+                for craft_id, track in tracks.items()
+            },
         },
         indent=1,
     )
 
 
-def bearings_csv(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> str:
-    """The bearing file of the UAV-RT project, without header: tag id, sweep, bearing (deg true), quality, lat, lon,
-    altitude above the home (m; theirs is above ground), altitude AMSL (m), start and end (UTC epoch seconds)."""
+def bearings_csv(recorded: Sequence[Recorded], tracks: Tracks) -> str:
+    """The bearing file of the UAV-RT project, without header: tag id (the emitter's number), sweep, bearing (deg true),
+    quality, lat, lon, altitude above the home (m; theirs is above ground), altitude AMSL (m), start and end (UTC epoch
+    seconds; of a bearing that no craft of the mission took, both are when it was brought in)."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    counted = {fact.bearing_id for fact in _state(recorded).bearings}
-    home_amsl_m, began_s = 0.0, 0.0
+    emitters = tuple(_state(recorded).emitters.values())
+    counted = {fact.bearing_id: number for number, e in enumerate(emitters, start=1) for fact in e.bearings}
+    home_amsl_m, began_s = 0.0, dict[str, float]()
     for record in recorded:
         event = record.event
         if isinstance(event, MissionStarted):
             home_amsl_m = event.home_amsl_m
         elif isinstance(event, SweepStarted):
-            began_s = record.at_utc.timestamp()
+            began_s[event.craft_id] = record.at_utc.timestamp()
         elif isinstance(event, BearingMeasured) and event.bearing_id in counted:
             place, altitude = event.place, event.altitude_amsl_m
-            row = [1, event.sweep_id, f"{event.bearing_deg:.6f}", f"{event.quality:.6f}", f"{place.lat:.8f}"]
+            row = [
+                counted[event.bearing_id],
+                event.sweep_id or "",
+                f"{event.bearing_deg:.6f}",
+                f"{event.quality:.6f}",
+                f"{place.lat:.8f}",
+            ]
             row += [f"{place.lon:.8f}", f"{altitude - home_amsl_m:.3f}", f"{altitude:.3f}"]
-            writer.writerow([*row, f"{began_s:.6f}", f"{record.at_utc.timestamp():.6f}"])
+            end_s = record.at_utc.timestamp()
+            start_s = began_s.get(event.source.craft_id, end_s) if isinstance(event.source, CraftSource) else end_s
+            writer.writerow([*row, f"{start_s:.6f}", f"{end_s:.6f}"])
     return text.getvalue()
 
 
-def geojson(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> str:
+def geojson(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """A FeatureCollection; each feature's `what` says what it is."""
     features = [
         {"type": "Feature", "geometry": geometry, "properties": properties}
-        for geometry, properties in _features(recorded, track)
+        for geometry, properties in _features(recorded, tracks)
     ]
     return json.dumps({"type": "FeatureCollection", "features": features}, indent=1)
 
 
-def kml(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> str:
+def kml(recorded: Sequence[Recorded], tracks: Tracks) -> str:
     """The same features as placemarks."""
-    parts = []
-    for geometry, properties in _features(recorded, track):
+    parts: list[str] = []
+    for geometry, properties in _features(recorded, tracks):
         words = "".join(
             f"<Data name={_quoted(name)}><value>{_escaped(value)}</value></Data>"
             for name, value in properties.items()
@@ -110,48 +117,45 @@ _STYLES = "".join(
 )
 
 
-def _state(recorded: Sequence[Recorded]) -> MissionState:
-    state = MissionState()
+def _state(recorded: Sequence[Recorded]) -> SearchState:
+    state = SearchState()
     for record in recorded:
         state = evolve(state, record.event, record.at_utc.timestamp())
     return state
 
 
-def _features(
-    recorded: Sequence[Recorded], track: Sequence[TrackPoint]
-) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+def _features(recorded: Sequence[Recorded], tracks: Tracks) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     """(geometry, properties) pairs; properties begin with what and name."""
-    spec, belief, measured = None, None, []
-    for record in recorded:
-        match record.event:
-            case MissionDrafted(spec=given) | MissionEdited(spec=given):
-                spec = given
-            case AreaChanged(search=search) if spec is not None:
-                spec = spec.searching(search)
-            case BearingMeasured() as fact:
-                measured.append((record, fact))
-            case BeliefUpdated() as updated:
-                belief = updated
-    if spec is not None:
-        yield _area(spec.area), {"what": "area", "name": spec.name}
-        for number, zone in enumerate(spec.flight.no_fly, start=1):
+    state = _state(recorded)
+    if state.spec is not None:
+        yield _area(state.spec.area), {"what": "area", "name": state.spec.name}
+        for number, zone in enumerate(state.spec.flight.no_fly, start=1):
             yield _area(zone), {"what": "no_fly", "name": f"no-fly area {number}"}
-    if len(track) > 1:
-        yield (
-            {"type": "LineString", "coordinates": [[p.lon_deg, p.lat_deg] for p in track]},
-            {"what": "track", "name": "flown path", "from_utc": _time(track[0].at_s), "to_utc": _time(track[-1].at_s)},
-        )
-    excluded = _state(recorded).excluded
-    estimate = belief.estimate if belief else None
+    for craft_id, track in tracks.items():
+        if len(track) > 1:
+            times = {"from_utc": _time(track[0].at_s), "to_utc": _time(track[-1].at_s)}
+            path = {"type": "LineString", "coordinates": [[p.lon_deg, p.lat_deg] for p in track]}
+            yield path, {"what": "track", "name": "flown path", "craft": craft_id, **times}
+    times_utc = {r.event.bearing_id: r.at_utc for r in recorded if isinstance(r.event, BearingMeasured)}
+    for emitter in state.emitters.values():
+        yield from _emitter_features(state, emitter, times_utc)
+
+
+def _emitter_features(
+    state: SearchState, emitter: EmitterState, times_utc: Mapping[str, datetime]
+) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    belief, estimate = emitter.belief, emitter.belief.estimate if emitter.belief else None
+    several = {"emitter": state.mission.emitter(emitter.emitter_id).label} if len(state.emitters) > 1 else {}
     target = Place(lat=estimate.lat, lon=estimate.lon) if estimate else None
-    for number, (record, fact) in enumerate(measured, start=1):
+    for number, fact in enumerate(emitter.measured, start=1):
         properties = {
             "name": f"bearing {number}",
+            **several,
             "bearing_deg": fact.bearing_deg,
             "sigma_deg": fact.sigma_deg,
             "quality": fact.quality,
-            "excluded": fact.bearing_id in excluded,
-            "at_utc": record.at_utc.isoformat(),
+            "excluded": fact.bearing_id in emitter.excluded,
+            "at_utc": times_utc[fact.bearing_id].isoformat(),
         }
         here = [fact.place.lon, fact.place.lat]
         yield {"type": "Point", "coordinates": here}, {"what": "place", **properties}
@@ -159,6 +163,7 @@ def _features(
         yield ray, {"what": "bearing", **properties}
     if belief is not None and estimate is not None:
         properties = {
+            **several,
             "expected_rmse_m": estimate.expected_rmse_m,
             "localized": belief.localized,
             "bearings": belief.bearings,

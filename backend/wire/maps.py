@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from backend.reasons import Reason
 from backend.spec import Area, Latitude, Longitude, Model, MultiPolygon
 
 Box = tuple[Longitude, Latitude, Longitude, Latitude]
@@ -48,11 +49,11 @@ class MapPackage(Model):
 
 class MapList(Model):
     """By name. `room_bytes`: how large an upload may be, from the free disk less the journal's reserve.
-    `unusable`: files in the map folder that cannot be read any more, one sentence each."""
+    `unusable`: files in the map folder that are no maps."""
 
     maps: list[MapPackage]
     room_bytes: int
-    unusable: list[str]
+    unusable: list[Reason]
 
 
 class MapLayers(Model):
@@ -60,13 +61,13 @@ class MapLayers(Model):
 
     source: a MapLibre source of type raster or vector whose url is "pmtiles:///api/maps/{map_id}/tiles.pmtiles" (the
     page puts its origin in). Labels need no glyph server: MapLibre draws them from local fonts when its style has no
-    `glyphs`. `notes`: what cannot be drawn, one sentence each.
+    `glyphs`. `notes`: what cannot be drawn as it should be.
     """
 
     source_id: str
     source: dict[str, Any]
     layers: list[dict[str, Any]]
-    notes: list[str]
+    notes: list[Reason]
 
 
 class CoverageRequest(Model):
@@ -98,12 +99,12 @@ class MapCoverage(Model):
 
 class Coverage(Model):
     """`covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
-    `missing`: what no map covers so; `summary`: one sentence to show."""
+    `missing`: what no map covers so."""
 
     covered: bool
     fraction: float
     missing: MultiPolygon | None
-    summary: str
+    summary: Reason
     maps: list[MapCoverage]
 
 
@@ -115,7 +116,7 @@ class Overlay(Model):
     format: Literal["geojson", "kml", "kmz"]
     features: int
     bounds: Box
-    notes: list[str]
+    notes: list[Reason]
     added_at_utc: datetime
 
 
@@ -139,4 +140,4 @@ class OverlayCollection(Model):
     """A GeoJSON FeatureCollection."""
 
     type: Literal["FeatureCollection"] = "FeatureCollection"
-    features: list[OverlayFeature] = Field(default_factory=list)
+    features: list[OverlayFeature] = Field(default_factory=list[OverlayFeature])

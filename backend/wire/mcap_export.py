@@ -16,9 +16,8 @@ from typing import Any
 from mcap.writer import CompressionType, Writer
 
 from backend.events import BeliefUpdated, EstimateFact, Recorded
-from backend.mission.ports import TrackPoint
 from backend.version import VERSION
-from backend.wire.export import geojson
+from backend.wire.export import Tracks, geojson
 
 NUMBER, TEXT = {"type": "number"}, {"type": "string"}
 STAMP = {"type": "object", "title": "time", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}}
@@ -62,18 +61,18 @@ LOCATION_FIX = {
 }
 
 
-def mcap(recorded: Sequence[Recorded], track: Sequence[TrackPoint]) -> bytes:
+def mcap(recorded: Sequence[Recorded], tracks: Tracks) -> bytes:
     """The whole recording, messages in time order."""
     stream = io.BytesIO()
     writer = Writer(stream, compression=CompressionType.ZSTD)
     writer.start(profile="", library=f"crossfix {VERSION}")
-    channels = {}
+    channels: dict[str, int] = {}
     for name, topic in TOPICS.items():
         properties = LOCATION_FIX if topic.schema_name == "foxglove.LocationFix" else topic.properties
         schema = json.dumps({"type": "object", "title": topic.schema_name, "properties": properties}).encode()
         schema_id = writer.register_schema(topic.schema_name, "jsonschema", schema)
         channels[name] = writer.register_channel(name, "json", schema_id)
-    messages = sorted([*_events(recorded), *_flight(track)], key=lambda message: message[0])
+    messages = sorted([*_events(recorded), *_flights(tracks)], key=lambda message: message[0])
     for number, (at_ns, name, content) in enumerate(messages):
         writer.add_message(channels[name], at_ns, json.dumps(content, allow_nan=False).encode(), at_ns, number)
     writer.finish()
@@ -85,14 +84,14 @@ def _events(recorded: Sequence[Recorded]) -> Iterator[Message]:
         at_ns = _nanoseconds(record.at_utc.timestamp())
         yield at_ns, "/mission/events", record.model_dump(mode="json")
         if isinstance(record.event, BeliefUpdated):
-            yield at_ns, "/findings", {"geojson": geojson(recorded[: index + 1], ())}
+            yield at_ns, "/findings", {"geojson": geojson(recorded[: index + 1], {})}
             if record.event.estimate is not None:
                 yield at_ns, "/estimate/fix", _estimate_fix(at_ns, record.event.estimate)
 
 
-def _flight(track: Sequence[TrackPoint]) -> Iterator[Message]:
+def _flights(tracks: Tracks) -> Iterator[Message]:
     """Numbers that are not known are left out; points without a place too."""
-    for point in track:
+    for point in (point for track in tracks.values() for point in track):
         if not (_finite(point.lat_deg) and _finite(point.lon_deg)):
             continue
         at_ns = _nanoseconds(point.at_s)

@@ -11,8 +11,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from backend.events import Recorded
+from backend.events import MissionPhase, Phase, Recorded
 from backend.spec import Model
+from hardware.authority import Who
 
 
 class Hello(Model):
@@ -30,9 +31,10 @@ class EventMessage(Model):
 
 
 class TelemetryMessage(Model):
-    """`*_age_s`: how old each group of values was when sent; None: never heard."""
+    """Of one craft. `*_age_s`: how old each group of values was when sent; None: never heard. who: who flies it."""
 
     type: Literal["telemetry"] = "telemetry"
+    craft_id: str
     at_utc: datetime
     connected: bool
     lat: float | None
@@ -52,36 +54,46 @@ class TelemetryMessage(Model):
     in_air: bool | None
     mode: str | None
     mode_age_s: float | None
-    controller: Literal["crossfix", "pilot", "nobody"]
+    who: Who
     autopilot: Literal["px4", "ardupilot", "unknown"]
     dropped: int
 
 
 class SweepProgress(Model):
-    """The running sweep: antenna heading (true) and power of the samples so far, thinned to at most 360."""
+    """The running sweep of a craft: antenna heading (true) and power of one emitter's samples so far, thinned to at
+    most 360."""
 
     type: Literal["sweep_progress"] = "sweep_progress"
     mission_id: str
+    craft_id: str
+    emitter_id: str
     place_number: int
     heading_deg: list[float]
     power_db: list[float]
     turned_deg: float
 
 
+class CraftStatusMessage(Model):
+    """mission_id None: it flies for none."""
+
+    craft_id: str
+    mission_id: str | None
+    phase: Phase
+    receiver: Literal["ok", "silent", "off", "lost"]
+    receiver_power_db: float | None
+    receiver_age_s: float | None
+    battery_to_return_percent: float | None
+
+
 class StatusMessage(Model):
-    """Once a second: what the mission does now, in words, and the health of each part."""
+    """Once a second: the mission in the air, None when none is, every craft there is, and the server's own health."""
 
     type: Literal["status"] = "status"
     at_utc: datetime
     mission_id: str | None
-    phase: str | None
-    doing: str
-    waits_for: str | None
-    receiver: Literal["ok", "silent", "off", "lost"]
-    receiver_power_db: float | None
-    receiver_age_s: float | None
+    phase: MissionPhase | None
+    crafts: list[CraftStatusMessage]
     viewers: int
-    battery_to_return_percent: float | None
     database: Literal["ok", "slow", "lost"]
 
 

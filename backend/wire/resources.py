@@ -13,30 +13,35 @@ from backend.events import (
     CandidateFact,
     CheckFact,
     EstimateFact,
-    Phase,
+    MissionPhase,
+    Outcome,
     PlanChosen,
     Recorded,
     SweepRejected,
 )
-from backend.spec import Area, MissionSpec, Model, Place
+from backend.reasons import Reason
+from backend.spec import Area, Id, MissionSpec, Model, Place
+from planner.options import BasePolicy, DiscreteSelection, Estimator, Method
 
-Outcome = Literal["localized", "not_localized", "aborted", "failed"]
 DatabaseState = Literal["ok", "slow", "lost"]
 
 
 class DatabaseHealth(Model):
-    """`spooled`: events kept on disk until the database is back."""
+    """`reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back."""
 
     state: DatabaseState
     kind: Literal["sqlite", "postgresql"]
-    detail: str
+    reason: Reason | None
     spooled: int
 
 
 class VehicleHealth(Model):
+    """`reason`: why there is no vehicle."""
+
+    craft_id: str
     connected: bool
     autopilot: Literal["px4", "ardupilot", "unknown"]
-    detail: str
+    reason: Reason | None
 
 
 class Health(Model):
@@ -46,21 +51,23 @@ class Health(Model):
     version: str
     uptime_s: float
     database: DatabaseHealth
-    vehicle: VehicleHealth
+    vehicles: list[VehicleHealth]
     viewers: int
     simulated: bool
     time_factor: float
 
 
 class Payload(Model):
-    """A companion computer with a radio. `age_s`: since it was last heard. `clock_offset_s`: server minus payload; its
-    samples are corrected by it. `waiting`: samples on its disk that are still to come; `lost`: its disk was full."""
+    """A companion computer with a radio. `age_s`: since it was last heard. `receiver`: how it is, None until it has
+    said so. `clock_offset_s`: server minus payload; its samples are corrected by it. `waiting`: samples on its disk
+    that are still to come; `lost`: its disk was full.
+    """
 
     name: str
     connected: bool
     age_s: float
     software: str
-    receiver: str
+    receiver: Reason | None
     receiver_ok: bool
     temperature_c: float | None
     clock_offset_s: float | None
@@ -87,12 +94,15 @@ class Defaults(Model):
 
 
 class MissionSummary(Model):
-    """One line of the list. `started_at_utc`, `ended_at_utc`, `outcome`: None until it happened."""
+    """One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
+    `ended_at_utc`, `outcome`: None until it happened."""
 
     mission_id: str
     name: str
-    phase: Phase
+    phase: MissionPhase
+    flying: bool
     outcome: Outcome | None
+    emitters: int
     drafted_at_utc: datetime
     started_at_utc: datetime | None
     ended_at_utc: datetime | None
@@ -102,17 +112,26 @@ class MissionSummary(Model):
     last_seq: int
 
 
+class EmitterFound(Model):
+    """What is known of one emitter. `estimate`: of the last belief, None before the first bearing or when the bearings
+    are inconsistent. `not_yet`: why "localized" is not said."""
+
+    emitter_id: str
+    bearings: int
+    estimate: EstimateFact | None
+    localized: bool
+    not_yet: list[Reason]
+
+
 class Mission(MissionSummary):
-    """`estimate`: of the last belief, None before the first bearing or when the bearings are inconsistent.
-    `not_yet`: why "localized" is not said. `editable`: the specification may still be replaced."""
+    """`editable`: the specification may still be replaced. `found`: in the order of the specification's emitters."""
 
     spec: MissionSpec
     editable: bool
     home: Place | None
-    estimate: EstimateFact | None
     localized: bool
-    not_yet: list[str]
-    outcome_reason: str | None
+    found: list[EmitterFound]
+    outcome_reason: Reason | None
 
 
 class MissionList(Model):
@@ -155,6 +174,8 @@ class SweepRecord(Model):
 
     sweep_id: str
     mission_id: str
+    craft_id: str | None
+    emitter_id: str
     place_number: int
     attempt: int
     began_at_utc: datetime
@@ -182,10 +203,19 @@ class TrackFact(Model):
 
 
 class Track(Model):
-    """The flown path, thinned to 2 Hz, in time order."""
+    """The flown path of a craft, thinned to 2 Hz, in time order."""
 
     mission_id: str
+    craft_id: str
     points: list[TrackFact]
+
+
+class ExportedMission(Model):
+    """What an exported journal holds. Of the paths it keeps time, place, altitude and heading."""
+
+    mission_id: str
+    events: list[Recorded]
+    tracks: list[Track]
 
 
 class ExpectedTimeRequest(Model):
@@ -202,7 +232,7 @@ class ExpectedTime(Model):
 
     place: Place
     allowed: bool
-    reason: str
+    reason: Reason | None
     expected_time_s: float | None
     std_error_s: float | None
     time_90_s: float | None
@@ -214,7 +244,7 @@ class Preview(Model):
 
     start: Place
     first_place: Place
-    reason: str
+    reason: Reason
     expected_time_s: float | None
     time_90_s: float | None
     times_s: list[float]
@@ -225,14 +255,13 @@ class Preview(Model):
 
 class AreaOutlook(Model):
     """Another search area in flight: what the bearings so far would say there, and the next place (None: `no_plan` says
-    why). allowed False: it cannot be searched from where the vehicle is, `reason` and `remedy` say why."""
+    why). allowed False: it cannot be searched from where the vehicle is, `reason` says why."""
 
     allowed: bool
-    reason: str
-    remedy: str
+    reason: Reason | None
     belief: BeliefUpdated
     plan: PlanChosen | None
-    no_plan: str
+    no_plan: Reason | None
 
 
 class AreaUpload(Model):
@@ -243,13 +272,13 @@ class AreaUpload(Model):
 
 
 class AreaImport(Model):
-    """`notes`: what was changed or left out while reading, one sentence each."""
+    """`notes`: what was changed or left out while reading."""
 
     area: Area
     format: Literal["geojson", "kml"]
     area_m2: float
     vertices: int
-    notes: list[str]
+    notes: list[Reason]
 
 
 class ImportedSweep(Model):
@@ -262,7 +291,7 @@ class ImportedSweep(Model):
     bearing_deg: float | None
     sigma_deg: float | None
     quality: float
-    reason: str
+    reason: Reason | None
 
 
 class RecordingImport(Model):
@@ -273,7 +302,7 @@ class RecordingImport(Model):
     filename: str
     already: bool
     sweeps: list[ImportedSweep]
-    remarks: list[str]
+    remarks: list[Reason]
     last_seq: int
 
 
@@ -288,23 +317,25 @@ class PatternUpload(Model):
 
 
 class WhatIfRequest(Model):
-    """A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
-    bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg` (clockwise, instead of the
-    pattern's own): the stored sweeps are taken through this antenna; None of both: their bearings stay."""
+    """A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
+    `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`
+    (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
+    bearings stay."""
 
+    emitter_id: Id | None = None
     bearings: int = Field(ge=0, le=200)
     sigma_deg: float | None = Field(default=None, ge=0.1, le=60)
     outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
     pattern: PatternUpload | None = None
     offset_to_nose_deg: float | None = Field(default=None, ge=-360, le=360, allow_inf_nan=False)
-    method: Literal["rollout", "base_policy"] | None = None
-    base_policy: Literal["ellipse", "fisher"] | None = None
-    selection: Literal["uniform", "sequential_halving"] | None = None
-    estimator: Literal["map", "expected_value", "geometric_median"] | None = None
+    method: Method | None = None
+    base_policy: BasePolicy | None = None
+    selection: DiscreteSelection | None = None
+    estimator: Estimator | None = None
 
 
 class WhatIfStep(Model):
-    """After so many flown bearings: what would have been said, and what was (None: nothing was said then)."""
+    """After this many flown bearings: what would have been said, and what was (None: nothing was said then)."""
 
     bearings: int
     expected_rmse_m: float | None
@@ -321,12 +352,12 @@ class WhatIfAntenna(Model):
 class WhatIf(Model):
     """`belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
     binary frame (lite). `sweeps`: what each would have told, in order, without those left out or not taken then.
-    `antenna`: through which the sweeps were taken anew, None: they were not."""
+    `antenna`: through which the sweeps were taken again, None: they were not."""
 
     steps: list[WhatIfStep]
     belief: BeliefUpdated
     plan: PlanChosen | None
-    no_plan: str
+    no_plan: Reason | None
     frame_base64: str
     sweeps: list[SweepFact]
     antenna: WhatIfAntenna | None

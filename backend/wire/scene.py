@@ -30,20 +30,16 @@ SceneLayer = Literal[
 ]
 
 
-SceneLanguage = Literal["en", "de"]
-
-
 class SceneRequest(Model):
     """mission_id None: the mission that flies now, and the next one after it. seq None: follow the live mission; a
     number: the mission as it was after that event. `hidden`: layers left out. `belief_height_m`: height of the belief's
-    peak; None: chosen from the area. `language`: of the labels; the window's own panel keeps that of its opening."""
+    peak; None: chosen from the area."""
 
     mission_id: str | None = Field(default=None, pattern=r"^[A-Za-z0-9_-]{1,64}$")
     seq: int | None = Field(default=None, ge=1, le=2**31 - 1)
-    hidden: list[SceneLayer] = Field(default_factory=list, max_length=20)
+    hidden: list[SceneLayer] = Field(default_factory=list[SceneLayer], max_length=20)
     belief_height_m: float | None = Field(default=None, gt=0, le=10_000)
     theme: Literal["dark", "light"] = "dark"
-    language: SceneLanguage = "en"
 
 
 class SceneView(Model):

@@ -5,12 +5,13 @@ from __future__ import annotations
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
 from hardware.autopilot.link import STATION_SYSTEM
 from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, set_mode
+from hardware.reasons.vehicle import CommandName
 
-GUIDED, RTL, LAND, BRAKE, SMART_RTL = 4, 6, 9, 17, 21
+GUIDED, RTL, LAND, BRAKE, SMART_RTL, AUTO_RTL = 4, 6, 9, 17, 21, 27
 
 
-def _order(name: str, mode: int) -> ModeOrder:
-    return ModeOrder(name, (mode, 0), frozenset({mode}))
+def _order(command: CommandName, mode: int) -> ModeOrder:
+    return ModeOrder(command, (mode, 0), frozenset({mode}))
 
 
 def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
@@ -37,14 +38,17 @@ ARDUPILOT = Dialect(
         18: "THROW",
         20: "GUIDED_NOGPS",
         SMART_RTL: "SMART_RTL",
-        27: "AUTO_RTL",
+        AUTO_RTL: "AUTO_RTL",
     },
-    calm=frozenset({GUIDED, BRAKE}),
+    waiting_modes=frozenset({GUIDED, BRAKE}),
+    returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
+    landing_modes=frozenset({LAND}),
+    takeover_text=None,
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),
-    return_home=_order("RTL", RTL),
-    land=_order("LAND", LAND),
-    before_take_off=_order("GUIDED", GUIDED),
+    return_home=_order("return", RTL),
+    land=_order("landing", LAND),
+    before_take_off=_order("take_off_mode", GUIDED),
     take_off=_take_off,
     take_off_modes=frozenset({GUIDED}),
     settled_modes=frozenset({GUIDED}),
@@ -54,33 +58,28 @@ ARDUPILOT = Dialect(
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",
-            "ground station lost",
+            "station",
             frozenset({1, 3, 4, 5, 6, 7}),
-            1,
-            "Set FS_GCS_ENABLE to 1 (RTL): at 0 a vehicle without its station hovers until its battery is empty.",
+            1,  # RTL
         ),
         FailsafeRule(
             "MAV_GCS_SYSID",
-            "the ground station that its failsafe watches",
+            "station_id",
             frozenset({STATION_SYSTEM}),
             STATION_SYSTEM,
-            f"Set MAV_GCS_SYSID (SYSID_MYGCS before 4.7) to {STATION_SYSTEM}, Crossfix' MAVLink system id: "
-            "the autopilot does not notice the loss of any other.",
             formerly="SYSID_MYGCS",
         ),
         FailsafeRule(
             "FENCE_ACTION",
-            "geofence breached",
+            "fence",
             frozenset({1, 2, 3, 4, 5}),
-            1,
-            "Set FENCE_ACTION to 1 (RTL or land): at 0 the autopilot only reports the fence being left.",
+            1,  # RTL or land
         ),
         FailsafeRule(
             "FS_THR_ENABLE",
-            "radio control lost",
+            "transmitter",
             frozenset({1, 2, 3, 4, 5, 6, 7}),
-            1,
-            "Set FS_THR_ENABLE to 1 (RTL) when a pilot stands by with a transmitter.",
+            1,  # RTL
             blocking=False,
         ),
     ),

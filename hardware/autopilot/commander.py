@@ -1,106 +1,124 @@
-"""Commands with acknowledgement: sent only while allowed, sent again visibly, refused in words."""
+"""Commands with acknowledgement: sent only while that is ours to do, sent again visibly, refused with a reason."""
 
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections import defaultdict
 from collections.abc import Callable
 
-from hardware.autopilot.control import ControlLatch
+from hardware.authority import CommandAcknowledged, CommandSent
+from hardware.autopilot.control import Control
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.messages import ACCEPTED, IN_PROGRESS, RESULTS, Outgoing
-from hardware.autopilot.patience import Deadline
-from hardware.ports import Clock, PilotHasControl, VehicleError
-
-log = logging.getLogger(__name__)
+from hardware.autopilot.messages import Outgoing, result_of
+from hardware.deadline import Deadline
+from hardware.ports import Clock, NotInControl, VehicleError
+from hardware.reasons.vehicle import (
+    AutopilotRefused,
+    CommandName,
+    CommandResult,
+    CommandUnanswered,
+    ManoeuvreName,
+    ManoeuvreReplaced,
+    ModeNotCommanded,
+    SticksMoved,
+)
+from hardware.reasons.vehicle_news import TriedAgain, VehicleNews
 
 ACK_S, ACK_WALL_S, ATTEMPTS = 1.5, 1.0, 3
 
 
-class CommandRefused(VehicleError):
+class CommandDenied(VehicleError):
     """The autopilot answered, and said no."""
+
+    def __init__(self, reason: AutopilotRefused) -> None:
+        super().__init__(reason)
+        self.refusal = reason
 
 
 class ManoeuvreSuperseded(VehicleError):
-    """A later order (hold, return, another flight) replaced this one."""
+    """A later one (hold, return, another flight) replaced this manoeuvre."""
 
 
 class Manoeuvre:
-    """One thing the vehicle was told to do; a later one supersedes it, and then it sends nothing more."""
+    """One thing the vehicle is to do; a later one supersedes it, and then it sends nothing more."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.superseded_by: str | None = None
+    def __init__(self, name: ManoeuvreName) -> None:
+        self.name: ManoeuvreName = name
+        self.superseded_by: ManoeuvreName | None = None
 
 
 class Commander:
-    """Sends commands for manoeuvres. The pilot latch and the manoeuvre are asked in the instant before each send."""
+    """Sends commands for manoeuvres. Control and the manoeuvre are asked in the instant before each send."""
 
-    def __init__(self, link: MavlinkLink, clock: Clock, latch: ControlLatch, announce: Callable[[str], None]) -> None:
+    def __init__(
+        self, link: MavlinkLink, clock: Clock, control: Control, announce: Callable[[VehicleNews], None]
+    ) -> None:
         self._link = link
         self._clock = clock
-        self._latch = latch
+        self._control = control
         self._announce = announce
-        self._waiting: dict[int, list[asyncio.Future[int]]] = defaultdict(list)
+        self._waiting: dict[int, list[asyncio.Future[CommandResult]]] = defaultdict(list)
 
     def acknowledged(self, fields: Fields) -> None:
         """A COMMAND_ACK came."""
         for future in self._waiting.get(int(fields["command"]), ()):
             if not future.done():
-                future.set_result(int(fields["result"]))
+                future.set_result(result_of(int(fields["result"])))
 
     def check(self, manoeuvre: Manoeuvre) -> None:
-        """Raises PilotHasControl or ManoeuvreSuperseded when this manoeuvre may not go on."""
-        if self._latch.reason is not None:
-            raise PilotHasControl(f"{manoeuvre.name} is not possible: {self._latch.reason}. Resume to fly on.")
+        """Raises NotInControl or ManoeuvreSuperseded when this manoeuvre may not go on."""
+        authority = self._control.authority
+        if authority.taken_by == "sticks":
+            raise NotInControl(SticksMoved(manoeuvre.name))
+        if authority.taken_by == "mode" and authority.who != "ours":
+            raise NotInControl(ModeNotCommanded(manoeuvre.name, authority.mode or "", authority.who))
         if manoeuvre.superseded_by is not None:
-            raise ManoeuvreSuperseded(f"{manoeuvre.name} was replaced by {manoeuvre.superseded_by}.")
+            raise ManoeuvreSuperseded(ManoeuvreReplaced(manoeuvre.name, manoeuvre.superseded_by))
 
-    async def order(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], what: str) -> None:
-        """Send a flight command until it is acknowledged. `modes`: the raw modes that are ours after it.
+    async def send(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], command: CommandName) -> None:
+        """Send a flight command until it is acknowledged. modes: the raw modes that are ours after it.
 
-        Raises CommandRefused, PilotHasControl, ManoeuvreSuperseded, VehicleError (no answer).
+        Raises CommandDenied, NotInControl, ManoeuvreSuperseded, VehicleError (no answer).
         """
 
         def allowed() -> bool:
-            return self._latch.reason is None and manoeuvre.superseded_by is None
+            return self._control.ours and manoeuvre.superseded_by is None
 
         for attempt in range(1, ATTEMPTS + 1):
             self.check(manoeuvre)
-            self._latch.command(modes)
+            self._control.see(CommandSent(modes))
             result = await self._exchange(outgoing, attempt, allowed)
             self.check(manoeuvre)
-            if result == ACCEPTED:
-                self._latch.acknowledged()
+            if result == "accepted":
+                self._control.see(CommandAcknowledged())
                 return
             if result is not None:
-                raise CommandRefused(f"The autopilot refused {what}: {_in_words(result)}.")
+                raise CommandDenied(AutopilotRefused(command, result))
             if attempt < ATTEMPTS:
-                self._announce(f"no answer to {what}, sent again ({attempt + 1} of {ATTEMPTS})")
-        raise VehicleError(f"The autopilot did not answer {what} ({ATTEMPTS} times sent). Check the link.")
+                self._announce(TriedAgain(CommandUnanswered(command, attempt), attempt + 1))
+        raise VehicleError(CommandUnanswered(command, ATTEMPTS))
 
     async def ask(self, outgoing: Outgoing) -> bool:
-        """Send a command that moves nothing (telemetry rates); True when accepted. The pilot may have control."""
+        """Send a command that moves nothing (telemetry rates); True when accepted. Anybody may have control."""
         for attempt in range(1, ATTEMPTS + 1):
             result = await self._exchange(outgoing, attempt, lambda: True)
             if result is not None:
-                return result == ACCEPTED
+                return result == "accepted"
         return False
 
-    async def _exchange(self, outgoing: Outgoing, attempt: int, allowed: Callable[[], bool]) -> int | None:
-        """The final MAV_RESULT, or None when none came (or nothing was sent)."""
+    async def _exchange(self, outgoing: Outgoing, attempt: int, allowed: Callable[[], bool]) -> CommandResult | None:
+        """The final result, or None when none came (or nothing was sent)."""
         fields = outgoing.fields
         if outgoing.message == "COMMAND_LONG":
             fields = fields | {"confirmation": attempt - 1}
         waiting = self._waiting[outgoing.number]
-        future: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        future: asyncio.Future[CommandResult] = asyncio.get_running_loop().create_future()
         waiting.append(future)
         try:
             if not await self._link.send(outgoing.message, fields, allowed):
                 return None
             result = await self._answer(future, Deadline(self._clock, ACK_S, ACK_WALL_S), allowed)
-            if result == IN_PROGRESS:
+            if result == "in_progress":
                 waiting.remove(future)
                 future = asyncio.get_running_loop().create_future()
                 waiting.append(future)
@@ -109,13 +127,11 @@ class Commander:
         finally:
             waiting.remove(future)
 
-    async def _answer(self, future: asyncio.Future[int], deadline: Deadline, allowed: Callable[[], bool]) -> int | None:
+    async def _answer(
+        self, future: asyncio.Future[CommandResult], deadline: Deadline, allowed: Callable[[], bool]
+    ) -> CommandResult | None:
         while not deadline.passed and allowed():
             done, _ = await asyncio.wait((future,), timeout=0.05)
             if done:
                 return future.result()
         return None
-
-
-def _in_words(result: int) -> str:
-    return RESULTS[result] if 0 <= result < len(RESULTS) else f"result {result}"

@@ -6,7 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from hardware.authority import ModeKind
 from hardware.autopilot.messages import Outgoing
+from hardware.reasons.preflight import FailsafeWatch
+from hardware.reasons.vehicle import CommandName
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,15 +17,18 @@ class FailsafeRule:
     """One parameter that must make the autopilot act by itself. `safe`: the values that do; `set_to`: the remedy."""
 
     parameter: str
-    what: str
+    watch: FailsafeWatch
     safe: frozenset[int]
     set_to: int
-    remedy: str
     blocking: bool = True
     bit: int | None = None
     """When given, this bit must be set and `safe` is not looked at."""
     formerly: str | None = None
     """The name of the same parameter in older versions."""
+
+    def wanted(self, value: float | None) -> int:
+        """What to set it to; value: as it is now, whose other bits stay."""
+        return self.set_to if self.bit is None or value is None else int(value) | self.bit
 
     def holds(self, value: float) -> bool:
         return bool(int(value) & self.bit) if self.bit is not None else int(value) in self.safe
@@ -32,7 +38,7 @@ class FailsafeRule:
 class ModeOrder:
     """A mode to select: how to ask for it, and the raw custom modes that say the vehicle obeys."""
 
-    name: str
+    command: CommandName
     custom: tuple[float, float]
     modes: frozenset[int]
 
@@ -44,8 +50,10 @@ TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "conditio
 class Dialect:
     """One autopilot's way of speaking.
 
-    calm: raw modes in which an airborne vehicle waits for orders. hold: commands that stop it, in the order to try
-    them; hold_modes: the raw modes it then shows. reposition_modes: raw modes after DO_REPOSITION.
+    waiting_modes: raw modes in which a flying vehicle waits for commands. returning_modes, landing_modes: those that a
+    failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
+    hold: commands that stop it, in the order to try them; hold_modes: the raw modes it then shows. reposition_modes:
+    raw modes after DO_REPOSITION.
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
@@ -54,7 +62,10 @@ class Dialect:
 
     name: Literal["px4", "ardupilot"]
     mode_names: Mapping[int, str]
-    calm: frozenset[int]
+    waiting_modes: frozenset[int]
+    returning_modes: frozenset[int]
+    landing_modes: frozenset[int]
+    takeover_text: str | None
     hold: tuple[Outgoing, ...]
     hold_modes: frozenset[int]
     return_home: ModeOrder
@@ -70,3 +81,10 @@ class Dialect:
 
     def mode_name(self, custom_mode: int) -> str:
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")
+
+    def mode_kind(self, custom_mode: int) -> ModeKind:
+        if custom_mode in self.waiting_modes:
+            return "waiting"
+        if custom_mode in self.returning_modes:
+            return "return"
+        return "land" if custom_mode in self.landing_modes else "other"

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 _METRES_PER_DEGREE = 111_195.0
 
 
-def north_east_m(a: GeoPoint, b: GeoPoint) -> tuple[float, float]:
+def north_east_m(a: Place, b: Place) -> tuple[float, float]:
     """The way from a to b."""
-    north = (b.lat_deg - a.lat_deg) * _METRES_PER_DEGREE
-    east = math.remainder(b.lon_deg - a.lon_deg, 360.0) * _METRES_PER_DEGREE * math.cos(math.radians(a.lat_deg))
+    north = (b.lat - a.lat) * _METRES_PER_DEGREE
+    east = math.remainder(b.lon - a.lon, 360.0) * _METRES_PER_DEGREE * math.cos(math.radians(a.lat))
     return north, east
 
 
-def distance_m(a: GeoPoint, b: GeoPoint) -> float:
+def distance_m(a: Place, b: Place) -> float:
     return math.hypot(*north_east_m(a, b))

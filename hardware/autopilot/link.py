@@ -4,6 +4,9 @@ The raw messages are used rather than MAVSDK's actions because an action retrans
 reach the autopilot after a pilot took over) and because they carry the autopilot's own time and its raw mode.
 """
 
+# pyright: standard
+# (mavsdk has no types)
+
 from __future__ import annotations
 
 import asyncio
@@ -20,6 +23,7 @@ from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 from mavsdk.plugins.param import Param, ParamError, ParamResult
 
 from hardware.ports import VehicleUnreachable
+from hardware.reasons.vehicle import NoAutopilotAnswers, VehicleLinkNotOpened
 
 log = logging.getLogger(__name__)
 _LEVELS = {LogLevel.WARN: logging.INFO, LogLevel.ERROR: logging.WARNING}
@@ -57,9 +61,7 @@ def _refuse_taken_port(url: str) -> None:
         try:
             probe.bind((host.strip("[]"), int(port)))
         except OSError as error:
-            raise VehicleUnreachable(
-                f"Cannot listen on {url}: {error.strerror}. Another ground station may be using the port."
-            ) from error
+            raise VehicleUnreachable(VehicleLinkNotOpened(url, error.strerror or str(error))) from error
 
 
 class MavlinkLink:
@@ -78,7 +80,7 @@ class MavlinkLink:
         self.system_id = 0
 
     async def open(self, timeout_s: float) -> None:
-        """Raises VehicleUnreachable when no autopilot answers within so many wall seconds."""
+        """timeout_s: of the wall. Raises VehicleUnreachable when no autopilot answers."""
         loop = asyncio.get_running_loop()
         log_subscribe(_keep_log)
         _refuse_taken_port(self.url)
@@ -89,16 +91,11 @@ class MavlinkLink:
             await loop.run_in_executor(self._blocking, mavsdk.add_any_connection_with_handle, self.url)
         except Exception as error:
             await self.close()
-            raise VehicleUnreachable(
-                f"Cannot open {self.url}: {error}. Is the port free and the device there?"
-            ) from error
+            raise VehicleUnreachable(VehicleLinkNotOpened(self.url, str(error))) from error
         system = await self._first_autopilot(mavsdk, timeout_s)
         if system is None:
             await self.close()
-            raise VehicleUnreachable(
-                f"No autopilot answers on {self.url} within {timeout_s:g} s. "
-                "Is it switched on, and does it send to this address?"
-            )
+            raise VehicleUnreachable(NoAutopilotAnswers(self.url, timeout_s))
         self.system_id = system.get_system_id()
         self._direct = direct = MavlinkDirect(system)
         self._param = Param(system)

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.vehicle import CommandResult
 
 SET_MODE, ARM, TAKE_OFF, REPOSITION, CONDITION_YAW, CHANGE_SPEED = 176, 400, 22, 192, 115, 178
 SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 511, 512
@@ -15,9 +16,16 @@ _GLOBAL_INT = 5  # MAV_FRAME_GLOBAL_INT: altitude AMSL
 _CUSTOM_MODE_ENABLED = 1.0
 _CHANGE_MODE = 1.0  # MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
 
-RESULTS = ("accepted", "temporarily rejected", "denied", "unsupported", "failed", "in progress", "cancelled")
-"""MAV_RESULT in words."""
-ACCEPTED, IN_PROGRESS = 0, 5
+RESULTS: tuple[CommandResult, ...] = (
+    "accepted",
+    "temporarily_rejected",
+    "denied",
+    "unsupported",
+    "failed",
+    "in_progress",
+    "cancelled",
+)
+"""By the number of the MAV_RESULT."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +53,7 @@ def arm() -> Outgoing:
     return command_long(ARM, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def reposition(place: GeoPoint, altitude_amsl_m: float, speed_m_s: float | None, yaw_deg: float | None) -> Outgoing:
+def reposition(place: Place, altitude_amsl_m: float, speed_m_s: float | None, yaw_deg: float | None) -> Outgoing:
     """Fly there; COMMAND_INT keeps 1 cm of latitude. Yaw is radians on the wire; speed None keeps the present one."""
     fields: dict[str, Any] = {
         "frame": _GLOBAL_INT,
@@ -56,8 +64,8 @@ def reposition(place: GeoPoint, altitude_amsl_m: float, speed_m_s: float | None,
         "param2": _CHANGE_MODE,
         "param3": 0.0,
         "param4": None if yaw_deg is None else math.remainder(math.radians(yaw_deg), 2.0 * math.pi),
-        "x": round(place.lat_deg * 1e7),
-        "y": round(place.lon_deg * 1e7),
+        "x": round(place.lat * 1e7),
+        "y": round(place.lon * 1e7),
         "z": altitude_amsl_m,
     }
     return Outgoing(REPOSITION, "COMMAND_INT", fields)
@@ -71,6 +79,11 @@ def pause() -> Outgoing:
 
 def message_interval(message_id: int, hz: float) -> Outgoing:
     return command_long(SET_MESSAGE_INTERVAL, float(message_id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def result_of(number: int) -> CommandResult:
+    """number: MAV_RESULT."""
+    return RESULTS[number] if 0 <= number < len(RESULTS) else "unknown"
 
 
 def request_message(message_id: int) -> Outgoing:

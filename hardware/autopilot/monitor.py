@@ -8,17 +8,33 @@ import math
 import time
 from collections.abc import AsyncIterator
 
+from hardware.authority import Authority, ModeHeard, SticksTookOver
+from hardware.autopilot.announcer import Announcer, Wakeup
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.commander import Commander
-from hardware.autopilot.control import ControlLatch
+from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, request_message
-from hardware.autopilot.patience import Announcer, Deadline, News, Silence
 from hardware.autopilot.px4 import PX4
+from hardware.autopilot.silence import Silence
 from hardware.autopilot.snapshot import NAMES, Snapshot
+from hardware.deadline import Deadline
 from hardware.ports import Clock, VehicleUnreachable
-from hardware.readings import Telemetry
+from hardware.readings import Announcement, Telemetry
+from hardware.reasons.vehicle import HeartbeatStopped, UnknownAutopilot, VehicleNotConnected
+from hardware.reasons.vehicle_news import (
+    AutopilotRestarted,
+    ModeChanged,
+    PositionJumped,
+    TakenOver,
+    TakenOverBySticks,
+    VehicleConnected,
+    VehicleHeardAgain,
+    VehicleNews,
+    VehicleUnheard,
+)
+from planner.reason import text_of
 
 log = logging.getLogger(__name__)
 
@@ -36,9 +52,9 @@ STREAMS: tuple[tuple[int, float], ...] = (
 )
 LINK_LOST_WALL_S = 3.0
 STREAMS_CEASED_S = 3.0
-GIVEN_BACK_S = 1.5
-"""A mode counts as the pilot's answer only when it was heard so much later than he took over: PX4 says that the sticks
-took over before it says the mode."""
+AFTER_SILENCE_S, AFTER_SILENCE_WALL_S = 15.0, 5.0
+"""For this long after it was heard again, or the server came back, a vehicle may still act on the silence before: it
+hears us later than we hear it."""
 
 
 class Monitor:
@@ -48,21 +64,18 @@ class Monitor:
         self.clock = clock
         self.link = MavlinkLink(url, (*NAMES, "COMMAND_ACK", "STATUSTEXT"), self._on_message)
         self.snapshot = Snapshot()
-        self.news = News()
+        self.wakeup = Wakeup()
         self.connected = False
         self._dialect: Dialect | None = None
         self._autopilot_number: int | None = None
         self._announcer = Announcer()
-        self._listen(frozenset())
+        self.control = Control(self._on_authority)
+        self.commander = Commander(self.link, clock, self.control, self.announce)
         self.silence = Silence()
+        self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
-        self._taken_at_s = -math.inf
         self._tasks: list[asyncio.Task[None]] = []
-
-    def _listen(self, calm: frozenset[int]) -> None:
-        self.latch = ControlLatch(calm, self.mode_name)
-        self.commander = Commander(self.link, self.clock, self.latch, self.announce)
 
     async def connect(self, timeout_s: float = 30.0) -> None:
         """Open the link and wait for an autopilot (wall seconds). Raises VehicleUnreachable."""
@@ -77,22 +90,18 @@ class Monitor:
         await self.link.open(timeout_s)
         while self._autopilot_number is None:
             if time.monotonic() - started > timeout_s:
-                raise VehicleUnreachable(f"An autopilot was there on {self.link.url}, but its heartbeat stopped.")
-            await self.news.wait()
+                raise VehicleUnreachable(HeartbeatStopped(self.link.url))
+            await self.wakeup.wait()
         dialect = DIALECTS.get(self._autopilot_number)
         if dialect is None:
-            raise VehicleUnreachable(
-                f"The autopilot on {self.link.url} is neither PX4 nor ArduPilot "
-                f"(MAV_AUTOPILOT {self._autopilot_number})."
-            )
+            raise VehicleUnreachable(UnknownAutopilot(self.link.url, self._autopilot_number))
         self._dialect = dialect
-        self._listen(dialect.calm)
         self.connected = True
-        self.announce(f"connected to {dialect.name} on {self.link.url}")
+        self.announce(VehicleConnected(dialect.name, self.link.url))
         await self._request_streams()
         first = Deadline(self.clock, 5.0, 3.0)
         while (self.snapshot.position is None or self.snapshot.in_air is None) and not first.passed:
-            await self.news.wait()
+            await self.wakeup.wait()
         self._on_mode()  # before anything is commanded it is known whether a pilot flies
         self._tasks = [
             asyncio.create_task(self._watch_link(), name="vehicle-link-watch"),
@@ -100,7 +109,7 @@ class Monitor:
         ]
 
     async def close(self) -> None:
-        """Idempotent. The vehicle goes on with what it was told."""
+        """Idempotent. The vehicle goes on with what it was commanded."""
         tasks, self._tasks = self._tasks, []
         for task in tasks:
             task.cancel()
@@ -124,7 +133,7 @@ class Monitor:
             ceased = attitude is None or self.clock.now() - attitude > STREAMS_CEASED_S
             if self.snapshot.reboots != reboots:
                 reboots = self.snapshot.reboots
-                self.announce("the autopilot has started anew")
+                self.announce(AutopilotRestarted())
             elif not ceased or self.silence.seconds > LINK_LOST_WALL_S:
                 continue
             await self._request_streams()
@@ -137,19 +146,20 @@ class Monitor:
             self.look_at_link(looked - before)
 
     def look_at_link(self, elapsed_s: float) -> None:
-        """Is the vehicle still heard? So many seconds of the wall after the look before."""
+        """Is the vehicle still heard? elapsed_s: of the wall, since the last look."""
         self.silence.look(elapsed_s)
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
             self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
             self.snapshot.forget_landed()
-            self.announce("vehicle link lost")
-            self.news.tell()
+            self.announce(VehicleUnheard())
+            self.wakeup.wake()
         elif not lost and not self.connected and self._heartbeat_heard_again:
             self.connected = True
+            self._begin_after_silence()
             outage = self.clock.now() - (self._lost_at_s or self.clock.now())
-            self.announce(f"vehicle link restored after {outage:.1f} s")
-            self.news.tell()
+            self.announce(VehicleHeardAgain(outage))
+            self.wakeup.wake()
 
     @property
     def _heartbeat_heard_again(self) -> bool:
@@ -168,15 +178,16 @@ class Monitor:
                 self._autopilot_number = int(fields["autopilot"])
             self.snapshot.fold(name, fields, now)
             if name == "GLOBAL_POSITION_INT" and self.snapshot.jumped_m is not None:
-                self.announce(f"GPS position jumped by {self.snapshot.jumped_m:.0f} m")
+                self.announce(PositionJumped(self.snapshot.jumped_m))
             if name in ("HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"):
                 self._on_mode()
-        self.news.tell()
+        self.wakeup.wake()
 
     def _on_text(self, text: str) -> None:
         log.info("autopilot: %s", text)
-        if text.startswith("Pilot took over") and self.latch.reason is None and self.snapshot.armed:
-            self._take_over(self.latch.latch("the pilot took over using the sticks"))
+        takeover = None if self._dialect is None else self._dialect.takeover_text
+        if takeover is not None and text.startswith(takeover):
+            self.control.see(SticksTookOver(self.clock.now()))
 
     def _on_mode(self) -> None:
         snapshot = self.snapshot
@@ -185,25 +196,40 @@ class Monitor:
             return
         if mode != self._shown_mode:
             if self._shown_mode is not None:
-                self.announce(f"mode {self.mode_name(mode)}")
+                self.announce(ModeChanged(self._dialect.mode_name(mode)))
             self._shown_mode = mode
-        if not self.connected and mode in self._dialect.calm and not self._heartbeat_heard_again:
-            return  # an autopilot goes there by itself when it has landed, as it may have done unheard
-        reason = self.latch.observe(mode, snapshot.armed, bool(snapshot.in_air))
-        if reason is not None:
-            self._take_over(reason)
+        arming_known = self.connected or self._heartbeat_heard_again
+        window = self._after_silence
+        self.control.see(
+            ModeHeard(
+                mode=mode,
+                kind=self._dialect.mode_kind(mode),
+                name=self._dialect.mode_name(mode),
+                armed=snapshot.armed if arming_known else None,
+                in_air=bool(snapshot.in_air),
+                after_silence=not self.connected or (window is not None and not window.passed),
+                at_s=snapshot.mode_at_s or self.clock.now(),
+            )
+        )
 
-    def _take_over(self, reason: str) -> None:
-        self._taken_at_s = self.clock.now()
-        self.announce(f"pilot took over: {reason}")
-        self.news.tell()
+    def restore(self, authority: Authority) -> None:
+        """Go on from who flew before the server restarted; what the vehicle says now is judged by that."""
+        self._begin_after_silence()
+        self.control.restore(authority)
+        self._on_mode()
 
-    def announce(self, line: str) -> None:
-        log.info("vehicle: %s", line)
-        self._announcer.say(line)
+    def _begin_after_silence(self) -> None:
+        self._after_silence = Deadline(self.clock, AFTER_SILENCE_S, AFTER_SILENCE_WALL_S)
 
-    def mode_name(self, custom_mode: int) -> str:
-        return f"mode {custom_mode}" if self._dialect is None else self._dialect.mode_name(custom_mode)
+    def _on_authority(self, before: Authority, after: Authority) -> None:
+        if after.who != before.who and after.who in ("pilot", "failsafe"):
+            by_sticks = after.taken_by == "sticks"
+            self.announce(TakenOverBySticks() if by_sticks else TakenOver(after.who, after.mode or ""))
+        self.wakeup.wake()
+
+    def announce(self, news: VehicleNews) -> None:
+        log.info("%s", text_of(news))
+        self._announcer.say(Announcement(self.clock.now(), news))
 
     @property
     def dialect(self) -> Dialect:
@@ -215,34 +241,25 @@ class Monitor:
     def check_connected(self) -> None:
         """Raises VehicleUnreachable before an autopilot was heard (a link that was lost since is no matter)."""
         if self._dialect is None:
-            raise VehicleUnreachable(f"No vehicle is connected on {self.link.url}.")
-
-    @property
-    def held_by_pilot(self) -> bool:
-        """Somebody else took control, and the vehicle's mode does not say that it was given back."""
-        snapshot, latch = self.snapshot, self.latch
-        if latch.reason is None or not snapshot.armed:
-            return False
-        return latch.held or (snapshot.mode_at_s or -math.inf) < self._taken_at_s + GIVEN_BACK_S
+            raise VehicleUnreachable(VehicleNotConnected(self.link.url))
 
     def telemetry(self) -> Telemetry:
-        mode = self.snapshot.custom_mode
+        mode, dialect = self.snapshot.custom_mode, self._dialect
         return self.snapshot.telemetry(
             self.clock.now(),
             self.connected,
-            None if mode is None else self.mode_name(mode),
-            self.latch.controller,
-            self.held_by_pilot,
-            "unknown" if self._dialect is None else self._dialect.name,
+            None if mode is None or dialect is None else dialect.mode_name(mode),
+            self.control.authority,
+            "unknown" if dialect is None else dialect.name,
         )
 
-    def changes(self) -> AsyncIterator[str]:
-        """Announced lines from this call on; ends when closed."""
-        return self._lines(self._announcer.listen())
+    def changes(self) -> AsyncIterator[Announcement]:
+        """What is announced from this call on; ends when closed."""
+        return self._announced(self._announcer.listen())
 
-    async def _lines(self, queue: asyncio.Queue[str | None]) -> AsyncIterator[str]:
+    async def _announced(self, queue: asyncio.Queue[Announcement | None]) -> AsyncIterator[Announcement]:
         try:
-            while (line := await queue.get()) is not None:
-                yield line
+            while (announcement := await queue.get()) is not None:
+                yield announcement
         finally:
             self._announcer.forget(queue)

@@ -2,82 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from typing import Literal
 
-from hardware.autopilot.dialect import Dialect
+from hardware.autopilot.dialect import FailsafeRule
 from hardware.readings import PreflightCheck, Telemetry
+from hardware.reasons.preflight import (
+    ArmingChecked,
+    BatteryCharge,
+    ControlChecked,
+    FailsafeParameter,
+    FailsafeUnread,
+    GpsChecked,
+    HomeSet,
+    LinkChecked,
+    NeverReported,
+    ReportAge,
+)
+from hardware.reasons.vehicle_news import VehicleUnheard
 
 FRESH_S = 3.0
 MINIMUM_SATELLITES = 6
 _GOOD_FIXES = frozenset({"3D", "DGPS", "RTK float", "RTK fixed", "PPP"})
 
 
-def _age(at_s: float | None, now_s: float) -> str:
-    return "never heard" if at_s is None else f"{max(0.0, now_s - at_s):.1f} s old"
-
-
 def telemetry_checks(
-    telemetry: Telemetry, prearm_ok: bool | None, latched: str | None, minimum_battery_percent: float
+    telemetry: Telemetry, prearm_ok: bool | None, minimum_battery_percent: float
 ) -> list[PreflightCheck]:
     """Link, position, heading, battery, home, readiness, control."""
-    t, now = telemetry, telemetry.at_s
-    fresh_position = t.position_at_s is not None and now - t.position_at_s < FRESH_S
-    fresh_heading = t.heading_at_s is not None and now - t.heading_at_s < FRESH_S
-    charge = "not reported" if t.battery_percent is None else f"{t.battery_percent:.0f} %"
-    home = "not known" if t.home is None else f"{t.home.lat_deg:.6f}, {t.home.lon_deg:.6f}"
-    ready = "not reported by this autopilot" if prearm_ok is None else "ready" if prearm_ok else "not ready"
+    t = telemetry
     return [
-        PreflightCheck(
-            "Vehicle link", t.connected, f"{t.autopilot}, mode {t.mode}", "Check radio, cable and vehicle address."
-        ),
-        PreflightCheck(
-            "GPS",
-            t.gps_fix in _GOOD_FIXES and (t.satellites is None or t.satellites >= MINIMUM_SATELLITES),
-            f"{t.gps_fix or 'not reported'}, {t.satellites if t.satellites is not None else '?'} satellites",
-            f"Wait for a 3D fix with at least {MINIMUM_SATELLITES} satellites under open sky.",
-        ),
-        PreflightCheck(
-            "Position", fresh_position, _age(t.position_at_s, now), "Wait until the autopilot knows where it is."
-        ),
-        PreflightCheck(
-            "Heading",
-            fresh_heading,
-            _age(t.heading_at_s, now),
-            "Check the compass: bearings need the vehicle's heading.",
-        ),
-        PreflightCheck(
-            "Battery",
-            t.battery_percent is not None and t.battery_percent >= minimum_battery_percent,
-            charge,
-            f"Charge to at least {minimum_battery_percent:.0f} %, or set up the battery monitor.",
-            blocking=t.battery_percent is not None,
-        ),
-        PreflightCheck(
-            "Home position", t.home is not None, home, "Wait until the autopilot has set its home (it needs GPS)."
-        ),
-        PreflightCheck(
-            "Ready to arm",
-            prearm_ok is not False or bool(t.in_air),
-            "in the air" if t.in_air else ready,
-            "Read the autopilot's messages: its own checks refuse to arm.",
-        ),
-        PreflightCheck(
-            "Control",
-            latched is None or t.armed is False,
-            latched or "no pilot intervenes",
-            "Give control back with the transmitter, then resume.",
-        ),
+        PreflightCheck("vehicle_link", t.connected, LinkChecked(t.autopilot) if t.connected else VehicleUnheard()),
+        _gps(t),
+        _age("position", t.position_at_s, t.at_s),
+        _age("heading", t.heading_at_s, t.at_s),
+        _battery(t, minimum_battery_percent),
+        PreflightCheck("home", False, NeverReported("home"))
+        if t.home is None
+        else PreflightCheck("home", True, HomeSet(t.home.lat, t.home.lon)),
+        _ready_to_arm(t, prearm_ok),
+        _control(t),
     ]
 
 
-def failsafe_checks(dialect: Dialect, parameters: Mapping[str, float | None]) -> list[PreflightCheck]:
-    """`parameters`: name -> value as read, None when the autopilot did not give it."""
-    checks: list[PreflightCheck] = []
-    for rule in dialect.failsafes:
-        value = parameters.get(rule.parameter)
-        detail = f"{rule.what}: {rule.parameter} " + ("could not be read" if value is None else f"= {value:g}")
-        ok = value is not None and rule.holds(value)
-        checks.append(
-            PreflightCheck(f"Failsafe {rule.parameter}", ok, detail, "" if ok else rule.remedy, rule.blocking)
-        )
-    return checks
+def _gps(telemetry: Telemetry) -> PreflightCheck:
+    fix, satellites = telemetry.gps_fix, telemetry.satellites
+    if fix is None or satellites is None:
+        return PreflightCheck("gps", False, NeverReported("gps"))
+    ok = fix in _GOOD_FIXES and satellites >= MINIMUM_SATELLITES
+    return PreflightCheck("gps", ok, GpsChecked(fix, satellites, MINIMUM_SATELLITES))
+
+
+def _age(what: Literal["position", "heading"], at_s: float | None, now_s: float) -> PreflightCheck:
+    if at_s is None:
+        return PreflightCheck(what, False, NeverReported(what))
+    age_s = max(0.0, now_s - at_s)
+    return PreflightCheck(what, age_s < FRESH_S, ReportAge(what, age_s))
+
+
+def _battery(telemetry: Telemetry, minimum_percent: float) -> PreflightCheck:
+    charge = telemetry.battery_percent
+    if charge is None:
+        return PreflightCheck("battery", False, NeverReported("battery"), blocking=False)
+    return PreflightCheck("battery", charge >= minimum_percent, BatteryCharge(charge, minimum_percent))
+
+
+def _ready_to_arm(telemetry: Telemetry, prearm_ok: bool | None) -> PreflightCheck:
+    if telemetry.in_air:
+        return PreflightCheck("ready_to_arm", True, ArmingChecked("in_the_air"))
+    state = "not_reported" if prearm_ok is None else "ready" if prearm_ok else "not_ready"
+    return PreflightCheck("ready_to_arm", prearm_ok is not False, ArmingChecked(state))
+
+
+def _control(telemetry: Telemetry) -> PreflightCheck:
+    """A vehicle that somebody else landed and disarmed may start again."""
+    authority = telemetry.authority
+    if authority.taken_by is None or authority.who == "ours" or telemetry.armed is False:
+        return PreflightCheck("control", True, ControlChecked("nobody"))
+    return PreflightCheck("control", False, ControlChecked(authority.who))
+
+
+def failsafe_check(rule: FailsafeRule, name: str, value: float | None) -> PreflightCheck:
+    """name: of the parameter in this version of the autopilot; value: None when it could not be read."""
+    wanted = rule.wanted(value)
+    if value is None:
+        return PreflightCheck("failsafe", False, FailsafeUnread(rule.watch, name, wanted), rule.blocking)
+    reason = FailsafeParameter(rule.watch, name, value, wanted)
+    return PreflightCheck("failsafe", rule.holds(value), reason, rule.blocking)

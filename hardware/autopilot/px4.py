@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
 from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, set_mode
+from hardware.reasons.vehicle import CommandName
 
 
 def px4_mode(main: int, sub: int = 0) -> int:
@@ -17,8 +18,8 @@ HOLD, TAKING_OFF = px4_mode(_AUTO, _LOITER), px4_mode(_AUTO, _TAKE_OFF)
 RETURNING, LANDING = px4_mode(_AUTO, _RETURN), px4_mode(_AUTO, _LAND)
 
 
-def _order(name: str, sub: int, *modes: int) -> ModeOrder:
-    return ModeOrder(name, (_AUTO, sub), frozenset(modes))
+def _order(command: CommandName, sub: int, *modes: int) -> ModeOrder:
+    return ModeOrder(command, (_AUTO, sub), frozenset(modes))
 
 
 def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
@@ -46,12 +47,15 @@ PX4 = Dialect(
         px4_mode(7): "STABILIZED",
         px4_mode(10): "TERMINATION",
     },
-    calm=frozenset({HOLD, TAKING_OFF}),
+    waiting_modes=frozenset({HOLD, TAKING_OFF}),
+    returning_modes=frozenset({RETURNING}),
+    landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
+    takeover_text="Pilot took over",
     hold=(pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
-    return_home=_order("RETURN", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
-    land=_order("LAND", _LAND, LANDING),
-    before_take_off=_order("HOLD", _LOITER, HOLD, TAKING_OFF),
+    return_home=_order("return", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
+    land=_order("landing", _LAND, LANDING),
+    before_take_off=_order("take_off_mode", _LOITER, HOLD, TAKING_OFF),
     take_off=_take_off,
     take_off_modes=frozenset({TAKING_OFF, HOLD}),
     settled_modes=frozenset({HOLD}),
@@ -61,32 +65,28 @@ PX4 = Dialect(
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",
-            "ground station lost",
+            "station",
             frozenset({1, 2, 3}),
-            2,
-            "Set NAV_DLL_ACT to 2 (return): at 0 a vehicle without its station hovers until its battery is empty.",
+            2,  # return
         ),
         FailsafeRule(
             "COM_RC_OVERRIDE",
-            "pilot's sticks override automatic flight",
+            "sticks",
             frozenset(),
             1,
-            "Set COM_RC_OVERRIDE to 1 (or 3): the pilot's sticks must end automatic flight at once.",
             bit=1,
         ),
         FailsafeRule(
             "GF_ACTION",
-            "geofence breached",
+            "fence",
             frozenset({2, 3, 5}),
-            3,
-            "Set GF_ACTION to 2 (hold) or 3 (return): at 0 or 1 the autopilot only watches the fence being left.",
+            3,  # return
         ),
         FailsafeRule(
             "COM_OBL_RC_ACT",
-            "offboard link lost (Crossfix flies without offboard)",
+            "offboard",
             frozenset({0, 1, 3, 4, 5}),
-            0,
-            "Set COM_OBL_RC_ACT to 0 (position), 3 (return) or 5 (hold).",
+            0,  # position
             blocking=False,
         ),
     ),

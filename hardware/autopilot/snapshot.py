@@ -8,9 +8,11 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from hardware.authority import Authority
 from hardware.autopilot.boot_clock import BootClock
 from hardware.autopilot.ground import north_east_m
-from hardware.readings import Controller, GeoPoint, HeadingSample, Telemetry
+from hardware.readings import HeadingSample, Place, Telemetry
+from hardware.reasons.preflight import GpsFixName
 
 Fields = dict[str, Any]
 
@@ -20,7 +22,7 @@ ARMING_S = 1.5
 """A heartbeat heard so long after the autopilot agreed to arm says what came of it."""
 _ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
 _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
-_FIXES = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
+_FIXES: tuple[GpsFixName, ...] = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
 _ON_GROUND, _UNDEFINED = 1, 0  # MAV_LANDED_STATE
 
 NAMES = (
@@ -51,7 +53,7 @@ class Snapshot:
     """When the autopilot last agreed to arm."""
     landed_state: int = _UNDEFINED
     prearm_ok: bool | None = None
-    position: GeoPoint | None = None
+    position: Place | None = None
     position_at_s: float | None = None
     jumped_m: float | None = None
     """How far the last position was from where the vehicle could have flown; None when it was plausible."""
@@ -65,13 +67,13 @@ class Snapshot:
     battery_at_s: float | None = None
     fix_type: int | None = None
     satellites: int | None = None
-    home: GeoPoint | None = None
+    home: Place | None = None
     home_amsl_m: float | None = None
     _displaced_m: tuple[float, float] = (0.0, 0.0)
     """(north, east) the sum of all jumps of this flight: a jump back undoes one."""
     _position_boot_s: float = 0.0
     _boot_clock: BootClock = field(default_factory=BootClock)
-    _headings: deque[HeadingSample] = field(default_factory=deque)
+    _headings: deque[HeadingSample] = field(default_factory=deque[HeadingSample])
 
     @property
     def reboots(self) -> int:
@@ -117,10 +119,12 @@ class Snapshot:
                 if int(fields.get("id", 0)) == 0:
                     self._battery(fields, heard_at_s)
             case "HOME_POSITION":
-                self.home = GeoPoint(fields["latitude"] / 1e7, fields["longitude"] / 1e7)
+                self.home = Place(fields["latitude"] / 1e7, fields["longitude"] / 1e7)
                 self.home_amsl_m = fields["altitude"] / 1e3
             case "EXTENDED_SYS_STATE":
                 self.landed_state = int(fields["landed_state"])
+            case _:
+                pass
 
     def forget_landed(self) -> None:
         """After a silence it may stand or fly: until the autopilot says so again, arming and height tell."""
@@ -143,14 +147,14 @@ class Snapshot:
         lat, lon = fields["lat"] / 1e7, fields["lon"] / 1e7
         if lat == 0.0 and lon == 0.0:
             return  # the autopilot has no position yet
-        place, boot_s = GeoPoint(lat, lon), fields["time_boot_ms"] / 1e3
+        place, boot_s = Place(lat, lon), fields["time_boot_ms"] / 1e3
         self._jump(place, boot_s)
         self.position, self._position_boot_s = place, boot_s
         self.position_at_s = self._boot_clock.to_utc(boot_s, heard_at_s)
         self.altitude_amsl_m, self.altitude_relative_m = fields["alt"] / 1e3, fields["relative_alt"] / 1e3
         self.velocity_ned = (fields["vx"] / 100.0, fields["vy"] / 100.0, fields["vz"] / 100.0)
 
-    def _jump(self, place: GeoPoint, boot_s: float) -> None:
+    def _jump(self, place: Place, boot_s: float) -> None:
         """A position so far from the last one that no vehicle could have flown there is a jump.
 
         By the autopilot's own clock: what a link holds back and then brings all at once is none.
@@ -185,8 +189,7 @@ class Snapshot:
         now_s: float,
         connected: bool,
         mode: str | None,
-        controller: Controller,
-        held_by_pilot: bool,
+        authority: Authority,
         autopilot: Literal["px4", "ardupilot", "unknown"],
     ) -> Telemetry:
         north, east, down = self.velocity_ned or (None, None, None)
@@ -212,7 +215,6 @@ class Snapshot:
             mode_at_s=self.mode_at_s,
             home=self.home,
             home_amsl_m=self.home_amsl_m,
-            controller=controller,
-            held_by_pilot=held_by_pilot,
+            authority=authority,
             autopilot=autopilot,
         )

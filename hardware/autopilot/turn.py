@@ -6,11 +6,13 @@ import math
 
 from hardware.autopilot.commander import Manoeuvre
 from hardware.autopilot.dialect import TurnMethod
-from hardware.autopilot.helm import Helm
+from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.messages import CONDITION_YAW, Outgoing, command_long, reposition
-from hardware.autopilot.turning import FULL_CIRCLE, TOLERANCE, TurnProgress, next_target, step_size
+from hardware.autopilot.turn_progress import FULL_CIRCLE, TOLERANCE, TurnProgress, next_target, step_size
 from hardware.ports import VehicleError
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.vehicle import TurnNotMade, TurnStopped
+from hardware.reasons.vehicle_news import TriedAgain
 
 STUCK_S = 6.0
 """Seconds (of the headings seen) without at least STUCK_DEG of turning after which a way of turning has failed."""
@@ -21,55 +23,49 @@ SPOT_M = 5.0
 _NUDGE_DEG = 9e-6  # one metre of latitude
 
 
-async def turn_around(helm: Helm, rate_deg_s: float) -> None:
+async def turn_around(guidance: Guidance, rate_deg_s: float) -> None:
     """Returns once telemetry saw the whole circle. Raises VehicleError when no way of turning made it."""
-    here = helm.here()
-    spot = here if helm.spot is None or sum(helm.distance(*helm.spot)) > SPOT_M else helm.spot
-    methods = helm.monitor.dialect.turn_methods
-    turn = Turn(helm, helm.begin("Turn"), rate_deg_s)
+    here = guidance.here()
+    spot = here if guidance.spot is None or sum(guidance.distance(*guidance.spot)) > SPOT_M else guidance.spot
+    methods = guidance.monitor.dialect.turn_methods
+    turn = Turn(guidance, guidance.begin("turn"), rate_deg_s)
     for number, method in enumerate(methods, 1):
         if await turn.run(method, *spot):
             return
         if number < len(methods):
-            helm.monitor.announce(
-                f"the turn stopped after {turn.turned_deg:.0f} degrees, tried again by "
-                f"{methods[number].replace('_', ' ')} ({number + 1} of {len(methods)})"
-            )
-    raise VehicleError(
-        f"The vehicle acknowledged the turn and did not make it: {turn.turned_deg:.0f} degrees seen, "
-        f"{len(methods)} ways tried."
-    )
+            guidance.monitor.announce(TriedAgain(TurnStopped(turn.turned_deg), number + 1))
+    raise VehicleError(TurnNotMade(turn.turned_deg, len(methods)))
 
 
 class Turn:
     """One turn; `run` tries one way of doing it and says whether the circle was seen."""
 
-    def __init__(self, helm: Helm, manoeuvre: Manoeuvre, rate_deg_s: float) -> None:
-        self._helm = helm
+    def __init__(self, guidance: Guidance, manoeuvre: Manoeuvre, rate_deg_s: float) -> None:
+        self._guidance = guidance
         self._manoeuvre = manoeuvre
         self._rate = rate_deg_s
         self.turned_deg = 0.0
 
-    async def run(self, method: TurnMethod, place: GeoPoint, altitude_amsl_m: float) -> bool:
+    async def run(self, method: TurnMethod, place: Place, altitude_amsl_m: float) -> bool:
         """True once telemetry saw the whole circle; False when the vehicle stopped turning."""
-        monitor = self._helm.monitor
+        monitor = self._guidance.monitor
         snapshot, clock = monitor.snapshot, monitor.clock
         if monitor.dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
             # yaw commands are acknowledged in every mode and obeyed in this one only
-            await self._helm.steer(self._manoeuvre, reposition(place, altitude_amsl_m, None, None), "holding the spot")
+            await self._guidance.steer(self._manoeuvre, reposition(place, altitude_amsl_m, None, None), "spot")
         if snapshot.heading_deg is None or snapshot.heading_at_s is None:
             return False
         progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
         began, sent = clock.now(), 0.0
         progress_at, progress_deg = seen_at, 0.0
         while not progress.done:
-            self._helm.go_on(self._manoeuvre)
+            self._guidance.go_on(self._manoeuvre)
             target = self._target(method, clock.now() - began, progress.turned_deg, sent)
             if target - sent > 1.0:
                 step = self._step(method, progress, target, place, altitude_amsl_m)
-                await self._helm.steer(self._manoeuvre, step, "the turn")
+                await self._guidance.steer(self._manoeuvre, step, "turn")
                 sent = target
-            await monitor.news.wait()
+            await monitor.wakeup.wait()
             for sample in snapshot.headings(math.nextafter(seen_at, math.inf)):
                 self.turned_deg, seen_at = progress.see(sample.heading_deg), sample.at_s
             if progress.turned_deg > progress_deg + STUCK_DEG:
@@ -79,15 +75,15 @@ class Turn:
         return True
 
     def _target(self, method: TurnMethod, elapsed_s: float, turned_deg: float, sent_deg: float) -> float:
-        """Degrees from the start that should be ordered by now."""
+        """Degrees from the start that should be commanded by now."""
         if method != "condition_yaw":
             return next_target(elapsed_s, self._rate, turned_deg, step_size(self._rate))
-        lead = 0.4 * self._rate + 2.0  # order the next leg before this one brakes
+        lead = 0.4 * self._rate + 2.0  # command the next leg before this one brakes
         reached = sent_deg == 0.0 or turned_deg > sent_deg - lead
         return min(turned_deg + LEG_DEG, FULL_CIRCLE + TOLERANCE) if reached else sent_deg
 
     def _step(
-        self, method: TurnMethod, progress: TurnProgress, target_deg: float, place: GeoPoint, altitude_amsl_m: float
+        self, method: TurnMethod, progress: TurnProgress, target_deg: float, place: Place, altitude_amsl_m: float
     ) -> Outgoing:
         heading = (progress.start_deg + target_deg) % FULL_CIRCLE
         if method == "condition_yaw":
@@ -97,5 +93,5 @@ class Turn:
         if method == "nudged_yaw_steps":
             # some versions ignore a reposition that changes nothing but yaw: move a metre to and fro with it
             side = _NUDGE_DEG if round(target_deg / step_size(self._rate)) % 2 else 0.0
-            place = GeoPoint(place.lat_deg + side, place.lon_deg)
+            place = Place(place.lat + side, place.lon)
         return reposition(place, altitude_amsl_m, None, heading)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hardware.reasons.pattern import PatternOfOtherFrequency
+
 OTHER_FREQUENCY = 0.1
 """A pattern says little about a frequency that differs by a larger share from its own."""
 
@@ -32,9 +34,9 @@ class AntennaPattern:
         """Gain in dB at any relative bearings (degrees, any shape)."""
         return np.interp(relative_bearing_deg, self.relative_bearing_deg, self.gain_db, period=360.0)
 
-    def other_frequency(self, frequency_hz: float) -> str:
-        """Why the pattern does not hold at `frequency_hz`; empty when it does, or when nobody said where it does."""
+    def other_frequency(self, frequency_hz: float) -> PatternOfOtherFrequency | None:
+        """Why the pattern does not hold at `frequency_hz`; None when it does, or when nobody said where it does."""
         own = self.frequency_hz
         if own is None or abs(own / frequency_hz - 1.0) <= OTHER_FREQUENCY:
-            return ""
-        return f"{self.name} was measured at {own / 1e6:.1f} MHz, not {frequency_hz / 1e6:.1f} MHz"
+            return None
+        return PatternOfOtherFrequency(self.name, own, frequency_hz)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Quantity
 
 DEFAULT_SIGMA_DEG = 7.0
 """The field system's (spec section 8), for bearings whose file states none."""
+EXPECTED = ("lat", "lon", "bearing_deg")
 _LAT = ("lat", "lat_deg", "latitude", "latitude_deg")
 _LON = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
@@ -22,7 +23,7 @@ class RecordedBearing:
     """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file."""
 
     line: int
-    place: GeoPoint
+    place: Place
     bearing_deg: float
     sigma_deg: float
     tag: str | None = None
@@ -30,10 +31,10 @@ class RecordedBearing:
 
 @dataclass(frozen=True, slots=True)
 class RecordedBearings:
-    """bearings: in file order. remarks: what was left out and why, each naming file and line."""
+    """bearings: in file order. remarks: what was left out and why."""
 
     bearings: tuple[RecordedBearing, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[CellUnusable, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,18 +50,18 @@ def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> Rec
     """Read a bearing file of either kind; `sigma_deg` for bearings without their own. Raises RecordingError."""
     table = read_table(path)
     columns, rows = _columns(table)
+    if not rows:
+        raise RecordingError(FileUnusable(str(table.path), "empty"))
     bearings: list[RecordedBearing] = []
-    remarks: list[str] = []
+    remarks: list[CellUnusable] = []
     for row in rows:
-        bearing = _bearing(row, columns, sigma_deg)
-        if isinstance(bearing, str):
-            remarks.append(f"{table.where(row)}: {bearing}; line left out")
+        bearing = _bearing(table, row, columns, sigma_deg)
+        if isinstance(bearing, CellUnusable):
+            remarks.append(bearing)
         else:
             bearings.append(bearing)
     if not bearings:
-        raise RecordingError(
-            f"{table.path}: no usable bearing; expected columns lat, lon, bearing_deg[, sigma_deg]. First: {remarks[0]}"
-        )
+        raise RecordingError(NothingUsable(str(table.path), "bearing", remarks[0]))
     return RecordedBearings(tuple(bearings), tuple(remarks))
 
 
@@ -71,9 +72,7 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
         header = named[0]
         places = [column_of(header.cells, *names) for names in (_LAT, _LON, _BEARING)]
         if places[0] is None or places[1] is None or places[2] is None:
-            raise RecordingError(
-                f"{table.where(header)}: the header names no lat and lon; name them lat, lon, bearing_deg"
-            )
+            raise table.columns_unknown(header, *EXPECTED)
         columns = _Columns(
             places[0],
             places[1],
@@ -86,37 +85,29 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
         return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0), table.rows
     if len(first.cells) in (3, 4):
         if first.number(0) is None:
-            raise RecordingError(
-                f'{table.where(first)}: the header "{", ".join(first.cells)}" is not understood; '
-                "name the columns lat, lon, bearing_deg[, sigma_deg]"
-            )
+            raise table.columns_unknown(first, *EXPECTED)
         return _Columns(lat=0, lon=1, bearing=2, sigma=3, tag=None), table.rows
-    raise RecordingError(
-        f"{table.where(first)}: {len(first.cells)} columns without a header; "
-        "expected lat, lon, bearing_deg[, sigma_deg] or the 10 columns of a UAV-RT bearing file"
+    raise table.columns_unknown(first, *EXPECTED)
+
+
+def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | CellUnusable:
+    needed: tuple[tuple[Quantity, int, float], ...] = (
+        ("latitude", columns.lat, 90.0),
+        ("longitude", columns.lon, 180.0),
+        ("bearing", columns.bearing, 360.0),
     )
-
-
-def _bearing(row: Row, columns: _Columns, default_sigma_deg: float) -> RecordedBearing | str:
     values: list[float] = []
-    for name, column in (("latitude", columns.lat), ("longitude", columns.lon), ("bearing", columns.bearing)):
+    for quantity, column, most in needed:
         value = row.number(column)
-        if value is None or not math.isfinite(value):
-            cell = row.cells[column] if column < len(row.cells) else ""
-            return f'the {name} is "{cell}", not a number'
+        if value is None or not abs(value) <= most:
+            return table.cell_unusable(row, column, quantity)
         values.append(value)
     lat, lon, bearing = values
-    if not -90.0 <= lat <= 90.0:
-        return f"the latitude {lat:g} is outside -90..90"
-    if not -180.0 <= lon <= 180.0:
-        return f"the longitude {lon:g} is outside -180..180"
-    if not -360.0 <= bearing <= 360.0:
-        return f"the bearing {bearing:g} is outside 0..360"
     sigma = default_sigma_deg
     if columns.sigma is not None and columns.sigma < len(row.cells) and row.cells[columns.sigma]:
         stated = row.number(columns.sigma)
         if stated is None or not 0.0 < stated <= 180.0:
-            return f'the sigma is "{row.cells[columns.sigma]}"; it must be a number between 0 and 180 degrees'
+            return table.cell_unusable(row, columns.sigma, "sigma")
         sigma = stated
     tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
-    return RecordedBearing(row.line, GeoPoint(lat, lon), bearing % 360.0, sigma, tag or None)
+    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None)

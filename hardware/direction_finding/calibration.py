@@ -11,12 +11,26 @@ from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder, unusable
-from hardware.direction_finding.pattern_file import MAXIMUM_GAP_DEG, PatternError, make_pattern
+from hardware.direction_finding.pattern_file import PatternError, make_pattern
 from hardware.direction_finding.sweep import bin_sweep
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint, PreflightCheck, Sweep
+from hardware.readings import Place, PreflightCheck, Sweep
+from hardware.reasons.antenna import (
+    AntennaAgrees,
+    AntennaAskew,
+    AntennaDead,
+    AntennaReason,
+    AntennaUnlikePattern,
+    EmitterTooNear,
+    TooFewSamples,
+)
+from hardware.reasons.pattern import PatternReason
+from hardware.reasons.sweep import Overdriven, SweepReason
+from planner.reason import ReasonedError
 
 STEP_DEG = 5.0
+FEWEST_SAMPLES = 72
+"""One a step, all the way round."""
 NEAREST_M = 15.0
 """Nearer to the emitter its direction is too uncertain (a metre of GPS error is four degrees)."""
 WORN_OFF_DB = 6.0
@@ -24,8 +38,11 @@ ALLOWED_OFFSET_DEG = 10.0
 DEAD_RANGE_DB = 4.0
 
 
-class CalibrationError(ValueError):
-    """The flight gives no pattern; says what was missing and how to fly it."""
+class CalibrationError(ReasonedError):
+    """The flight gives no pattern."""
+
+    def __init__(self, reason: EmitterTooNear | Overdriven | TooFewSamples | PatternReason) -> None:
+        super().__init__(reason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +55,13 @@ class Calibration:
     samples: int
 
 
-def true_bearing_deg(place: GeoPoint, target: GeoPoint) -> tuple[float, float]:
+def true_bearing_deg(place: Place, target: Place) -> tuple[float, float]:
     """(degrees clockwise from true north, distance in metres) from `place` to `target`."""
     east, north = LocalFrame(place).to_enu(target)
     return math.degrees(math.atan2(east, north)) % 360.0, math.hypot(east, north)
 
 
-def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarization: str | None = None) -> Calibration:
+def calibrate(sweeps: Sequence[Sweep], emitter: Place, name: str, polarization: str | None = None) -> Calibration:
     """The pattern that the sweeps show, each at its own level (distance). Raises CalibrationError.
 
     A sample at heading h of an emitter at bearing b shows the gain at b - h right of the nose. Pattern (every 5
@@ -55,16 +72,15 @@ def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarizatio
     for sweep in sweeps:
         bearing, distance = true_bearing_deg(sweep.position, emitter)
         if distance < NEAREST_M:
-            raise CalibrationError(
-                f"a sweep was flown {distance:.0f} m from the emitter; stay at least {NEAREST_M:.0f} m away"
-            )
+            raise CalibrationError(EmitterTooNear(distance, NEAREST_M))
         good = np.isfinite(sweep.heading_deg) & np.isfinite(sweep.power_db)
         if sweep.clipped_samples > 0.05 * max(sweep.power_db.size, 1):
-            raise CalibrationError("the receiver was overdriven; lower its gain or fly further away")
+            raise CalibrationError(Overdriven(sweep.clipped_samples, sweep.power_db.size))
         angles.append((bearing - sweep.heading_deg[good]) % 360.0)
         powers.append(sweep.power_db[good])
-    if not angles or sum(a.size for a in angles) < 72:
-        raise CalibrationError("too few samples (at least 72 are needed); turn slower, or fly more sweeps")
+    samples = sum(a.size for a in angles)
+    if samples < FEWEST_SAMPLES:
+        raise CalibrationError(TooFewSamples(samples, FEWEST_SAMPLES))
     angle, power = np.concatenate(angles), np.concatenate(powers)
     owner = np.repeat(np.arange(len(angles)), [a.size for a in angles])
     cells = round(360.0 / STEP_DEG)
@@ -94,8 +110,8 @@ def calibrate(sweeps: Sequence[Sweep], emitter: GeoPoint, name: str, polarizatio
             polarization,
         )
     except PatternError as error:
-        raise CalibrationError(f"{error}; turn all the way round (gaps up to {MAXIMUM_GAP_DEG:.0f} degrees)") from error
-    return Calibration(pattern, residual, len(angles), int(angle.size))
+        raise CalibrationError(error.reason) from error
+    return Calibration(pattern, residual, len(angles), samples)
 
 
 def _front_deg(relative_deg: NDArray[np.float64], gain_db: NDArray[np.float64]) -> float:
@@ -108,48 +124,33 @@ def _front_deg(relative_deg: NDArray[np.float64], gain_db: NDArray[np.float64]) 
 
 
 def check_antenna(
-    sweep: Sweep, pattern: AntennaPattern, emitter: GeoPoint, finder: SparseDirectionFinder | None = None
+    sweep: Sweep, pattern: AntennaPattern, emitter: Place, finder: SparseDirectionFinder | None = None
 ) -> PreflightCheck:
     """One sweep near an emitter at a known place tells whether antenna, pattern and offset belong together."""
-    finder = finder or SparseDirectionFinder()
+    found = _judged(sweep, pattern, emitter, finder or SparseDirectionFinder())
+    return PreflightCheck("antenna", isinstance(found, AntennaAgrees), found)
+
+
+def _judged(
+    sweep: Sweep, pattern: AntennaPattern, emitter: Place, finder: SparseDirectionFinder
+) -> AntennaReason | SweepReason:
     truth, distance = true_bearing_deg(sweep.position, emitter)
-
-    def failed(detail: str, remedy: str) -> PreflightCheck:
-        return PreflightCheck("antenna", ok=False, detail=detail, remedy=remedy)
-
     if distance < NEAREST_M:
-        return failed(
-            f"the test emitter is only {distance:.0f} m away", f"put it at least {NEAREST_M:.0f} m away and turn again"
-        )
+        return EmitterTooNear(distance, NEAREST_M)
     binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
     unable = unusable(sweep, binned)
     if unable is not None:
-        return failed(unable.problem, unable.remedy)
+        return unable
     db = binned.power_db[binned.filled]
     spread = float(np.percentile(db, 95) - np.percentile(db, 5))
     expected = float(np.ptp(pattern.gain_db))
     if spread < min(DEAD_RANGE_DB, 0.5 * expected):
-        return failed(
-            f"the power changes by only {spread:.1f} dB over the turn, the pattern by {expected:.0f} dB: "
-            "the antenna seems dead or not connected",
-            "check the antenna's cable, connector and element; is the test emitter on?",
-        )
+        return AntennaDead(spread, expected)
     reading = finder.estimate(sweep, pattern)
-    if not reading.accepted:
-        return failed(
-            f"the sweep does not fit the antenna's pattern: {reading.reason}",
-            "is this the antenna of the chosen pattern, its element whole, the emitter's polarization the same?",
-        )
+    if reading.reason is not None:
+        return AntennaUnlikePattern(reading.reason)
     error = (truth - reading.bearing_deg + 180.0) % 360.0 - 180.0
     if abs(error) > max(ALLOWED_OFFSET_DEG, 3.0 * reading.sigma_deg):
         right = (pattern.offset_to_nose_deg + error + 180.0) % 360.0 - 180.0
-        return failed(
-            f"the emitter is at {truth:.0f} degrees but is measured at {reading.bearing_deg:.0f}: off by {error:+.0f}",
-            f"set the antenna's offset to {right:.0f} degrees "
-            "or turn the antenna; if both are right, calibrate the compass",
-        )
-    return PreflightCheck(
-        "antenna",
-        ok=True,
-        detail=f"measured {reading.bearing_deg:.0f} degrees, true {truth:.0f}, quality {reading.quality:.2f}",
-    )
+        return AntennaAskew(truth, reading.bearing_deg, right)
+    return AntennaAgrees(reading.bearing_deg, truth, reading.quality)

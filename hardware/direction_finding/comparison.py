@@ -1,6 +1,6 @@
 """How good the direction finders are, next to the Cramer-Rao bound: 2000 simulated sweeps a condition.
 
-`python -m hardware.direction_finding.comparison --sweeps 2000` prints the tables of docs/direction-finding.md.
+`make compare-direction-finders` makes the tables of docs/direction-finding.md from it.
 
 The sweeps here are made by the measurement model itself (pattern, receiver noise, jitter, coherent echoes), so that a
 bound exists; the simulated world of hardware/sim has physics of its own and is used in the tests.
@@ -8,9 +8,8 @@ bound exists; the simulated world of hardware/sim has physics of its own and is 
 
 from __future__ import annotations
 
-import argparse
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import CorrelationDirectionFinder, LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import make_pattern
-from hardware.readings import BearingReading, GeoPoint, Sweep
+from hardware.readings import BearingReading, Place, Sweep
 
 OUTLIER_DEG = 30.0
 _AVERAGES = 100
@@ -78,7 +77,7 @@ def cramer_rao_deg(condition: Condition) -> float:
     """Bound on the bearing's RMS error with unknown level, averaged over bearings between two slices (echo ignored)."""
     pattern = beam(condition.beam_deg)
     heading = np.arange(condition.slices) * 360.0 / condition.slices
-    variances = []
+    variances: list[float] = []
     for bearing in np.linspace(0.0, 360.0 / condition.slices, 40, endpoint=False):
         gain = pattern.gain_at(bearing - heading)
         slope = (pattern.gain_at(bearing + 0.5 - heading) - pattern.gain_at(bearing - 0.5 - heading)) / 1.0
@@ -109,7 +108,7 @@ def simulate(condition: Condition, pattern: AntennaPattern, bearing_deg: float, 
         noise_db = -condition.snr_db
     level = 10.0 * np.log10(power) + condition.jitter_db * rng.normal(size=power.size)
     times = np.arange(condition.slices) * 12.0 / condition.slices
-    return Sweep(times, heading, level, 868e6, GeoPoint(0.0, 0.0), 0.0, noise_floor_db=noise_db)
+    return Sweep(times, heading, level, 868e6, Place(0.0, 0.0), 0.0, noise_floor_db=noise_db)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,10 +144,6 @@ def score(readings: list[BearingReading], truths: list[float]) -> Score:
     )
 
 
-COLUMNS = (
-    *("condition", "bound", "finder", "RMS", "minus least squares' on the same sweeps", "bias"),
-    *("outliers", "rejected", "error/sigma", "in 1", "in 2"),
-)
 FINDERS = {
     "sparse": SparseDirectionFinder,
     "least squares": LeastSquaresDirectionFinder,
@@ -210,51 +205,3 @@ def reliability(sweeps: int, seed: int) -> list[tuple[float, float, int]]:
         (float(part[:, 0].mean()), float(np.sqrt(np.mean(part[:, 1] ** 2))), len(part))
         for part in np.array_split(table, 10)
     ]
-
-
-def plot_reliability(classes: list[tuple[float, float, int]], path: str) -> None:
-    """Stated sigma against the error really made, with the diagonal. Needs matplotlib (extra "study")."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(4.2, 4.0), layout="constrained")
-    axes = figure.add_subplot()
-    stated, made = [c[0] for c in classes], [c[1] for c in classes]
-    top = 1.05 * max(*stated, *made)
-    axes.plot([0, top], [0, top], color="0.6", linewidth=1, label="true")
-    axes.plot(stated, made, "o-", color="tab:blue", label="simulated sweeps")
-    axes.set(xlabel="stated sigma in degrees", ylabel="RMS error in degrees", xlim=(0, top), ylim=(0, top))
-    axes.legend(frameon=False)
-    figure.savefig(path)
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Compare the direction finders on simulated sweeps.")
-    parser.add_argument("--sweeps", type=int, default=2000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", default="", help="conditions whose name contains this")
-    parser.add_argument(
-        "--reliability", metavar="FILE", help="also draw the reliability plot into this file (SVG, PNG)"
-    )
-    arguments = parser.parse_args()
-    print(f"| {' | '.join(COLUMNS)} |")
-    print("|---" * len(COLUMNS) + "|")
-    for condition in (c for c in CONDITIONS if arguments.only in c.name):
-        bound = cramer_rao_deg(replace(condition, echo_db=None))
-        for name, compared in compare(condition, arguments.sweeps, arguments.seed).items():
-            s, (more, error) = compared.score, compared.paired
-            paired = "" if name == "least squares" else f"{more:+.3f} ± {error:.3f}"
-            print(
-                f"| {condition.name} | {bound:.2f} | {name} | {s.rms_deg:.2f} | {paired} | {s.bias_deg:+.2f} | "
-                f"{s.outlier_percent:.1f} % | {s.rejected_percent:.1f} % | {s.normalized_rms:.2f} | "
-                f"{s.within_one:.2f} | {s.within_two:.2f} |",
-                flush=True,
-            )
-    if arguments.reliability:
-        classes = reliability(max(arguments.sweeps // 5, 20), arguments.seed)
-        for stated, made, count in classes:
-            print(f"stated {stated:.2f} deg: error {made:.2f} deg ({count} sweeps)", flush=True)
-        plot_reliability(classes, arguments.reliability)
-
-
-if __name__ == "__main__":
-    main()

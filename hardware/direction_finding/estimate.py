@@ -20,8 +20,21 @@ from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
-from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, SweepError, bin_sweep
+from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
 from hardware.readings import BearingPeak, BearingReading, Sweep
+from hardware.reasons.receiver import NothingHeardInTurn
+from hardware.reasons.sweep import (
+    ConstantPower,
+    DirectionInGap,
+    NoDirection,
+    NothingAboveNoise,
+    Overdriven,
+    PowerNotNumbers,
+    SweepReason,
+    TooFewDirections,
+    TurnIncomplete,
+    UnlikeAntenna,
+)
 
 PENALTY = 0.3
 MINIMUM_QUALITY = 0.7
@@ -56,27 +69,28 @@ class SparseDirectionFinder:
     minimum_quality: float = MINIMUM_QUALITY
     penalty: float = PENALTY
     heading_sigma_deg: float = 0.0
-    _prepared: dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]] = field(default_factory=dict, repr=False)
+    _prepared: dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]] = field(
+        default_factory=dict[bytes, tuple[PatternBank, PatternCurve, Alternatives]], repr=False
+    )
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """Bearing, sigma and quality of one sweep; one that cannot be used comes back not accepted, with the reason."""
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal is not None:
-            return refused(binned, str(refusal))
+            return refused(binned, refusal)
         bank, curve, alternatives = self._prepare(pattern)
         noise_db = sweep.noise_floor_db
         power = linear_power(binned, noise_db)
-        silent = f"nothing was heard: no direction is {HEARD_DB:.0f} dB above the noise floor"
         if noise_db is not None and np.nanmax(binned.power_db) < noise_db + HEARD_DB:
-            return refused(binned, silent)
+            return refused(binned, NothingAboveNoise(HEARD_DB))
         solution = solve_sparse(bank, power, self.penalty, binned.filled)
         parts = components(solution.r, curve.beam_deg / 2.0)  # closer ones no antenna resolves
         if not parts:
-            return refused(binned, "the sweep has no direction in it: the power looks the same all around")
+            return refused(binned, NoDirection())
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
-            return refused(binned, silent)
+            return refused(binned, NothingAboveNoise(HEARD_DB))
         return self._reading(curve, binned, parts, refined, noise_db, sweep.drift_m)
 
     def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve, Alternatives]:
@@ -105,25 +119,20 @@ class SparseDirectionFinder:
             for p in parts[1:]
             if p.weight >= MINIMUM_PEAK_WEIGHT * parts[0].weight
         )
-        reason = ""
+        reason: SweepReason | None = None
         beyond = (bearing - binned.gap_start_deg) % 360.0
         if quality < self.minimum_quality:
-            reason = (
-                f"the sweep does not look like the antenna (similarity {quality:.2f}, "
-                f"needs {self.minimum_quality:.2f}): reflections, interference or no signal"
-            )
+            reason = UnlikeAntenna(quality, self.minimum_quality)
         elif binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg:
-            reason = (
-                f"the strongest direction lies in a gap of {binned.largest_gap_deg:.0f} degrees that nobody listened to"
-            )
+            reason = DirectionInGap(binned.largest_gap_deg)
         elif sigma > MAXIMUM_SIGMA_DEG:
-            reason = "the bearing is too uncertain: the power hardly changes with the heading"
+            reason = NoDirection()
         return BearingReading(
             bearing_deg=bearing % 360.0,
             sigma_deg=min(sigma, 180.0),
             heading_sigma_deg=self.heading_sigma_deg,
             quality=quality,
-            accepted=not reason,
+            accepted=reason is None,
             reason=reason,
             peaks=peaks,
             binned_db=binned.power_db,
@@ -132,35 +141,23 @@ class SparseDirectionFinder:
         )
 
 
-def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepError | None:
-    """Why no method can use this sweep, in the operator's words; None when it can be used."""
+def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
+    """Why no method can use this sweep; None when it can be used."""
     samples = sweep.power_db.size
     finite = int((np.abs(sweep.power_db) < IMPLAUSIBLE_DB).sum())
     if samples == 0:
-        return SweepError("the receiver delivered nothing during the turn", "check that it is running and tuned")
+        return NothingHeardInTurn()
     if finite == 0:
-        return SweepError("every power value of the sweep is invalid (not a number)", "restart the receiver")
+        return PowerNotNumbers()
     if sweep.clipped_samples > MAXIMUM_CLIPPED * samples:
-        return SweepError(
-            f"the receiver was overdriven ({sweep.clipped_samples} of {samples} samples clipped)",
-            "lower its gain or measure further away",
-        )
+        return Overdriven(sweep.clipped_samples, samples)
     filled = int(binned.filled.sum())
     if filled < MINIMUM_BINS:
-        return SweepError(
-            f"heard in only {filled} directions, at least {MINIMUM_BINS} around the circle are needed",
-            "turn slower, or raise the receiver's sample rate",
-        )
+        return TooFewDirections(filled, MINIMUM_BINS)
     if binned.largest_gap_deg > MAXIMUM_GAP_DEG:
-        return SweepError(
-            f"heard over only {360.0 - binned.largest_gap_deg:.0f} degrees of the turn",
-            "the vehicle must turn once all the way round while the receiver listens",
-        )
+        return TurnIncomplete(360.0 - binned.largest_gap_deg)
     if np.ptp(binned.power_db[binned.filled]) < 1e-6:
-        return SweepError(
-            "the receiver shows the same power in every direction, a constant and not a signal",
-            "check its antenna input and its gain",
-        )
+        return ConstantPower()
     return None
 
 
@@ -201,6 +198,6 @@ def cosine_quality(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float,
     return min(max(float(measured @ shifted) / norm, 0.0), 1.0) if norm > 0 else 0.0
 
 
-def refused(binned: BinnedSweep, reason: str) -> BearingReading:
+def refused(binned: BinnedSweep, reason: SweepReason) -> BearingReading:
     """Not accepted and without a bearing: 0 degrees with sigma 180 says "anywhere"."""
     return BearingReading(0.0, 180.0, 0.0, False, reason, (), binned.power_db, np.full(BINS, np.nan))

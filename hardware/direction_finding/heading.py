@@ -12,30 +12,36 @@ from pygeomag import GeoMag
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.refine import PatternCurve
 from hardware.direction_finding.sweep import SweepError, assemble_sweep
-from hardware.readings import GeoPoint, HeadingSample, PowerSample
+from hardware.readings import HeadingSample, Place, PowerSample
+from hardware.reasons.antenna import NoMagneticModel
+from hardware.reasons.sweep import PowerNotNumbers, SweepReason
+from planner.reason import ReasonedError
 
 FIRST_YEAR, LAST_YEAR = 2010.0, 2030.0
 """Of the World Magnetic Models that ship with pygeomag."""
 
 
-class HeadingError(ValueError):
-    """A heading that cannot be corrected; says why."""
+class HeadingError(ReasonedError):
+    """A heading that cannot be corrected."""
+
+    def __init__(self, reason: NoMagneticModel) -> None:
+        super().__init__(reason)
 
 
-def declination_deg(place: GeoPoint, at_s: float, altitude_m: float = 0.0) -> float:
+def declination_deg(place: Place, at_s: float, altitude_m: float = 0.0) -> float:
     """Degrees by which magnetic north lies east of true north, World Magnetic Model. Raises HeadingError."""
     moment = datetime.fromtimestamp(at_s, UTC)
     start = datetime(moment.year, 1, 1, tzinfo=UTC)
     length = (datetime(moment.year + 1, 1, 1, tzinfo=UTC) - start).total_seconds()
     year = moment.year + (moment - start).total_seconds() / length
     if not FIRST_YEAR <= year < LAST_YEAR:
-        raise HeadingError(f"no magnetic model for {year:.1f}; update pygeomag, or set the declination by hand")
+        raise HeadingError(NoMagneticModel(moment.year))
     # each model holds for five years from 2010, 2015, 2020, 2025
-    field = GeoMag(base_year=moment).calculate(place.lat_deg, place.lon_deg, altitude_m / 1000.0, year)
+    field = GeoMag(base_year=moment).calculate(place.lat, place.lon, altitude_m / 1000.0, year)
     return float(field.d)
 
 
-def true_heading_deg(magnetic_deg: float, place: GeoPoint, at_s: float) -> float:
+def true_heading_deg(magnetic_deg: float, place: Place, at_s: float) -> float:
     """True heading of a magnetic one."""
     return (magnetic_deg + declination_deg(place, at_s)) % 360.0
 
@@ -64,21 +70,20 @@ def estimate_clock_offset(
     bearing = np.arange(0.0, 360.0, 2.0)
     offsets = np.arange(-limit_s, limit_s + step_s / 2.0, step_s)
     costs = np.full(offsets.size, np.inf)
+    refusal: SweepReason = PowerNotNumbers()
     for k, offset in enumerate(offsets):
         try:
             sweep = assemble_sweep(
-                samples, headings, frequency_hz=1.0, altitude_amsl_m=0.0, position=GeoPoint(0, 0), clock_offset_s=offset
+                samples, headings, frequency_hz=1.0, altitude_amsl_m=0.0, position=Place(0, 0), clock_offset_s=offset
             )
-        except SweepError:
+        except SweepError as error:
+            refusal = error.reason
             continue
         front = sweep.heading_deg + pattern.offset_to_nose_deg
         residual = sweep.power_db - curve.gain_db(np.subtract.outer(bearing, front))
         costs[k] = float(np.min(np.var(residual, axis=1)))
     if not np.isfinite(costs).any():
-        raise SweepError(
-            f"no power sample fell between two headings, whatever the clocks differ by up to {limit_s:.1f} s",
-            "set the clocks of receiver and vehicle by GPS or NTP",
-        )
+        raise SweepError(refusal)
     best = int(np.argmin(costs))
     # a sharp minimum inside the range: half a second away the fit is clearly worse to both sides
     away = max(round(0.5 / step_s), 1)

@@ -76,7 +76,7 @@ def heading_offset(
     best = int(np.argmax(fits.log_likelihood[: len(starts)]))
     gain = 2.0 * float(fits.log_likelihood[best] - fits.log_likelihood[~with_offset].max())
     try:
-        variance = float(np.linalg.inv(fits.information[best])[2, 2])
+        variance = float(np.linalg.inv(fits.information[best, :, :])[2, 2])
     except np.linalg.LinAlgError:
         return None
     if not variance > 0.0:
@@ -122,8 +122,11 @@ def _likeliest(
         by = slopes(x) * free[:, None, :]
         information = np.einsum("mki,mk,mkj->mij", by, weight, by)
         diagonal = np.einsum("mii->mi", information)
-        damped = information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
-        ahead = x + np.linalg.solve(damped, np.einsum("mki,mk->mi", by, weight * residual)[..., None])[..., 0]
+        damped: NDArray[np.float64] = (
+            information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
+        )
+        uphill: NDArray[np.float64] = np.einsum("mki,mk->mi", by, weight * residual)
+        ahead = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
         there = look(ahead)
         risen = there[0] - value
         better = climbing & (risen >= 0.0)

@@ -14,6 +14,7 @@ from hardware.direction_finding.estimate import MINIMUM_QUALITY, cosine_quality,
 from hardware.direction_finding.refine import PatternCurve
 from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep, bin_sweep
 from hardware.readings import BearingReading, Sweep
+from hardware.reasons.sweep import UnlikeAntenna
 
 _GRID_DEG = 0.5
 
@@ -28,7 +29,7 @@ class LeastSquaresDirectionFinder:
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal is not None:
-            return refused(binned, str(refusal))
+            return refused(binned, refusal)
         curve = PatternCurve(pattern)
         heading, power = binned.heading_deg[binned.filled], binned.power_db[binned.filled]
         count = binned.count[binned.filled].astype(np.float64)
@@ -56,7 +57,7 @@ class CorrelationDirectionFinder:
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal is not None:
-            return refused(binned, str(refusal))
+            return refused(binned, refusal)
         curve = PatternCurve(pattern)
         heading = binned.heading_deg[binned.filled]
         measured = linear_power(binned, sweep.noise_floor_db)[binned.filled]
@@ -102,7 +103,7 @@ def _reading(
         sigma_deg=min(sigma, 180.0),
         quality=quality,
         accepted=accepted,
-        reason="" if accepted else f"the sweep does not look like the antenna (similarity {quality:.2f})",
+        reason=None if accepted else UnlikeAntenna(quality, minimum_quality),
         peaks=(),
         binned_db=binned.power_db,
         fitted_db=level_db + curve.gain_db(bearing - centre),

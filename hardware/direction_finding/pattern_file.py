@@ -12,23 +12,44 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.reasons.pattern import (
+    AngleTwice,
+    ImplausibleGains,
+    NotAPattern,
+    PatternGap,
+    PatternReason,
+    PatternRowUnusable,
+    PatternUnitUnknown,
+    TooFewPoints,
+)
+from hardware.reasons.table import FileUnreadable
+from planner.reason import ReasonedError
 
 FORMAT = "crossfix antenna pattern"
 SMALL_YAGI = Path(__file__).parent / "patterns" / "small_yagi.json"
+KEYS: tuple[Literal["relative_bearing_deg", "gain", "unit"], ...] = ("relative_bearing_deg", "gain", "unit")
 MINIMUM_POINTS = 8
 MAXIMUM_GAP_DEG = 60.0
 MINIMUM_DIRECTIVITY_DB = 3.0
 MAXIMUM_DIRECTIVITY_DB = 200.0
 
 
-class PatternError(ValueError):
-    """A pattern that cannot be used; the message names the file, what is wrong and how to mend it."""
+class PatternError(ReasonedError):
+    """A pattern that cannot be used."""
+
+    def __init__(self, reason: PatternReason) -> None:
+        super().__init__(reason)
+        self._pattern_reason: PatternReason = reason
+
+    @property
+    def reason(self) -> PatternReason:
+        return self._pattern_reason
 
 
 def make_pattern(
@@ -44,33 +65,23 @@ def make_pattern(
     angle = np.asarray(relative_bearing_deg, dtype=np.float64) % 360.0
     gain = np.asarray(gain_db, dtype=np.float64)
     if angle.ndim != 1 or angle.shape != gain.shape:
-        raise PatternError(f"{name}: {angle.size} angles but {gain.size} gains; each angle needs one gain")
+        raise PatternError(NotAPattern(name, "counts"))
     if angle.size < MINIMUM_POINTS:
-        raise PatternError(
-            f"{name}: only {angle.size} points; a pattern needs at least {MINIMUM_POINTS} around the circle"
-        )
+        raise PatternError(TooFewPoints(name, angle.size, MINIMUM_POINTS))
     if not (np.isfinite(angle).all() and np.isfinite(gain).all() and np.isfinite(offset_to_nose_deg)):
-        raise PatternError(f"{name}: an angle, gain or offset is not a finite number; remove or repair that row")
+        raise PatternError(NotAPattern(name, "numbers"))
     order = np.argsort(angle, kind="stable")
     angle, gain = angle[order], gain[order]
     step = np.diff(angle, append=angle[0] + 360.0)
     if (step < 1e-9).any():
-        raise PatternError(f"{name}: the angle {angle[np.argmin(step)]:g} occurs twice; keep one row for each angle")
+        raise PatternError(AngleTwice(name, float(angle[np.argmin(step)])))
     if step.max() > MAXIMUM_GAP_DEG:
-        start = angle[np.argmax(step)]
-        raise PatternError(
-            f"{name}: nothing measured for {step.max():.0f} degrees after {start:g}; "
-            f"measure at least every {MAXIMUM_GAP_DEG:.0f} degrees around the whole circle"
-        )
+        start = float(angle[np.argmax(step)])
+        raise PatternError(PatternGap(name, float(step.max()), start, MAXIMUM_GAP_DEG))
     if np.ptp(gain) < MINIMUM_DIRECTIVITY_DB:
-        raise PatternError(
-            f"{name}: the gain varies by only {np.ptp(gain):.1f} dB around the circle; an antenna with less than "
-            f"{MINIMUM_DIRECTIVITY_DB:.0f} dB gives no bearing (is its element broken, or the table in another unit?)"
-        )
+        raise PatternError(ImplausibleGains(name, "small", MINIMUM_DIRECTIVITY_DB))
     if np.ptp(gain) > MAXIMUM_DIRECTIVITY_DB:
-        raise PatternError(
-            f"{name}: the gain varies by {np.ptp(gain):.3g} dB around the circle; is it in another unit?"
-        )
+        raise PatternError(ImplausibleGains(name, "large", MAXIMUM_DIRECTIVITY_DB))
     return AntennaPattern(name, angle, gain, float(offset_to_nose_deg), frequency_hz, polarization, measured_on)
 
 
@@ -86,7 +97,7 @@ def parse_pattern(filename: str, text: str) -> AntennaPattern:
     try:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise PatternError(f"{filename}: is not JSON ({error}); a turntable table must end in .csv") from error
+        raise PatternError(NotAPattern(filename, "json")) from error
     return _from_json(filename, data)
 
 
@@ -94,22 +105,27 @@ def _text_of(path: Path | str) -> str:
     try:
         return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise PatternError(f"{path}: cannot be read as text ({error}); check the path") from error
+        raise PatternError(FileUnreadable(str(path), _words_of(error))) from error
 
 
-def _from_json(filename: str, data: Any) -> AntennaPattern:
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise PatternError(f'{filename}: is no antenna pattern; the file must hold an object with "format": "{FORMAT}"')
-    for key in ("relative_bearing_deg", "gain", "unit"):
+def _words_of(error: OSError | UnicodeDecodeError) -> str:
+    return (error.strerror or str(error)) if isinstance(error, OSError) else error.reason
+
+
+def _from_json(filename: str, parsed: object) -> AntennaPattern:
+    data = cast(dict[str, Any], parsed) if isinstance(parsed, dict) else {}
+    if data.get("format") != FORMAT:
+        raise PatternError(NotAPattern(filename, "format"))
+    for key in KEYS:
         if key not in data:
-            raise PatternError(f'{filename}: "{key}" is missing; add it')
+            raise PatternError(NotAPattern(filename, key))
     try:
         angle = np.array(data["relative_bearing_deg"], dtype=np.float64)
         gain = np.array(data["gain"], dtype=np.float64)
         offset = float(data.get("offset_to_nose_deg", 0.0))
         frequency = None if data.get("frequency_hz") is None else float(data["frequency_hz"])
     except (TypeError, ValueError, OverflowError) as error:
-        raise PatternError(f"{filename}: angles, gains, offset and frequency must be numbers ({error})") from error
+        raise PatternError(NotAPattern(filename, "numbers")) from error
     return make_pattern(
         str(data.get("name") or Path(filename).stem),
         angle,
@@ -121,14 +137,14 @@ def _from_json(filename: str, data: Any) -> AntennaPattern:
     )
 
 
-def _to_db(where: str, gain: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
+def _to_db(filename: str, gain: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
     if unit in {"dB", "dBi", "dBd", "dBm"}:
         return gain
     if unit == "linear power":
         if not (gain > 0).all():
-            raise PatternError(f"{where}: linear gains must be greater than zero")
+            raise PatternError(NotAPattern(filename, "positive"))
         return 10.0 * np.log10(gain)
-    raise PatternError(f'{where}: unit "{unit}" is not known; use "dB" or "linear power"')
+    raise PatternError(PatternUnitUnknown(filename, unit))
 
 
 def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
@@ -168,9 +184,9 @@ def _turntable(filename: str, text: str, unit: str, offset_to_nose_deg: float) -
             rows.append((float(cells[0]) % 360.0, float(cells[1])))
         except (ValueError, IndexError):
             if rows:
-                raise PatternError(f'{filename}:{number}: "{line.strip()}" is not "angle_deg, gain"; mend it') from None
+                raise PatternError(PatternRowUnusable(filename, number, line.strip())) from None
     if not rows:
-        raise PatternError(f'{filename}: holds no rows of "angle_deg, gain"')
+        raise PatternError(NotAPattern(filename, "rows"))
     table = np.array(rows)
     gain = _to_db(filename, table[:, 1], unit)
     angle, member = np.unique(np.round(table[:, 0], 6), return_inverse=True)

@@ -11,11 +11,13 @@ import numpy as np
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
 from hardware.direction_finding.uavrt import is_uavrt, read_rotations
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
+from hardware.reasons import RecordingReason
+from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable
 
 _HEADING = ("heading_deg", "heading", "yaw_deg", "yaw", "azimuth", "azimuth_deg", "angle", "angle_deg")
 _POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
-_UNKNOWN_PLACE = GeoPoint(0.0, 0.0)
+_UNKNOWN_PLACE = Place(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +34,10 @@ class RecordedSweep:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """sweeps: in file order. remarks: what was left out and why, each naming file and line."""
+    """sweeps: in file order. remarks: what was left out or assumed."""
 
     sweeps: tuple[RecordedSweep, ...]
-    remarks: tuple[str, ...]
+    remarks: tuple[RecordingReason, ...]
 
 
 def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset_deg: float | None) -> AntennaPattern:
@@ -61,10 +63,9 @@ def _plain(table: Table, tag: str | None) -> Recording:
     heading_at = 0 if header is None else column_of(header.cells, *_HEADING)
     power_at = 1 if header is None else column_of(header.cells, *_POWER)
     if heading_at is None or power_at is None:
-        raise RecordingError(
-            f"{table.where(header or rows[0])}: the header names no heading and power column; "
-            "name the columns heading_deg and power_db"
-        )
+        raise table.columns_unknown(header or rows[0], "heading_deg", "power_db")
+    if not rows:
+        raise RecordingError(FileUnusable(str(table.path), "empty"))
     names = () if header is None else header.cells
     columns = {
         "time": column_of(names, "at_s", "time_s", "time", "t", "timestamp"),
@@ -72,19 +73,18 @@ def _plain(table: Table, tag: str | None) -> Recording:
         "lon": column_of(names, "lon", "lon_deg", "longitude"),
         "frequency": column_of(names, "frequency_hz", "frequency"),
     }
-    remarks: list[str] = []
+    remarks: list[CellUnusable] = []
     good: list[tuple[Row, float, float]] = []
     for row in rows:
         heading, power = row.number(heading_at), row.number(power_at)
         if heading is None or power is None or not (math.isfinite(heading) and math.isfinite(power)):
-            remarks.append(f'{table.where(row)}: "{", ".join(row.cells)}" is not heading and power; line left out')
+            wrong = heading is None or not math.isfinite(heading)
+            column, quantity = (heading_at, "heading") if wrong else (power_at, "power")
+            remarks.append(table.cell_unusable(row, column, quantity))
         else:
             good.append((row, heading % 360.0, power))
     if not good:
-        raise RecordingError(
-            f"{table.path}: no row holds a heading and a power; expected two columns heading_deg, power_db. "
-            f"First: {remarks[0]}"
-        )
+        raise RecordingError(NothingUsable(str(table.path), "power", remarks[0]))
     place = _median_place(good, columns["lat"], columns["lon"])
     frequency = _median(good, columns["frequency"])
     sweep = Sweep(
@@ -128,8 +128,8 @@ def _median(good: list[tuple[Row, float, float]], column: int | None) -> float |
     return float(np.median(values)) if values else None
 
 
-def _median_place(good: list[tuple[Row, float, float]], lat_at: int | None, lon_at: int | None) -> GeoPoint | None:
+def _median_place(good: list[tuple[Row, float, float]], lat_at: int | None, lon_at: int | None) -> Place | None:
     lat, lon = _median(good, lat_at), _median(good, lon_at)
     if lat is None or lon is None or abs(lat) > 90.0 or abs(lon) > 180.0:
         return None
-    return GeoPoint(lat, lon)
+    return Place(lat, lon)

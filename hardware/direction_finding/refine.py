@@ -35,7 +35,7 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.sweep import BIN_DEG, BINS, BinnedSweep
 
 HUBER = 3.0
-"""Residuals beyond so many standard deviations count linearly, not quadratically."""
+"""Residuals beyond this many standard deviations count linearly, not quadratically."""
 CORRELATION_DEG = 40.0
 """Residuals of headings further apart are independent."""
 SIGMA_FLOOR_DEG = 0.25

@@ -9,7 +9,17 @@ import numpy as np
 import pymap3d
 from numpy.typing import NDArray
 
-from hardware.readings import GeoPoint, HeadingSample, PowerSample, Sweep
+from hardware.readings import HeadingSample, Place, PowerSample, Sweep
+from hardware.reasons.receiver import NothingHeardInTurn
+from hardware.reasons.sweep import (
+    ClocksApart,
+    HeadingsInterrupted,
+    HeadingsNotNumbers,
+    NoHeadingHeard,
+    NoPositionHeard,
+    SweepReason,
+)
+from planner.reason import ReasonedError
 
 BINS = 180
 BIN_DEG = 360.0 / BINS
@@ -21,13 +31,16 @@ IMPLAUSIBLE_DB = 400.0
 """No receiver delivers a power of this many decibels either way: such values are left out like NaN."""
 
 
-class SweepError(ValueError):
-    """No sweep, or no bearing from one: what is wrong, and what mends it."""
+class SweepError(ReasonedError):
+    """Powers and headings that cannot be made into a sweep."""
 
-    def __init__(self, problem: str, remedy: str) -> None:
-        super().__init__(f"{problem}; {remedy}")
-        self.problem = problem
-        self.remedy = remedy
+    def __init__(self, reason: SweepReason) -> None:
+        super().__init__(reason)
+        self._sweep_reason: SweepReason = reason
+
+    @property
+    def reason(self) -> SweepReason:
+        return self._sweep_reason
 
 
 def assemble_sweep(
@@ -36,7 +49,7 @@ def assemble_sweep(
     *,
     frequency_hz: float,
     altitude_amsl_m: float,
-    position: GeoPoint | None = None,
+    position: Place | None = None,
     tag: str | None = None,
     clock_offset_s: float = 0.0,
 ) -> Sweep:
@@ -48,11 +61,9 @@ def assemble_sweep(
     minus the vehicle's, subtracted from the samples' times. Raises SweepError when nothing is left.
     """
     if not samples:
-        raise SweepError("the receiver delivered nothing during the turn", "check that it is running and tuned")
+        raise SweepError(NothingHeardInTurn())
     if len(headings) < 2:
-        raise SweepError(
-            "the vehicle reported no heading during the turn", "check its telemetry link and the rate of ATTITUDE"
-        )
+        raise SweepError(NoHeadingHeard())
     track = sorted(headings, key=lambda h: h.at_s)
     heading_s = np.array([h.at_s for h in track])
     turned = np.unwrap(np.array([h.heading_deg for h in track]), period=360.0)
@@ -64,17 +75,14 @@ def assemble_sweep(
     if not known.all():
         heading_s, turned = heading_s[known], np.unwrap(turned[known], period=360.0)
     if heading_s.size < 2:
-        raise SweepError("the vehicle's headings are not numbers", "calibrate its compass, or restart the autopilot")
+        raise SweepError(HeadingsNotNumbers())
 
     after = np.clip(np.searchsorted(heading_s, heard_s), 1, heading_s.size - 1)
     usable = (heard_s >= heading_s[0]) & (heard_s <= heading_s[-1])
     usable &= heading_s[after] - heading_s[after - 1] <= MAXIMUM_HEADING_GAP_S
     if not usable.any():
-        raise SweepError(
-            "no power sample fell between two headings "
-            f"(samples {heard_s[0]:.1f}..{heard_s[-1]:.1f} s, headings {heading_s[0]:.1f}..{heading_s[-1]:.1f} s)",
-            "set the clocks of receiver and vehicle by GPS or NTP, and look for gaps in the telemetry",
-        )
+        apart_s = max(float(heard_s[0] - heading_s[-1]), float(heading_s[0] - heard_s[-1]))
+        raise SweepError(ClocksApart(apart_s) if apart_s > 0.0 else HeadingsInterrupted(MAXIMUM_HEADING_GAP_S))
     nose = np.interp(heard_s[usable], heading_s, turned) % 360.0
     floors = [s.noise_floor_db for s in heard if s.noise_floor_db is not None]
     place, drift_m = _place_and_drift(track, position)
@@ -92,16 +100,16 @@ def assemble_sweep(
     )
 
 
-def _place_and_drift(track: list[HeadingSample], position: GeoPoint | None) -> tuple[GeoPoint, float]:
+def _place_and_drift(track: list[HeadingSample], position: Place | None) -> tuple[Place, float]:
     """(mean place, largest distance from it in metres) while turning; no nearer than jumps have displaced the place."""
     places = [h.position for h in track if h.position is not None]
     if not places:
         if position is None:
-            raise SweepError("the vehicle reported no position during the turn", "wait for a GPS fix")
+            raise SweepError(NoPositionHeard())
         return position, 0.0
-    lat, lon = np.array([p.lat_deg for p in places]), np.array([p.lon_deg for p in places])
-    mean = position or GeoPoint(float(lat.mean()), float(lon.mean()))
-    east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, mean.lat_deg, mean.lon_deg, 0.0)
+    lat, lon = np.array([p.lat for p in places]), np.array([p.lon for p in places])
+    mean = position or Place(float(lat.mean()), float(lon.mean()))
+    east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, mean.lat, mean.lon, 0.0)
     return mean, max(float(np.hypot(east, north).max()), *(h.displaced_m for h in track))
 
 

@@ -6,9 +6,24 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
+from hardware.reasons import RecordingReason
+from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnreadable, FileUnusable, Quantity
+from planner.reason import ReasonedError
 
-class RecordingError(ValueError):
-    """A recording that cannot be used; the message names file, line, what is wrong and how to mend it."""
+LONGEST_CELL = 60
+"""Characters of a cell that a reason shows."""
+
+
+class RecordingError(ReasonedError):
+    """A recording that cannot be used."""
+
+    def __init__(self, reason: RecordingReason) -> None:
+        super().__init__(reason)
+        self._recording_reason: RecordingReason = reason
+
+    @property
+    def reason(self) -> RecordingReason:
+        return self._recording_reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +45,20 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """rows: data lines. comments: `#` lines without the mark. path: for messages."""
+    """rows: data lines. comments: `#` lines without the mark. path: for reasons."""
 
     path: Path
     rows: tuple[Row, ...]
     comments: tuple[Row, ...]
 
-    def where(self, row: Row) -> str:
-        return f"{self.path}:{row.line}"
+    def cell_unusable(self, row: Row, column: int, quantity: Quantity) -> CellUnusable:
+        """Why a row is left out; `column` from 0."""
+        cell = row.cells[column][:LONGEST_CELL] if column < len(row.cells) else ""
+        return CellUnusable(str(self.path), row.line, column + 1, cell, quantity)
+
+    def columns_unknown(self, row: Row, *expected: str) -> RecordingError:
+        """row: the header, or the first one."""
+        return RecordingError(ColumnsUnknown(str(self.path), row.line, len(row.cells), expected))
 
 
 def read_table(path: Path | str) -> Table:
@@ -46,9 +67,9 @@ def read_table(path: Path | str) -> Table:
     try:
         raw = path.read_bytes()
     except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error.strerror}); check the path") from error
+        raise RecordingError(FileUnreadable(str(path), error.strerror or str(error))) from error
     if b"\0" in raw[:4096]:
-        raise RecordingError(f"{path}: is not a text file; export the recording as CSV")
+        raise RecordingError(FileUnusable(str(path), "not_text"))
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -62,7 +83,7 @@ def read_table(path: Path | str) -> Table:
         elif stripped.strip(",;"):
             rows.append(Row(number, _cells(stripped)))
     if not rows:
-        raise RecordingError(f"{path}: holds no data (only empty lines and comments); is it the right file?")
+        raise RecordingError(FileUnusable(str(path), "empty"))
     return Table(path, tuple(rows), tuple(comments))
 
 

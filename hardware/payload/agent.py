@@ -7,7 +7,7 @@ import contextlib
 import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
@@ -30,12 +30,17 @@ from hardware.payload.messages import (
     Status,
     Tune,
     Welcome,
-    WirePulses,
+    WireChannel,
     parse_from_server,
 )
 from hardware.payload.spool import Spool, SpoolError
-from hardware.ports import HardwareError, HearsPulses, Receiver, ReceiverError
-from hardware.readings import PowerSample, Pulses
+from hardware.ports import Receiver, ReceiverError
+from hardware.readings import Channel, PowerSample
+from hardware.reasons import HardwareReason
+from hardware.reasons.payload import PayloadListening, PayloadStarting
+from hardware.reasons.payload_link import MessageOutOfTurn, RefusedByServer
+from hardware.reasons.receiver import NonsensicalPower, ReceiverStreamEnded
+from planner.reason import sentence_of
 
 LOG = logging.getLogger("crossfix.payload")
 CLOCK_DRIFT_S = 0.01
@@ -71,18 +76,17 @@ class PayloadAgent:
         settings: AgentSettings,
         receiver: Receiver,
         spool: Spool,
-        frequency_hz: float,
+        channels: Sequence[Channel],
         now: Callable[[], float] = time.time,
     ) -> None:
         self._settings = settings
         self._receiver = receiver
         self._spool = spool
         self._now = now
-        self._frequency_hz = spool.frequency_hz or frequency_hz
-        self._pulses: Pulses | None = None
+        self._channels = spool.channels or tuple(channels)
         self._retune = asyncio.Event()
         self._arrived = asyncio.Event()
-        self._receiver_state, self._receiver_ok = "starting", False
+        self._receiver_state: HardwareReason = PayloadStarting()
         self._clipped: deque[bool] = deque(maxlen=200)
         self._round_trips: deque[tuple[float, float]] = deque(maxlen=8)
         self._acknowledged = 0
@@ -101,23 +105,15 @@ class PayloadAgent:
         while True:
             try:
                 self._retune.clear()
-                self._expect_pulses()
-                await self._receiver.open(self._frequency_hz)
-                self._receiver_state, self._receiver_ok = "listening", True
+                await self._receiver.open(self._channels)
+                self._receiver_state = PayloadListening(len(self._channels))
                 await self._spool_until_retuned()
-            except (HardwareError, SpoolError) as error:
-                self._receiver_state, self._receiver_ok = str(error)[:300], False
-                LOG.warning("receiver: %s", error)
+            except (ReceiverError, SpoolError) as error:
+                self._receiver_state = error.reason
+                LOG.warning("receiver: %s", sentence_of(error.reason))
                 await asyncio.sleep(self._settings.retry_s * 2.0)
             finally:
                 await self._receiver.close()
-
-    def _expect_pulses(self) -> None:
-        """Raises ReceiverError when the server wants pulses that this radio cannot find."""
-        if isinstance(self._receiver, HearsPulses):
-            self._receiver.expect(self._pulses)
-        elif self._pulses is not None:
-            raise ReceiverError("this receiver measures carriers only; a pulsed tag needs one that delivers IQ")
 
     async def _spool_until_retuned(self) -> None:
         heard: list[PowerSample] = []
@@ -133,14 +129,14 @@ class PayloadAgent:
                     try:
                         sample = finished.result()
                     except StopAsyncIteration:
-                        self._receiver_state, self._receiver_ok = "the recording has ended", False
+                        self._receiver_state = ReceiverStreamEnded()
                         await self._retune.wait()
                         return
                     self._clipped.append(sample.clipped)
                     if sendable(sample):
                         heard.append(sample)
                     else:
-                        self._receiver_state, self._receiver_ok = f"delivers nonsense ({sample.power_db} dB)", False
+                        self._receiver_state = NonsensicalPower(f"{sample.power_db:g}")
                 if heard and time.monotonic() - flushed_at >= self._settings.flush_s:
                     batch, heard, flushed_at = heard, [], time.monotonic()
                     await self._flush(batch)
@@ -181,7 +177,7 @@ class PayloadAgent:
             except (OSError, TimeoutError, InvalidURI, InvalidHandshake, WebSocketException) as error:
                 LOG.warning("%s: %s; trying again in %.1f s", url, error or type(error).__name__, wait_s)
             except PayloadProtocolError as error:
-                LOG.error("%s: %s", url, error)
+                LOG.error("%s: %s", url, sentence_of(error.reason))
             await asyncio.sleep(wait_s)
             wait_s = min(wait_s * 1.7, self._settings.longest_retry_s)
 
@@ -199,13 +195,13 @@ class PayloadAgent:
         )
         greeting = parse_from_server(await link.recv())
         if isinstance(greeting, Refused):
-            raise PayloadProtocolError(greeting.reason)
+            raise PayloadProtocolError(RefusedByServer(greeting.reason))
         if not isinstance(greeting, Welcome):
-            raise PayloadProtocolError("the server did not say welcome")
+            raise PayloadProtocolError(MessageOutOfTurn("no_welcome"))
         await self._received(greeting.received_seq)
         self._sent = greeting.received_seq
-        if greeting.frequency_hz is not None:
-            self._tune(greeting.frequency_hz, greeting.pulses)
+        if greeting.channels is not None:
+            self._tune(greeting.channels)
         LOG.info("connected; the server has everything up to %d", greeting.received_seq)
         tasks = [
             asyncio.create_task(work)
@@ -264,22 +260,21 @@ class PayloadAgent:
                 self._sent = message.seq
                 self._arrived.set()
             elif isinstance(message, Tune):
-                self._tune(message.frequency_hz, message.pulses)
+                self._tune(message.channels)
             elif isinstance(message, Pong):
                 self._measured(message)
             elif isinstance(message, Refused):
-                raise PayloadProtocolError(message.reason)
+                raise PayloadProtocolError(RefusedByServer(message.reason))
 
     async def _received(self, seq: int) -> None:
         self._acknowledged = max(self._acknowledged, seq)
         await asyncio.to_thread(self._spool.forget, seq)
         self._arrived.set()
 
-    def _tune(self, frequency_hz: float, pulses: WirePulses | None) -> None:
-        wanted = None if pulses is None else Pulses(**pulses.model_dump())
-        if (frequency_hz, wanted) != (self._frequency_hz, self._pulses):
-            self._frequency_hz, self._pulses = frequency_hz, wanted
-            self._spool.frequency_hz = frequency_hz
+    def _tune(self, asked: Sequence[WireChannel]) -> None:
+        channels = tuple(channel.channel() for channel in asked)
+        if channels != self._channels:
+            self._channels = self._spool.channels = channels
             self._retune.set()
 
     def _measured(self, pong: Pong) -> None:
@@ -300,7 +295,7 @@ class PayloadAgent:
         trips = self._round_trips
         return Status(
             receiver=self._receiver_state,
-            receiver_ok=self._receiver_ok,
+            receiver_ok=isinstance(self._receiver_state, PayloadListening),
             temperature_c=_temperature_c(),
             clock_offset_s=self._clock_offset(),
             round_trip_s=min(trips)[0] if trips else None,

@@ -7,13 +7,32 @@ import tomllib
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, Field, JsonValue, ValidationError, field_validator
 
 from hardware.payload.session import SHORTEST_TOKEN
+from hardware.readings import Channel, Pulses
+from hardware.reasons.channels import ImpossiblePulses
+from hardware.reasons.payload_link import (
+    ConfigurationEntryMissing,
+    ConfigurationEntryWrong,
+    ConfigurationUnreadable,
+    PulseTimingIncomplete,
+)
+from planner.reason import ReasonedError
 
 
-class ConfigurationError(ValueError):
-    """Names the file and the entry, and says how to mend it."""
+class ConfigurationError(ReasonedError):
+    """The configuration cannot be used."""
+
+    def __init__(
+        self,
+        reason: ConfigurationUnreadable
+        | ConfigurationEntryMissing
+        | ConfigurationEntryWrong
+        | PulseTimingIncomplete
+        | ImpossiblePulses,
+    ) -> None:
+        super().__init__(reason)
 
 
 class PayloadConfiguration(BaseModel):
@@ -32,6 +51,13 @@ class PayloadConfiguration(BaseModel):
     pulse_width_s: float | None = Field(default=None, gt=0)
     pulse_period_s: float | None = Field(default=None, gt=0)
 
+    @property
+    def channel(self) -> Channel:
+        """What to listen to until the server asks for something else."""
+        if self.pulse_width_s is None or self.pulse_period_s is None:
+            return Channel(self.frequency_hz)
+        return Channel(self.frequency_hz, Pulses(self.pulse_width_s, self.pulse_period_s))
+
     @field_validator("servers")
     @classmethod
     def websocket_addresses(cls, servers: tuple[str, ...]) -> tuple[str, ...]:
@@ -49,23 +75,28 @@ def load_configuration(path: Path | None, overrides: dict[str, object]) -> Paylo
         try:
             entries = tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise ConfigurationError(f"{path}: is no readable TOML file ({error})") from error
+            raise ConfigurationError(ConfigurationUnreadable(str(path), str(error))) from error
     entries |= {key: value for key, value in overrides.items() if value is not None}
     try:
-        return PayloadConfiguration.model_validate(entries)
+        configuration = PayloadConfiguration.model_validate(entries)
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        where = f"{path}: " if path is not None else ""
-        missing = first["type"] == "missing"
-        option = {"servers": "server"}.get(place, place).replace("_", "-")
-        what = f"is missing; give --{option} or write it into the file" if missing else first["msg"]
-        raise ConfigurationError(f'{where}"{place}" {what}') from error
+        entry = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "missing":
+            option = {"servers": "server"}.get(entry, entry).replace("_", "-")
+            raise ConfigurationError(ConfigurationEntryMissing(entry, option)) from error
+        raise ConfigurationError(ConfigurationEntryWrong(entry, first["msg"])) from error
+    width_s, period_s = configuration.pulse_width_s, configuration.pulse_period_s
+    if (width_s is None) != (period_s is None):
+        raise ConfigurationError(PulseTimingIncomplete())
+    if width_s is not None and period_s is not None and width_s >= period_s:
+        raise ConfigurationError(ImpossiblePulses(width_s, period_s))
+    return configuration
 
 
 def save_configuration(configuration: PayloadConfiguration, path: Path) -> None:
     """Write the file, readable by its owner only (it holds the token), whole or not at all."""
-    lines = []
+    lines: list[str] = []
     for key, value in configuration.model_dump(mode="json").items():
         if value is None:
             continue
@@ -80,7 +111,7 @@ def save_configuration(configuration: PayloadConfiguration, path: Path) -> None:
     temporary.replace(path)
 
 
-def _toml(value: object) -> str:
+def _toml(value: JsonValue) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     if isinstance(value, str):

@@ -7,18 +7,44 @@ acknowledges the last number received without a gap; only then does the agent fo
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from dataclasses import asdict
+from typing import Annotated, Any, Literal, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
-PROTOCOL = 2
+from hardware.readings import Channel, Pulses
+from hardware.reasons import HardwareReason
+from hardware.reasons.payload import PayloadStateUnknown
+from hardware.reasons.payload_link import MessageNotUnderstood, PayloadLinkReason
+from planner.reason import ReasonedError
+
+PROTOCOL = 3
+"""3: several channels at once, and the receiver's state as a reason. Others are refused: update payload and server
+together."""
 MAXIMUM_MESSAGE_BYTES = 256 * 1024
 MAXIMUM_BATCH = 1000
+MAXIMUM_CHANNELS = 100
 M = TypeVar("M")
 
 
-class PayloadProtocolError(ValueError):
-    """A message that cannot be; the connection is closed with this sentence as the reason."""
+class PayloadProtocolError(ReasonedError):
+    """The talk ends with this reason."""
+
+    def __init__(self, reason: PayloadLinkReason) -> None:
+        super().__init__(reason)
+        self._link_reason: PayloadLinkReason = reason
+
+    @property
+    def reason(self) -> PayloadLinkReason:
+        return self._link_reason
 
 
 class Message(BaseModel):
@@ -35,7 +61,10 @@ WireSample = tuple[Seconds, Hertz, Decibel, Decibel | None, bool, bool]
 
 
 class Hello(Message):
-    """first_seq: the oldest sample the agent still holds (the next one it will make when it holds none)."""
+    """first_seq: the oldest sample the agent still holds (the next one it will make when it holds none).
+
+    The same in every version of the protocol, so that another version is refused with a clear reason.
+    """
 
     type: Literal["hello"] = "hello"
     protocol: int
@@ -58,11 +87,24 @@ class Samples(Message):
     samples: list[WireSample] = Field(min_length=1, max_length=MAXIMUM_BATCH)
 
 
+def _known_reason(told: object, check: ValidatorFunctionWrapHandler) -> Any:
+    """A payload that is newer may be in a state that this server has no reason for: its samples count all the same."""
+    try:
+        return check(told)
+    except ValidationError:
+        if isinstance(told, dict) and isinstance(code := cast(dict[str, object], told).get("code"), str):
+            return PayloadStateUnknown(code[:80])
+        raise
+
+
+WireReason = Annotated[Annotated[HardwareReason, Field(discriminator="code")], WrapValidator(_known_reason)]
+
+
 class Status(Message):
     """How the agent is. waiting: samples not yet acknowledged; lost: dropped since the spool was full."""
 
     type: Literal["status"] = "status"
-    receiver: str = Field(max_length=300)
+    receiver: WireReason
     receiver_ok: bool
     temperature_c: float | None
     clock_offset_s: float | None
@@ -88,14 +130,30 @@ class WirePulses(Message):
     jitter_s: float = Field(ge=0, le=10)
 
 
+class WireChannel(Message):
+    """See hardware.readings.Channel. pulses None: a carrier."""
+
+    frequency_hz: Hertz
+    pulses: WirePulses | None
+
+    @classmethod
+    def of(cls, channel: Channel) -> WireChannel:
+        pulses = None if channel.pulses is None else WirePulses(**asdict(channel.pulses))
+        return cls(frequency_hz=channel.frequency_hz, pulses=pulses)
+
+    def channel(self) -> Channel:
+        return Channel(self.frequency_hz, None if self.pulses is None else Pulses(**self.pulses.model_dump()))
+
+
+WireChannels = Annotated[list[WireChannel], Field(min_length=1, max_length=MAXIMUM_CHANNELS)]
+
+
 class Welcome(Message):
-    """received_seq: the server has everything up to here (0: nothing). pulses: None for a carrier, or for what the
-    agent itself is configured for."""
+    """received_seq: the server has everything up to here (0: nothing). channels None: listen on to what you know."""
 
     type: Literal["welcome"] = "welcome"
     received_seq: int = Field(ge=0)
-    frequency_hz: Hertz | None
-    pulses: WirePulses | None = None
+    channels: WireChannels | None
 
 
 class Ack(Message):
@@ -112,8 +170,7 @@ class Resend(Message):
 
 class Tune(Message):
     type: Literal["tune"] = "tune"
-    frequency_hz: Hertz
-    pulses: WirePulses | None = None
+    channels: WireChannels
 
 
 class Pong(Message):
@@ -123,6 +180,8 @@ class Pong(Message):
 
 
 class Refused(Message):
+    """reason: in English, for the agent's log; a text, so that an agent of every version can read it."""
+
     type: Literal["refused"] = "refused"
     reason: str = Field(max_length=300)
 
@@ -145,10 +204,16 @@ def parse_from_server(text: str | bytes) -> Welcome | Ack | Resend | Tune | Pong
 
 def _parse(adapter: TypeAdapter[M], text: str | bytes) -> M:
     if len(text) > MAXIMUM_MESSAGE_BYTES:
-        raise PayloadProtocolError(f"a message of {len(text)} bytes is longer than {MAXIMUM_MESSAGE_BYTES}")
+        problem = f"{len(text)} bytes are longer than {MAXIMUM_MESSAGE_BYTES}"
+        raise PayloadProtocolError(MessageNotUnderstood("message", problem))
     try:
         return adapter.validate_json(text)
     except (ValidationError, ValueError) as error:
-        first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": str(error)}
-        place = ".".join(str(part) for part in first["loc"]) or "message"
-        raise PayloadProtocolError(f"not understood: {place}: {first['msg']}"[:300]) from None
+        place, problem = _first_fault(error) if isinstance(error, ValidationError) else ("", str(error))
+        raise PayloadProtocolError(MessageNotUnderstood((place or "message")[:80], problem[:160])) from None
+
+
+def _first_fault(error: ValidationError) -> tuple[str, str]:
+    """Where in the message, and what."""
+    first = error.errors()[0]
+    return ".".join(str(part) for part in first["loc"]), first["msg"]

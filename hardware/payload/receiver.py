@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 
+from hardware.channels import check_channels
 from hardware.payload.session import PayloadHub, Subscription
 from hardware.ports import ReceiverError
-from hardware.readings import PowerSample, Pulses
+from hardware.readings import Channel, PowerSample
+from hardware.reasons.payload import NoPayloadConnected, PayloadAway
+from hardware.reasons.receiver import ReceiverNotOpen
 
 
 class PayloadReceiver:
@@ -21,29 +24,24 @@ class PayloadReceiver:
         self._hub = hub
         self._connect_within_s = connect_within_s
         self._gone_after_s = gone_after_s
-        self._frequency_hz: float | None = None
+        self._frequencies_hz: frozenset[float] = frozenset()
         self._subscription: Subscription | None = None
-        self._pulses: Pulses | None = None
 
-    def expect(self, pulses: Pulses | None) -> None:
-        """See HearsPulses: passed on to the payload, which listens for them."""
-        self._pulses = pulses
+    async def open(self, channels: Sequence[Channel]) -> None:
+        """Tune the payload. Raises ReceiverError when none connects in time.
 
-    async def open(self, frequency_hz: float) -> None:
-        """Tune the payload. Raises ReceiverError when none connects in time."""
-        if not frequency_hz > 0:
-            raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
-        self._hub.tune(frequency_hz, self._pulses)
+        What the payload's own receiver cannot hear, the payload tells in its status.
+        """
+        check_channels(channels)
+        self._hub.tune(channels)
         waited = 0.0
         while not self._hub.connected():
             if waited >= self._connect_within_s:
-                raise ReceiverError(
-                    "no payload is connected; check that its agent runs (crossfix payload), its link and its token"
-                )
+                raise ReceiverError(NoPayloadConnected())
             await asyncio.sleep(0.05)
             waited += 0.05
         await self.close()
-        self._frequency_hz = frequency_hz
+        self._frequencies_hz = frozenset(channel.frequency_hz for channel in channels)
         self._subscription = self._hub.subscribe()
 
     async def close(self) -> None:
@@ -55,7 +53,7 @@ class PayloadReceiver:
         """See the Receiver port. Samples of another frequency (from before a change) are left out."""
         subscription = self._subscription
         if subscription is None:
-            raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
+            raise ReceiverError(ReceiverNotOpen())
         outage_s = 0.0
         while self._subscription is subscription:
             try:
@@ -64,8 +62,8 @@ class PayloadReceiver:
             except TimeoutError:
                 outage_s = 0.0 if self._hub.connected() else outage_s + 0.25
                 if outage_s >= self._gone_after_s:
-                    raise ReceiverError(f"no payload was connected for {self._gone_after_s:.0f} s") from None
+                    raise ReceiverError(PayloadAway(self._gone_after_s)) from None
                 continue
             outage_s = 0.0
-            if sample.frequency_hz == self._frequency_hz and self._subscription is subscription:
+            if sample.frequency_hz in self._frequencies_hz and self._subscription is subscription:
                 yield sample

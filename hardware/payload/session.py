@@ -12,8 +12,8 @@ import asyncio
 import hmac
 import time
 from collections import deque
-from collections.abc import Awaitable, Callable
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 from hardware.payload.messages import (
     PROTOCOL,
@@ -29,10 +29,13 @@ from hardware.payload.messages import (
     Status,
     Tune,
     Welcome,
-    WirePulses,
+    WireChannel,
     parse_from_agent,
 )
-from hardware.readings import PowerSample, Pulses
+from hardware.readings import Channel, PowerSample
+from hardware.reasons import HardwareReason
+from hardware.reasons.payload_link import MessageOutOfTurn, OtherProtocol, PayloadConnectedAgain, PayloadLinkReason
+from planner.reason import sentence_of
 
 CLOCK_OFFSET_LIMIT_S = 0.005
 """A measured clock offset below this is taken as none: the measurement is not better."""
@@ -41,13 +44,16 @@ SHORTEST_TOKEN = 16
 
 @dataclass(frozen=True, slots=True)
 class AgentState:
-    """A payload as the server knows it. clock_offset_s: server minus agent. newest_sample_s: server time."""
+    """A payload as the server knows it. receiver: how its receiver is, None until it has said so.
+
+    clock_offset_s: server minus agent. newest_sample_s: server time.
+    """
 
     agent: str
     connected: bool
     heard_at_s: float
     software: str = ""
-    receiver: str = ""
+    receiver: HardwareReason | None = None
     receiver_ok: bool = False
     temperature_c: float | None = None
     clock_offset_s: float | None = None
@@ -65,7 +71,7 @@ class Subscription:
 
     capacity: int = 20_000
     dropped: int = 0
-    _samples: deque[PowerSample] = field(default_factory=deque)
+    _samples: deque[PowerSample] = field(default_factory=deque[PowerSample])
     _ready: asyncio.Event = field(default_factory=asyncio.Event)
 
     def put(self, sample: PowerSample) -> None:
@@ -91,8 +97,7 @@ class PayloadHub:
         self._tokens = tokens
         self.now = now
         self.agents: dict[str, AgentState] = {}
-        self.frequency_hz: float | None = None
-        self.pulses: WirePulses | None = None
+        self.channels: list[WireChannel] | None = None
         self._received: dict[str, int] = {}
         self._subscriptions: list[Subscription] = []
         self._sessions: dict[str, PayloadSession] = {}
@@ -102,12 +107,11 @@ class PayloadHub:
         matches = [hmac.compare_digest(token.encode(), known.encode()) for known in self._tokens]
         return any(matches)
 
-    def tune(self, frequency_hz: float, pulses: Pulses | None = None) -> None:
-        """Ask every payload, now and when it connects, to listen at this frequency, to this tag's pulses."""
-        self.frequency_hz = frequency_hz
-        self.pulses = None if pulses is None else WirePulses(**asdict(pulses))
+    def tune(self, channels: Sequence[Channel]) -> None:
+        """Ask every payload, now and when it connects, to listen to these channels."""
+        self.channels = [WireChannel.of(channel) for channel in channels]
         for session in self._sessions.values():
-            session.send(Tune(frequency_hz=frequency_hz, pulses=self.pulses))
+            session.send(Tune(channels=self.channels))
 
     def subscribe(self) -> Subscription:
         subscription = Subscription()
@@ -124,7 +128,7 @@ class PayloadHub:
     async def serve(self, receive: Callable[[], Awaitable[str]], send: Callable[[str], Awaitable[None]]) -> None:
         """Talk with one agent until `receive` raises (the transport's own exception passes on) or the agent errs.
 
-        A protocol error is told to the agent (Refused) and ends the talk normally: close the socket afterwards.
+        A protocol error is sent to the agent (Refused) and ends the talk normally: close the socket afterwards.
         """
         session = PayloadSession(self)
         sending = asyncio.create_task(self._send_all(session, send))
@@ -147,7 +151,7 @@ class PayloadHub:
         """Register the agent (a newer connection of the same agent replaces the older); last number received."""
         older = self._sessions.pop(hello.agent, None)
         if older is not None:
-            older.refuse("the same agent connected again")
+            older.refuse(PayloadConnectedAgain(hello.agent))
         self._sessions[hello.agent] = session
         known = self.agents.get(hello.agent) or AgentState(hello.agent, True, self.now())
         self.agents[hello.agent] = replace(known, connected=True, heard_at_s=self.now(), software=hello.software)
@@ -196,8 +200,8 @@ class PayloadSession:
     def send(self, message: Message) -> None:
         self.outgoing.put_nowait(message.model_dump_json())
 
-    def refuse(self, reason: str) -> None:
-        self.send(Refused(reason=reason[:300]))
+    def refuse(self, reason: PayloadLinkReason) -> None:
+        self.send(Refused(reason=sentence_of(reason)[:300]))
         self.refused = True
 
     def receive(self, text: str | bytes) -> None:
@@ -207,28 +211,27 @@ class PayloadSession:
         try:
             self._handle(parse_from_agent(text))
         except PayloadProtocolError as error:
-            self.refuse(str(error))
+            self.refuse(error.reason)
 
     def _handle(self, message: Hello | Samples | Status | Ping) -> None:
         if isinstance(message, Hello):
             if self._hello is not None:
-                raise PayloadProtocolError("hello was said twice")
+                raise PayloadProtocolError(MessageOutOfTurn("second_hello"))
             if message.protocol != PROTOCOL:
-                raise PayloadProtocolError(
-                    f"protocol {message.protocol} is not {PROTOCOL}: update the payload's software"
-                )
+                older = "payload" if message.protocol < PROTOCOL else "server"
+                raise PayloadProtocolError(OtherProtocol(message.protocol, PROTOCOL, older))
             self._hello = message
             received = self._hub.welcome(self, message)
-            self.send(Welcome(received_seq=received, frequency_hz=self._hub.frequency_hz, pulses=self._hub.pulses))
+            self.send(Welcome(received_seq=received, channels=self._hub.channels))
         elif isinstance(message, Ping):
             self.send(Pong(agent_s=message.agent_s, server_s=self._hub.now()))
         elif self._hello is None:
-            raise PayloadProtocolError("hello must come first")
+            raise PayloadProtocolError(MessageOutOfTurn("no_hello"))
         elif isinstance(message, Samples):
             self.send(self._hub.take(self._hello.agent, self._hello.stream, message))
         else:
             state = self._hub.agents[self._hello.agent]
-            told = message.model_dump(exclude={"type"})
+            told = {name: value for name, value in message if name != "type"}
             self._hub.agents[self._hello.agent] = replace(state, heard_at_s=self._hub.now(), **told)
 
     async def flushed(self, sending: asyncio.Task[None], timeout_s: float = 1.0) -> None:

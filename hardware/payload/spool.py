@@ -9,14 +9,27 @@ from dataclasses import astuple
 from pathlib import Path
 from uuid import uuid4
 
-from hardware.readings import PowerSample
+from pydantic import TypeAdapter
 
+from hardware.readings import Channel, PowerSample
+from hardware.reasons.payload import SpoolNotWritten, SpoolUnusable
+from planner.reason import ReasonedError
+
+_CHANNELS: TypeAdapter[tuple[Channel, ...]] = TypeAdapter(tuple[Channel, ...])
 DEFAULT_CAPACITY = 2_000_000
 """Samples; at 20 a second more than a day, on disk about 150 MB."""
 
 
-class SpoolError(RuntimeError):
-    """The spool cannot be opened or written; says what to do."""
+class SpoolError(ReasonedError):
+    """The spool cannot be opened or written."""
+
+    def __init__(self, reason: SpoolUnusable | SpoolNotWritten) -> None:
+        super().__init__(reason)
+        self._spool_reason = reason
+
+    @property
+    def reason(self) -> SpoolUnusable | SpoolNotWritten:
+        return self._spool_reason
 
 
 class Spool:
@@ -45,9 +58,7 @@ class Spool:
                 self._db.execute("ALTER TABLE sample ADD COLUMN detected INTEGER NOT NULL DEFAULT 1")
             self._db.execute("INSERT OR IGNORE INTO note VALUES ('stream', ?)", (uuid4().hex,))
         except (sqlite3.Error, OSError) as error:
-            raise SpoolError(
-                f"the spool {path} cannot be used ({error}); check that the disk is writable, or name another file"
-            ) from error
+            raise SpoolError(SpoolUnusable(str(path), str(error))) from error
 
     @property
     def stream(self) -> str:
@@ -60,14 +71,14 @@ class Spool:
         return int(self._note("lost") or 0)
 
     @property
-    def frequency_hz(self) -> float | None:
-        """The frequency the server last asked for; survives a reboot."""
-        stored = self._note("frequency_hz")
-        return None if stored is None else float(stored)
+    def channels(self) -> tuple[Channel, ...] | None:
+        """What the server last asked to listen to; survives a reboot."""
+        stored = self._note("channels")
+        return None if stored is None else _CHANNELS.validate_json(stored)
 
-    @frequency_hz.setter
-    def frequency_hz(self, value: float) -> None:
-        self._set("frequency_hz", repr(value))
+    @channels.setter
+    def channels(self, channels: Sequence[Channel]) -> None:
+        self._set("channels", _CHANNELS.dump_json(tuple(channels)).decode())
 
     def append(self, samples: Sequence[PowerSample]) -> None:
         """Durable when it returns. Raises SpoolError (disk full)."""
@@ -92,7 +103,7 @@ class Spool:
             except sqlite3.Error as error:
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
-                raise SpoolError(f"the spool cannot be written ({error}); is the disk full?") from error
+                raise SpoolError(SpoolNotWritten(str(error))) from error
 
     def after(self, seq: int, limit: int) -> list[tuple[int, PowerSample]]:
         """Up to `limit` samples with larger numbers than `seq`, in order."""

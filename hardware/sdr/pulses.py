@@ -10,7 +10,15 @@ from numpy.typing import NDArray
 
 from hardware.iq import IqBlock
 from hardware.readings import PowerSample
-from hardware.sdr.spectrum import CLIPPED_SHARE, LEVEL_FLOOR, SpectrumError, mean_over_median
+from hardware.reasons.channels import ImpossiblePulses, OutsideBand, SampleRateTooLow
+from hardware.sdr.spectrum import (
+    CLIPPED_SHARE,
+    FEWEST_SAMPLES,
+    LEVEL_FLOOR,
+    SpectrumError,
+    mean_over_median,
+    outside_band,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +37,12 @@ class PulseSetting:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.width_s < self.period_s:
-            raise SpectrumError(
-                f"a pulse of {self.width_s} s every {self.period_s} s cannot be: give 0 < width_s < period_s"
-            )
+            raise SpectrumError(ImpossiblePulses(self.width_s, self.period_s))
+
+    @property
+    def reach_hz(self) -> float:
+        """What must be sampled to either side of the nominal frequency."""
+        return self.search_hz
 
 
 @dataclass(slots=True)
@@ -56,18 +67,12 @@ class PulseMeter:
     _bins_hz: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        nominal = self.frequency_hz - self.centre_hz
-        if abs(nominal) + self.setting.search_hz > self.sample_rate_hz / 2.0:
-            raise SpectrumError(
-                f"{self.frequency_hz / 1e6:.4f} MHz does not fit into {self.sample_rate_hz / 1e3:.0f} kS/s around "
-                f"{self.centre_hz / 1e6:.4f} MHz; tune closer, or raise the sample rate"
-            )
+        needed_hz = FEWEST_SAMPLES / self.setting.width_s
+        if not self.sample_rate_hz >= needed_hz:
+            raise SpectrumError(SampleRateTooLow(self.sample_rate_hz, needed_hz))
+        if outside_band(self.frequency_hz, self.setting.reach_hz, self.centre_hz, self.sample_rate_hz):
+            raise SpectrumError(OutsideBand(self.sample_rate_hz, self.centre_hz, (self.frequency_hz,)))
         self._size = int(self.setting.width_s * self.sample_rate_hz)
-        if self._size < 16:
-            raise SpectrumError(
-                f"a pulse of {self.setting.width_s} s holds only {self._size} samples at {self.sample_rate_hz:.0f} S/s"
-                "; raise the sample rate"
-            )
         self._bins_hz = np.asarray(np.fft.fftfreq(self._size, 1.0 / self.sample_rate_hz), dtype=np.float64)
         self._samples = np.empty(0, dtype=np.complex64)
         self._clipped = np.empty(0, dtype=bool)

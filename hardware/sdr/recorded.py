@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 
+from hardware.channels import only_carrier
 from hardware.ports import Clock, ReceiverError
-from hardware.readings import HeadingSample, PowerSample, Sweep
+from hardware.readings import Channel, HeadingSample, PowerSample, Sweep
+from hardware.reasons.channels import RecordedElsewhere
+from hardware.reasons.receiver import ReceiverNotOpen, RecordedSweepEmpty
+
+SAME_FREQUENCY = 0.01
+"""Share by which the asked frequency may differ from the recorded one: log files round it."""
 
 
 class RecordedReceiver:
@@ -13,7 +19,7 @@ class RecordedReceiver:
 
     def __init__(self, sweep: Sweep, clock: Clock, duration_s: float | None = None) -> None:
         if sweep.power_db.size == 0:
-            raise ReceiverError("the recorded sweep holds no sample")
+            raise ReceiverError(RecordedSweepEmpty())
         self._sweep = sweep
         self._clock = clock
         span = float(sweep.at_s[-1] - sweep.at_s[0])
@@ -24,18 +30,14 @@ class RecordedReceiver:
         else:
             step = (wanted or 0.05 * sweep.power_db.size) / sweep.power_db.size
             self._after_s = [k * step for k in range(sweep.power_db.size)]
-        self._frequency_hz = sweep.frequency_hz
+        self._frequency_hz = 0.0
         self._open = False
 
-    async def open(self, frequency_hz: float) -> None:
-        recorded = self._sweep.frequency_hz
-        if not frequency_hz > 0:
-            raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
-        if recorded > 0 and abs(frequency_hz - recorded) > 0.01 * recorded:
-            raise ReceiverError(
-                f"the sweep was recorded at {recorded / 1e6:.4f} MHz, not at {frequency_hz / 1e6:.4f} MHz"
-            )
-        self._frequency_hz = recorded if recorded > 0 else frequency_hz
+    async def open(self, channels: Sequence[Channel]) -> None:
+        recorded, wanted = self._sweep.frequency_hz, only_carrier(channels).frequency_hz
+        if recorded > 0 and abs(wanted - recorded) > SAME_FREQUENCY * recorded:
+            raise ReceiverError(RecordedElsewhere(recorded, wanted))
+        self._frequency_hz = wanted
         self._open = True
 
     async def close(self) -> None:
@@ -44,7 +46,7 @@ class RecordedReceiver:
     async def samples(self) -> AsyncIterator[PowerSample]:
         """See the Receiver port. Ends with the recording."""
         if not self._open:
-            raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
+            raise ReceiverError(ReceiverNotOpen())
         begin_s = self._clock.now()
         for after_s, power_db in zip(self._after_s, self._sweep.power_db, strict=True):
             await self._clock.sleep(max(begin_s + after_s - self._clock.now(), 0.0))

@@ -13,7 +13,20 @@ from hardware.direction_finding.recordings import RecordedSweep, Recording, read
 from hardware.direction_finding.sweep import SweepError, assemble_sweep
 from hardware.direction_finding.table_file import RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
-from hardware.readings import GeoPoint, PowerSample
+from hardware.readings import Place, PowerSample
+from hardware.reasons import RecordingReason
+from hardware.reasons.channels import SampleRateTooLow
+from hardware.reasons.iq_recording import (
+    NoPulseAt,
+    NoSignalFound,
+    NotIq,
+    ReadingsWithoutHeading,
+    RecordingUnusable,
+    SamplesNotNumbers,
+    SamplesUnusable,
+    SilentAt,
+    StrongestUsed,
+)
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.rotation_headings import annotated_headings, apart, headings_from
 from hardware.sdr.sigmf_file import SigmfRecording, is_sigmf, load_sigmf
@@ -27,7 +40,7 @@ FOUND_DB = 10.0
 SPECTRUM_SIZE = 4096
 DC_BINS = 8
 """Cheap receivers have a spike at the centre of the band, this many bins wide to either side."""
-UNKNOWN_PLACE = GeoPoint(0.0, 0.0)
+UNKNOWN_PLACE = Place(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +60,7 @@ def read_sweeps(path: Path | str, tag: str | None = None, iq: IqReading | None =
     if is_sigmf(path):
         return read_rotation(path, tag, iq)
     if iq is not None and iq.headings is not None:
-        raise RecordingError(
-            f"{path}: a headings file goes with a SigMF recording only; this file has its own headings"
-        )
+        raise RecordingError(NotIq(str(path), "headings"))
     return read_recording(path, tag)
 
 
@@ -58,13 +69,11 @@ def read_rotation(path: Path | str, tag: str | None = None, iq: IqReading | None
     iq = iq or IqReading()
     recorded = load_sigmf(path)
     _refuse_unusable_samples(recorded)
-    remarks: list[str] = []
+    remarks: list[RecordingReason] = []
     frequency_hz = iq.frequency_hz
     if frequency_hz is None:
         frequency_hz = _strongest_hz(recorded)
-        remarks.append(
-            f"{path}: no frequency was given; the strongest signal, at {frequency_hz / 1e6:.4f} MHz, is used"
-        )
+        remarks.append(StrongestUsed(str(path), frequency_hz))
     of_antenna = iq.headings is None
     headings = annotated_headings(recorded) if iq.headings is None else headings_from(iq.headings, recorded, remarks)
     heard = _heard(recorded, frequency_hz, iq.pulses)
@@ -80,29 +89,24 @@ def read_rotation(path: Path | str, tag: str | None = None, iq: IqReading | None
             tag=tag,
         )
     except SweepError as error:
-        raise RecordingError(f"{path}: {apart(recorded, headings) or error}") from error
+        raise RecordingError(apart(recorded, headings) or RecordingUnusable(str(path), error.reason)) from error
     unheard = len(heard) - sweep.power_db.size
     if unheard > 0.02 * len(heard):
-        remarks.append(f"{path}: {unheard} of {len(heard)} readings have no heading of their time; they are left out")
+        remarks.append(ReadingsWithoutHeading(str(path), unheard, len(heard)))
     known = place is not None or bool(stands)
     return Recording((RecordedSweep(sweep, None, known, of_antenna),), tuple(remarks))
 
 
 def _refuse_unusable_samples(recorded: SigmfRecording) -> None:
+    file = str(recorded.path)
     if recorded.sample_rate_hz < SLOWEST_HZ:
-        raise RecordingError(
-            f"{recorded.path}: a sample rate of {recorded.sample_rate_hz:g} Hz is too low for a bearing "
-            f"(at least {SLOWEST_HZ:.0f} Hz); is core:sample_rate right?"
-        )
+        raise RecordingError(RecordingUnusable(file, SampleRateTooLow(recorded.sample_rate_hz, SLOWEST_HZ)))
     bad = ~np.isfinite(recorded.samples)
     if bad.any():
         first_s = int(np.argmax(bad)) / recorded.sample_rate_hz
-        raise RecordingError(
-            f"{recorded.path}: {int(bad.sum())} samples are no numbers, the first after {first_s:.2f} s; "
-            "cut them out, or check the data type (core:datatype)"
-        )
+        raise RecordingError(SamplesNotNumbers(file, int(bad.sum()), first_s))
     if not recorded.samples.any():
-        raise RecordingError(f"{recorded.path}: is silent: every sample is zero; was the receiver running?")
+        raise RecordingError(SamplesUnusable(file, "zero"))
 
 
 def _strongest_hz(recorded: SigmfRecording) -> float:
@@ -118,10 +122,7 @@ def _strongest_hz(recorded: SigmfRecording) -> float:
         peak = int(np.argmax(np.where(eligible, spectrum, -1.0)))
         if spectrum[peak] > 10.0 ** (FOUND_DB / 10.0) * noise:
             return recorded.centre_hz + float(bins_hz[peak])
-    raise RecordingError(
-        f"{recorded.path}: is silent: nothing stands {FOUND_DB:.0f} dB above the noise; "
-        "if the emitter is weaker than that, give its frequency"
-    )
+    raise RecordingError(NoSignalFound(str(recorded.path), FOUND_DB))
 
 
 def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting | None) -> list[PowerSample]:
@@ -129,19 +130,13 @@ def _heard(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting |
     heard = [sample for block in _blocks(recorded) for sample in meter.feed(block) if sample.detected]
     if pulses is not None:
         if not heard:
-            raise RecordingError(
-                f"{recorded.path}: no pulse was heard at {frequency_hz / 1e6:.4f} MHz; "
-                "check the frequency and the tag's pulse width and period"
-            )
+            raise RecordingError(NoPulseAt(str(recorded.path), frequency_hz))
         return heard
     above = [s.power_db - s.noise_floor_db for s in heard if s.noise_floor_db is not None]
     if not above:
-        raise RecordingError(f"{recorded.path}: is too short for one reading; is the sample rate right?")
+        raise RecordingError(SamplesUnusable(str(recorded.path), "too_short"))
     if max(above) < HEARD_DB:
-        raise RecordingError(
-            f"{recorded.path}: is silent at {frequency_hz / 1e6:.4f} MHz: the strongest reading stands "
-            f"{max(above):.1f} dB above the noise; check the frequency"
-        )
+        raise RecordingError(SilentAt(str(recorded.path), frequency_hz, max(above)))
     return heard
 
 
@@ -158,11 +153,11 @@ def _meter(recorded: SigmfRecording, frequency_hz: float, pulses: PulseSetting |
         reach = min(plain.search_hz, max(room_hz - width_hz, 0.0))
         return ToneMeter(frequency_hz, centre, rate, setting=replace(plain, bandwidth_hz=width_hz, search_hz=reach))
     except SpectrumError as error:
-        raise RecordingError(f"{recorded.path}: {error} (core:sample_rate, core:frequency)") from error
+        raise RecordingError(RecordingUnusable(str(recorded.path), error.reason)) from error
 
 
 def _blocks(recorded: SigmfRecording) -> Iterator[IqBlock]:
-    """Capture by capture at its own time; that time went by between two of them is told as loss."""
+    """Capture by capture at its own time; that time went by between two of them counts as loss."""
     rate = recorded.sample_rate_hz
     size = max(int(BLOCK_S * rate), 1)
     firsts = [segment.first for segment in recorded.segments]

@@ -11,7 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from hardware.direction_finding.table_file import RecordingError, Row, column_of, read_table
-from hardware.readings import GeoPoint, HeadingSample
+from hardware.readings import HeadingSample, Place
+from hardware.reasons import RecordingReason
+from hardware.reasons.iq_recording import HeadingsApart, HeadingsOfOtherLength, SigmfFieldMissing
+from hardware.reasons.table import FileUnusable
 from hardware.sdr.sigmf_file import AZIMUTH_KEY, SigmfRecording
 
 EPOCH_S = 1e8
@@ -26,10 +29,7 @@ def annotated_headings(recorded: SigmfRecording) -> list[HeadingSample]:
     Raises RecordingError when it carries none.
     """
     if len(recorded.azimuths) < 2:
-        raise RecordingError(
-            f"{recorded.path}: does not tell where the antenna pointed ({AZIMUTH_KEY} in its annotations); "
-            "give a table of time and heading beside it (--headings)"
-        )
+        raise RecordingError(SigmfFieldMissing(str(recorded.path), AZIMUTH_KEY))
     headings: list[HeadingSample] = []
     for azimuth in recorded.azimuths:
         begin_s = recorded.time_of(azimuth.first)
@@ -40,7 +40,7 @@ def annotated_headings(recorded: SigmfRecording) -> list[HeadingSample]:
     return headings
 
 
-def headings_from(path: Path, recorded: SigmfRecording, remarks: list[str]) -> list[HeadingSample]:
+def headings_from(path: Path, recorded: SigmfRecording, remarks: list[RecordingReason]) -> list[HeadingSample]:
     """The nose's headings of a table of time, heading[, lat, lon]; adds a remark a row that is left out.
 
     Times: UTC epoch seconds, ISO 8601, or seconds since the recording began. Raises RecordingError.
@@ -53,26 +53,27 @@ def headings_from(path: Path, recorded: SigmfRecording, remarks: list[str]) -> l
     heading_at = column_of(names, "heading_deg", "heading", "yaw_deg", "yaw") if named else 1
     lat_at, lon_at = column_of(names, "lat", "lat_deg", "latitude"), column_of(names, "lon", "lon_deg", "longitude")
     if time_at is None or heading_at is None:
-        raise RecordingError(
-            f"{table.where(first)}: the header names no time and heading column; name the columns at_s and heading_deg"
-        )
+        raise table.columns_unknown(first, "at_s", "heading_deg")
     headings: list[HeadingSample] = []
     for row in table.rows[1:] if named else table.rows:
         at_s, heading = _time_s(row, time_at), row.number(heading_at)
         if at_s is None or heading is None or not (math.isfinite(at_s) and math.isfinite(heading)):
-            remarks.append(f'{table.where(row)}: "{", ".join(row.cells)}" is not time and heading; line left out')
+            timeless = at_s is None or not math.isfinite(at_s)
+            column, quantity = (time_at, "time") if timeless else (heading_at, "heading")
+            remarks.append(table.cell_unusable(row, column, quantity))
         else:
             headings.append(HeadingSample(at_s, heading % 360.0, _position(row, lat_at, lon_at)))
     if len(headings) < 2:
-        raise RecordingError(f"{path}: needs at least two rows of time and heading")
+        raise RecordingError(FileUnusable(str(path), "one_heading"))
     if max(h.at_s for h in headings) < EPOCH_S:
         headings = [replace(h, at_s=h.at_s + recorded.start_s) for h in headings]
     elif recorded.segments[0].at_s is None:
-        raise RecordingError(
-            f"{path}: has clock times, but the recording does not tell when it began (core:datetime); "
-            "write the times as seconds since its beginning"
-        )
-    _remark_span(path, recorded, headings, remarks)
+        raise RecordingError(SigmfFieldMissing(str(recorded.path), "core:datetime"))
+    first_s, last_s = _span_s(recorded, headings)
+    length_s = recorded.duration_s
+    # a wrong sample rate shows in that the samples end long before or after the headings
+    if last_s >= 0.0 and first_s <= length_s and not 0.8 * length_s < last_s - first_s < 1.25 * length_s:
+        remarks.append(HeadingsOfOtherLength(str(path), last_s - first_s, length_s, recorded.sample_rate_hz))
     return headings
 
 
@@ -87,12 +88,12 @@ def _time_s(row: Row, column: int) -> float | None:
     return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
-def _position(row: Row, lat_at: int | None, lon_at: int | None) -> GeoPoint | None:
+def _position(row: Row, lat_at: int | None, lon_at: int | None) -> Place | None:
     lat = None if lat_at is None else row.number(lat_at)
     lon = None if lon_at is None else row.number(lon_at)
     if lat is None or lon is None or not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
         return None
-    return GeoPoint(lat, lon)
+    return Place(lat, lon)
 
 
 def _span_s(recorded: SigmfRecording, headings: Sequence[HeadingSample]) -> tuple[float, float]:
@@ -101,23 +102,9 @@ def _span_s(recorded: SigmfRecording, headings: Sequence[HeadingSample]) -> tupl
     return min(times), max(times)
 
 
-def _remark_span(path: Path, recorded: SigmfRecording, headings: Sequence[HeadingSample], remarks: list[str]) -> None:
-    """A wrong sample rate shows in that the samples end long before or after the headings."""
-    first_s, last_s = _span_s(recorded, headings)
-    length_s = recorded.duration_s
-    if last_s >= 0.0 and first_s <= length_s and not 0.8 * length_s < last_s - first_s < 1.25 * length_s:
-        remarks.append(
-            f"{path}: the headings last {last_s - first_s:.1f} s, the samples {length_s:.1f} s; what they share is "
-            f"used. Is the recording's sample rate ({recorded.sample_rate_hz:g} Hz) right?"
-        )
-
-
-def apart(recorded: SigmfRecording, headings: Sequence[HeadingSample]) -> str | None:
-    """What to say when headings and samples share no time; None when they do."""
+def apart(recorded: SigmfRecording, headings: Sequence[HeadingSample]) -> HeadingsApart | None:
+    """That headings and samples share no time; None when they do."""
     first_s, last_s = _span_s(recorded, headings)
     if last_s >= 0.0 and first_s <= recorded.duration_s:
         return None
-    return (
-        f"the headings run from {first_s:.1f} to {last_s:.1f} s after its beginning, the samples from 0 to "
-        f"{recorded.duration_s:.1f} s; check the times and the sample rate ({recorded.sample_rate_hz:g} Hz)"
-    )
+    return HeadingsApart(str(recorded.path), first_s, last_s, recorded.duration_s, recorded.sample_rate_hz)

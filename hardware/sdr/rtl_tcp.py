@@ -14,6 +14,9 @@ from collections.abc import AsyncIterator
 
 from hardware.iq import IqBlock, from_unsigned_bytes
 from hardware.ports import ReceiverError
+from hardware.reasons.channels import FrequencyOutOfRange
+from hardware.reasons.radio import NotRtlTcp, RtlSdrSampleRate, RtlTcpBusy, RtlTcpEnded, RtlTcpUnreachable
+from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.sdr.sample_clock import SampleClock
 
 SET_FREQUENCY, SET_SAMPLE_RATE, SET_GAIN_MODE, SET_GAIN, SET_PPM, SET_AGC = 0x01, 0x02, 0x03, 0x04, 0x05, 0x08
@@ -40,10 +43,9 @@ class RtlTcpSource:
         settle_s: float = 0.6,
     ) -> None:
         if not any(low <= sample_rate_hz <= high for low, high in _RATES_HZ):
-            raise ReceiverError(
-                f"an RTL-SDR cannot sample at {sample_rate_hz:.0f} S/s; choose 225001..300000 or 900001..3200000"
-            )
+            raise ReceiverError(RtlSdrSampleRate(sample_rate_hz))
         self._host, self._port = host, port
+        self._address = f"{host}:{port}"
         self._rate, self._gain, self._ppm = sample_rate_hz, gain_db, ppm
         self._timeout_s, self._settle_s = timeout_s, settle_s
         self._reader: asyncio.StreamReader | None = None
@@ -59,28 +61,13 @@ class RtlTcpSource:
 
     async def open(self, centre_hz: float) -> float:
         if not 0 < centre_hz < 2**32:
-            raise ReceiverError(f"rtl_tcp cannot tune to {centre_hz:.0f} Hz")
+            raise ReceiverError(FrequencyOutOfRange(centre_hz))
         await self.close()
-        where = f"{self._host}:{self._port}"
         try:
-            async with asyncio.timeout(self._timeout_s):
-                reader, writer = await asyncio.open_connection(self._host, self._port)
-                greeting = await reader.readexactly(GREETING.size)
-        except TimeoutError:
-            raise ReceiverError(
-                f"rtl_tcp at {where} does not answer; is it running, and is no other client connected?"
-            ) from None
-        except asyncio.IncompleteReadError:
-            raise ReceiverError(f"rtl_tcp at {where} closed the connection; is another client connected?") from None
-        except OSError as error:
-            raise ReceiverError(
-                f"rtl_tcp at {where} cannot be reached ({error.strerror or error}); start it there"
-            ) from error
-        magic, _, _ = GREETING.unpack(greeting)
-        if magic != b"RTL0":
-            writer.close()
-            raise ReceiverError(f"what listens at {where} is no rtl_tcp server")
-        self._reader, self._writer = reader, writer
+            await self._connect()
+        except ReceiverError:
+            await self.close()
+            raise
         await self._command(SET_SAMPLE_RATE, round(self._rate))
         await self._command(SET_PPM, self._ppm & 0xFFFFFFFF)
         await self._command(SET_AGC, 0)
@@ -89,6 +76,21 @@ class RtlTcpSource:
         await self._command(SET_FREQUENCY, round(centre_hz))
         return float(round(centre_hz))
 
+    async def _connect(self) -> None:
+        try:
+            async with asyncio.timeout(self._timeout_s):
+                self._reader, self._writer = await asyncio.open_connection(self._host, self._port)
+                greeting = await self._reader.readexactly(GREETING.size)
+        except TimeoutError:
+            raise ReceiverError(RtlTcpBusy(self._address, closed=False)) from None
+        except asyncio.IncompleteReadError:
+            raise ReceiverError(RtlTcpBusy(self._address, closed=True)) from None
+        except OSError as error:
+            raise ReceiverError(RtlTcpUnreachable(self._address, error.strerror or str(error))) from error
+        magic, _, _ = GREETING.unpack(greeting)
+        if magic != b"RTL0":
+            raise ReceiverError(NotRtlTcp(self._address))
+
     async def set_gain(self, gain_db: float) -> None:
         if self._writer is not None:
             await self._command(SET_GAIN, round(gain_db * 10.0) & 0xFFFFFFFF)
@@ -96,17 +98,17 @@ class RtlTcpSource:
 
     async def _command(self, code: int, value: int) -> None:
         if self._writer is None:
-            raise ReceiverError("rtl_tcp is not connected: open it first")
+            raise ReceiverError(ReceiverNotOpen())
         try:
             self._writer.write(COMMAND.pack(code, value))
             await self._writer.drain()
         except OSError as error:
-            raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
+            raise ReceiverError(RtlTcpEnded(self._address, broken=True)) from error
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
         reader = self._reader
         if reader is None:
-            raise ReceiverError("rtl_tcp is not connected: open it first")
+            raise ReceiverError(ReceiverNotOpen())
         size = 2 * int(self._rate / 50.0)
         clock = SampleClock(self._rate)
         tuned_s = time.monotonic() + self._settle_s
@@ -117,9 +119,9 @@ class RtlTcpSource:
             except asyncio.IncompleteReadError:
                 if self._reader is not reader:
                     return
-                raise ReceiverError(f"rtl_tcp at {self._host}:{self._port} ended the stream") from None
+                raise ReceiverError(RtlTcpEnded(self._address, broken=False)) from None
             except OSError as error:
-                raise ReceiverError(f"the connection to rtl_tcp broke ({error.strerror or error})") from error
+                raise ReceiverError(RtlTcpEnded(self._address, broken=True)) from error
             if time.monotonic() < tuned_s:
                 continue
             samples, clipped = from_unsigned_bytes(raw)

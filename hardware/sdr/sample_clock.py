@@ -39,5 +39,5 @@ class SampleClock:
         return self._bounds[0][1] + first / self._rate_hz + self._utc() - now
 
     def restart(self) -> None:
-        """The numbers begin anew, or an unknown number of samples was lost."""
+        """The numbers begin again, or an unknown number of samples was lost."""
         self._bounds.clear()

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import sigmf
 from numpy.typing import NDArray
 
-from hardware.direction_finding.table_file import RecordingError
-from hardware.readings import GeoPoint
+from hardware.direction_finding.table_file import LONGEST_CELL, RecordingError
+from hardware.readings import Place
+from hardware.reasons.iq_recording import (
+    Field,
+    SamplesUnusable,
+    SigmfFieldMissing,
+    SigmfFieldUnusable,
+    SigmfFileMissing,
+)
+from hardware.reasons.table import FileUnreadable
 
 META, DATA, ARCHIVE = ".sigmf-meta", ".sigmf-data", ".sigmf"
-AZIMUTH_KEY = "antenna:azimuth_angle"
+AZIMUTH_KEY: Final = "antenna:azimuth_angle"
 """Of the antenna extension to SigMF: direction of the main beam from north, degrees clockwise."""
 
 
@@ -49,7 +59,7 @@ class SigmfRecording:
     centre_hz: float
     segments: tuple[Segment, ...]
     azimuths: tuple[Azimuth, ...]
-    place: GeoPoint | None
+    place: Place | None
 
     @property
     def start_s(self) -> float:
@@ -76,28 +86,28 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     """One recording: its meta file, its data file beside it, or an archive. Raises RecordingError."""
     path = Path(path)
     recording = _opened(path)
-    captures: Sequence[dict[str, Any]] = recording.get_captures()
+    captures = recording.get_captures()
     rate = recording.get_global_field(sigmf.SAMPLE_RATE_KEY)
     if rate is None:
-        raise RecordingError(f"{path}: the recording states no sample rate; add {sigmf.SAMPLE_RATE_KEY}")
+        raise RecordingError(SigmfFieldMissing(str(path), "core:sample_rate"))
     if not isinstance(rate, int | float) or not (math.isfinite(rate) and rate > 0):
-        raise RecordingError(f"{path}: the sample rate is {rate!r}; {sigmf.SAMPLE_RATE_KEY} must be greater than zero")
+        raise _unusable(path, "core:sample_rate", rate)
     tuned = {capture[sigmf.FREQUENCY_KEY] for capture in captures if sigmf.FREQUENCY_KEY in capture}
     if not tuned:
-        raise RecordingError(f"{path}: the recording states no centre frequency; add {sigmf.FREQUENCY_KEY}")
+        raise RecordingError(SigmfFieldMissing(str(path), "core:frequency"))
     if len(tuned) > 1:
-        raise RecordingError(f"{path}: the receiver was retuned during the recording; cut it into one a frequency")
+        raise _unusable(path, "core:frequency", ", ".join(map(str, tuned)))
     centre = tuned.pop()
     if not isinstance(centre, int | float) or not math.isfinite(centre):
-        raise RecordingError(f"{path}: the centre frequency is {centre!r}, not a number of hertz")
+        raise _unusable(path, "core:frequency", centre)
     try:
         samples = recording.read_samples()
     except (OSError, ValueError, KeyError, TypeError, sigmf.error.SigMFError) as error:
-        raise RecordingError(f"{path}: its samples cannot be read ({error})") from error
+        raise RecordingError(FileUnreadable(str(path), str(error))) from error
     if not np.iscomplexobj(samples):
-        raise RecordingError(f"{path}: holds real samples; a bearing needs complex IQ")
+        raise RecordingError(SamplesUnusable(str(path), "real"))
     if samples.size == 0:
-        raise RecordingError(f"{path}: holds no sample; is the {DATA} file complete?")
+        raise RecordingError(SamplesUnusable(str(path), "none"))
     return SigmfRecording(
         path,
         np.asarray(samples, dtype=np.complex64).ravel(),
@@ -109,22 +119,26 @@ def load_sigmf(path: Path | str) -> SigmfRecording:
     )
 
 
+def _unusable(path: Path, field: Field, value: object) -> RecordingError:
+    return RecordingError(SigmfFieldUnusable(str(path), field, str(value)[:LONGEST_CELL]))
+
+
 def _opened(path: Path) -> sigmf.SigMFFile:
     if path.suffix.lower() in (META, DATA):
         meta, data = path.with_suffix(META), path.with_suffix(DATA)
         if not meta.is_file():
-            raise RecordingError(f"{path}: its SigMF file {meta.name} is missing; it tells rate and sample format")
+            raise RecordingError(SigmfFileMissing(str(path), meta.name))
         _refuse_dataset_elsewhere(meta)
         if not data.is_file():
-            raise RecordingError(f"{path}: its SigMF file {data.name} is missing; it holds the samples")
+            raise RecordingError(SigmfFileMissing(str(path), data.name))
     elif not path.is_file():
-        raise RecordingError(f"{path}: cannot be read (no such file); check the path")
+        raise RecordingError(FileUnreadable(str(path), os.strerror(errno.ENOENT)))
     try:
         recording = sigmf.fromfile(str(path))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, sigmf.error.SigMFError) as error:
-        raise RecordingError(f"{path}: is no readable SigMF recording ({error})") from error
+        raise RecordingError(FileUnreadable(str(path), str(error))) from error
     if not isinstance(recording, sigmf.SigMFFile):
-        raise RecordingError(f"{path}: is a collection of recordings; give one recording")
+        raise RecordingError(SamplesUnusable(str(path), "collection"))
     return recording
 
 
@@ -133,11 +147,9 @@ def _refuse_dataset_elsewhere(meta: Path) -> None:
     try:
         dataset = json.loads(meta.read_bytes())["global"].get(sigmf.DATASET_KEY)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise RecordingError(f"{meta}: is no readable SigMF recording ({error})") from error
+        raise RecordingError(FileUnreadable(str(meta), str(error))) from error
     if dataset is not None:
-        raise RecordingError(
-            f"{meta}: names another data file ({sigmf.DATASET_KEY}); remove this and name the samples {meta.stem}{DATA}"
-        )
+        raise _unusable(meta, "core:dataset", dataset)
 
 
 def _time(path: Path, capture: dict[str, Any]) -> float | None:
@@ -147,7 +159,7 @@ def _time(path: Path, capture: dict[str, Any]) -> float | None:
     try:
         moment = datetime.fromisoformat(stamp)
     except (TypeError, ValueError):
-        raise RecordingError(f'{path}: {sigmf.DATETIME_KEY} is "{stamp}"; write it as 2026-05-01T10:00:00Z') from None
+        raise _unusable(path, "core:datetime", stamp) from None
     return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
@@ -170,11 +182,11 @@ def _azimuths(path: Path, recording: sigmf.SigMFFile, size: int) -> tuple[Azimut
 
 def _degrees(path: Path, value: object) -> float:
     if not isinstance(value, int | float) or not math.isfinite(value):
-        raise RecordingError(f"{path}: {AZIMUTH_KEY} is {value!r}, not a number of degrees")
+        raise _unusable(path, AZIMUTH_KEY, value)
     return float(value) % 360.0
 
 
-def _place(path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, Any]]) -> GeoPoint | None:
+def _place(path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, Any]]) -> Place | None:
     """core:geolocation of a capture or of the whole, a GeoJSON point."""
     stated = [c[sigmf.GEOLOCATION_KEY] for c in captures if sigmf.GEOLOCATION_KEY in c]
     stated = stated or [g for g in (recording.get_global_field(sigmf.GEOLOCATION_KEY),) if g is not None]
@@ -183,10 +195,10 @@ def _place(path: Path, recording: sigmf.SigMFFile, captures: Sequence[dict[str, 
     try:
         lon, lat = (float(value) for value in stated[0]["coordinates"][:2])
     except (TypeError, ValueError, KeyError):
-        raise RecordingError(f"{path}: {sigmf.GEOLOCATION_KEY} is no GeoJSON point") from None
+        raise _unusable(path, "core:geolocation", stated[0]) from None
     if not (abs(lat) <= 90.0 and abs(lon) <= 180.0):
-        raise RecordingError(f"{path}: {lat:g}, {lon:g} is no place on earth ({sigmf.GEOLOCATION_KEY})")
-    return GeoPoint(lat, lon)
+        raise _unusable(path, "core:geolocation", stated[0])
+    return Place(lat, lon)
 
 
 def write_sigmf(
@@ -196,7 +208,7 @@ def write_sigmf(
     centre_hz: float,
     start_s: float,
     azimuths: Sequence[Azimuth] = (),
-    place: GeoPoint | None = None,
+    place: Place | None = None,
     antenna: str = "unknown",
 ) -> Path:
     """Write `path` (.sigmf-meta and .sigmf-data beside it); returns the meta file's path.
@@ -212,7 +224,7 @@ def write_sigmf(
         sigmf.DESCRIPTION_KEY: "IQ recorded by crossfix",
     }
     if place is not None:
-        about[sigmf.GEOLOCATION_KEY] = {"type": "Point", "coordinates": [place.lon_deg, place.lat_deg]}
+        about[sigmf.GEOLOCATION_KEY] = {"type": "Point", "coordinates": [place.lon, place.lat]}
     if azimuths:
         about[sigmf.EXTENSIONS_KEY] = [{"name": "antenna", "version": "1.0.0", "optional": True}]
         about["antenna:model"] = antenna

@@ -9,6 +9,8 @@ from pathlib import Path
 from hardware.direction_finding.table_file import RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.ports import Clock, ReceiverError
+from hardware.reasons.channels import RecordedElsewhere
+from hardware.reasons.receiver import GainFixed
 from hardware.sdr.sigmf_file import load_sigmf
 
 
@@ -24,7 +26,7 @@ class SigmfSource:
         try:
             recording = load_sigmf(path)
         except RecordingError as error:
-            raise ReceiverError(str(error)) from error
+            raise ReceiverError(error.reason) from error
         self._samples = recording.samples
         self._rate, self._centre = recording.sample_rate_hz, recording.centre_hz
         self._start_s = recording.start_s
@@ -44,14 +46,12 @@ class SigmfSource:
     async def open(self, centre_hz: float) -> float:
         """The recording's own centre frequency; it cannot be tuned."""
         if abs(centre_hz - self._centre) > self._rate:
-            raise ReceiverError(
-                f"{self._path}: was recorded at {self._centre / 1e6:.4f} MHz, not near {centre_hz / 1e6:.4f} MHz"
-            )
+            raise ReceiverError(RecordedElsewhere(self._centre, centre_hz))
         self._closed = False
         return self._centre
 
     async def set_gain(self, gain_db: float) -> None:
-        raise ReceiverError("a recording's gain cannot be changed")
+        raise ReceiverError(GainFixed("recording"))
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
         size = max(int(self._block_s * self._rate), 1)

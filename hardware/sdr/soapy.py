@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.ports import ReceiverError
+from hardware.reasons.radio import NoReceiveChannel, RadioFailed, SoapyMissing, TunedElsewhere
+from hardware.reasons.receiver import ReceiverMisnamed, ReceiverNotOpen
 from hardware.sdr.sample_clock import SampleClock
 
 LOG = logging.getLogger("crossfix.soapy")
@@ -35,11 +37,7 @@ def _soapy() -> Any:
     try:
         import SoapySDR  # pyright: ignore[reportMissingImports]
     except ImportError as error:
-        raise ReceiverError(
-            "SoapySDR is not installed for this Python; install the system package python3-soapysdr (and the module of "
-            "your radio) and make SoapySDR.py visible in this environment (the user guide says how), or use an "
-            "rtl_tcp:// receiver"
-        ) from error
+        raise ReceiverError(SoapyMissing()) from error
     return SoapySDR
 
 
@@ -63,9 +61,7 @@ class _Radio:
         except ReceiverError:
             raise
         except DRIVER_ERRORS as error:
-            raise ReceiverError(
-                f'the driver of the radio "{self._device_string}" says: {error}; check the device string and the cable'
-            ) from error
+            raise ReceiverError(RadioFailed(self._device_string, "call", str(error))) from error
 
     async def end(self) -> None:
         """After what the thread is doing now, close; the thread does so even when nobody waits for it any more."""
@@ -79,7 +75,7 @@ class _Radio:
         receive = (soapy.SOAPY_SDR_RX, self._channel)
         self._device = device = soapy.Device(self._device_string)
         if device.getNumChannels(soapy.SOAPY_SDR_RX) <= self._channel:
-            raise ReceiverError(f'the radio "{self._device_string}" has no receive channel')
+            raise ReceiverError(NoReceiveChannel(self._device_string))
         device.setSampleRate(*receive, rate_hz)
         device.setFrequency(*receive, centre_hz)
         device.setGainMode(*receive, False)
@@ -92,17 +88,14 @@ class _Radio:
         self.rate_hz = float(device.getSampleRate(*receive))
         self.centre_hz = float(device.getFrequency(*receive))
         if abs(self.centre_hz - centre_hz) > rate_hz / 2.0:
-            raise ReceiverError(
-                f'the radio "{self._device_string}" tuned to {self.centre_hz / 1e6:.4f} MHz instead of '
-                f"{centre_hz / 1e6:.4f} MHz: is that in its range?"
-            )
+            raise ReceiverError(TunedElsewhere(self._device_string, self.centre_hz, centre_hz))
         wanted = {key: value for key, value in self._arguments.items() if key in stream_arguments}
         self._stream = device.setupStream(soapy.SOAPY_SDR_RX, soapy.SOAPY_SDR_CF32, [self._channel], wanted)
         # a burst is read whole, so that its first sample is known to be as old as it is long
         self._block = max(int(device.getStreamMTU(self._stream)), int(self.rate_hz / 50.0), 1024)
         code = device.activateStream(self._stream)
         if code:
-            raise ReceiverError(f'the radio "{self._device_string}" does not start: {soapy.errToStr(code)}')
+            raise ReceiverError(RadioFailed(self._device_string, "start", soapy.errToStr(code)))
 
     def set_gain(self, gain_db: float) -> None:
         self._device.setGain(self._soapy.SOAPY_SDR_RX, self._channel, gain_db)
@@ -121,7 +114,7 @@ class _Radio:
         if result.ret == 0:
             time.sleep(0.01)  # some drivers say so, without waiting, of a device that is gone
         elif result.ret < 0 and result.ret != soapy.SOAPY_SDR_TIMEOUT:
-            raise ReceiverError(f"the radio stopped delivering: {soapy.errToStr(result.ret)}")
+            raise ReceiverError(RadioFailed(self._device_string, "read", soapy.errToStr(result.ret)))
         return buffer[: max(result.ret, 0)]
 
     def close(self) -> None:
@@ -151,15 +144,9 @@ class SoapySource:
         pairs = (part.partition("=") for part in device.split(","))
         self._arguments = {key.strip(): value.strip() for key, _, value in pairs}
         if not self._arguments.get("driver"):
-            raise ReceiverError(
-                f'the device string "{device}" names no driver; write for instance "driver=rtlsdr" '
-                "(a search without a driver would probe the network)"
-            )
+            raise ReceiverError(ReceiverMisnamed(device, "driver"))
         if self._arguments["driver"] == "remote" and not self._arguments.get("remote"):
-            raise ReceiverError(
-                f'the device string "{device}" names no server; write "driver=remote,remote=tcp://HOST:PORT" '
-                "(a search for servers would probe the network)"
-            )
+            raise ReceiverError(ReceiverMisnamed(device, "server"))
         self._device_string = device
         self._wanted_rate, self._wanted_gain, self._channel = sample_rate_hz, gain_db, channel
         self._radio: _Radio | None = None
@@ -192,7 +179,7 @@ class SoapySource:
     async def blocks(self) -> AsyncIterator[IqBlock]:
         radio = self._radio
         if radio is None:
-            raise ReceiverError("the radio is not open: open it first")
+            raise ReceiverError(ReceiverNotOpen())
         clock = SampleClock(radio.rate_hz)
         received, end_s, gap = 0, 0.0, False
         while self._radio is radio:

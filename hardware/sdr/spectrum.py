@@ -10,14 +10,28 @@ from numpy.typing import NDArray
 
 from hardware.iq import IqBlock
 from hardware.readings import PowerSample
+from hardware.reasons.channels import ImpossiblePulses, OutsideBand, SampleRateTooLow
+from planner.reason import ReasonedError
 
 CLIPPED_SHARE = 0.001
 """A power reading in which more than this share of the IQ samples is clipped is flagged."""
 LEVEL_FLOOR = 1e-20
 
 
-class SpectrumError(ValueError):
-    """Rates or frequencies that do not go together; says what to change."""
+FEWEST_SAMPLES = 16
+"""A spectrum of fewer tells nothing."""
+
+
+class SpectrumError(ReasonedError):
+    """Rates, frequencies or pulses that do not go together."""
+
+    def __init__(self, reason: OutsideBand | SampleRateTooLow | ImpossiblePulses) -> None:
+        super().__init__(reason)
+        self._spectrum_reason = reason
+
+    @property
+    def reason(self) -> OutsideBand | SampleRateTooLow | ImpossiblePulses:
+        return self._spectrum_reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +48,11 @@ class ToneSetting:
     search_hz: float = 3000.0
     agility: float = 0.3
 
+    @property
+    def reach_hz(self) -> float:
+        """What must be sampled to either side of the nominal frequency."""
+        return self.search_hz + self.bandwidth_hz
+
 
 @dataclass(slots=True)
 class ToneMeter:
@@ -49,31 +68,24 @@ class ToneMeter:
     gain_db: float = 0.0
     setting: ToneSetting = field(default_factory=ToneSetting)
     offset_hz: float = field(init=False)
-    _pending: list[IqBlock] = field(default_factory=list, init=False)
+    _pending: list[IqBlock] = field(default_factory=list[IqBlock], init=False)
     _window: NDArray[np.float64] = field(init=False)
     _bins_hz: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        nominal = self.frequency_hz - self.centre_hz
-        if not self.sample_rate_hz > 0:
-            raise SpectrumError(f"the sample rate is {self.sample_rate_hz} Hz; it must be greater than zero")
-        if abs(nominal) + self.setting.search_hz + self.setting.bandwidth_hz > self.sample_rate_hz / 2.0:
-            raise SpectrumError(
-                f"{self.frequency_hz / 1e6:.4f} MHz does not fit into {self.sample_rate_hz / 1e3:.0f} kS/s around "
-                f"{self.centre_hz / 1e6:.4f} MHz; tune closer, or raise the sample rate"
-            )
+        needed_hz = FEWEST_SAMPLES * self.setting.rate_hz
+        if not self.sample_rate_hz >= needed_hz:
+            raise SpectrumError(SampleRateTooLow(self.sample_rate_hz, needed_hz))
+        if outside_band(self.frequency_hz, self.setting.reach_hz, self.centre_hz, self.sample_rate_hz):
+            raise SpectrumError(OutsideBand(self.sample_rate_hz, self.centre_hz, (self.frequency_hz,)))
         per_reading = int(self.sample_rate_hz / self.setting.rate_hz)
         wanted = 4.0 * self.sample_rate_hz / self.setting.bandwidth_hz
         size = 2 ** math.ceil(math.log2(max(wanted, 1.0)))
         if size > per_reading:
             size = 2 ** int(math.log2(max(per_reading, 1)))
-        if size < 16:
-            raise SpectrumError(
-                f"{self.sample_rate_hz:.0f} samples a second are too few for {self.setting.rate_hz:.0f} a second"
-            )
         self._window = np.hanning(size + 1)[:-1]
         self._bins_hz = np.asarray(np.fft.fftfreq(size, 1.0 / self.sample_rate_hz), dtype=np.float64)
-        self.offset_hz = nominal
+        self.offset_hz = self.frequency_hz - self.centre_hz
 
     def feed(self, block: IqBlock) -> list[PowerSample]:
         """Power readings that became complete with this block. A gap in the stream starts a new reading."""
@@ -129,6 +141,11 @@ class ToneMeter:
         self.offset_hz += trust * self.setting.agility * (float(self._bins_hz[peak]) - self.offset_hz)
 
 
+def outside_band(frequency_hz: float, reach_hz: float, centre_hz: float, sample_rate_hz: float) -> bool:
+    """Whether `reach_hz` to either side of a frequency is not all sampled; a millihertz too much is rounding."""
+    return abs(frequency_hz - centre_hz) + reach_hz > sample_rate_hz / 2.0 + 1e-3
+
+
 def averaged_spectrum(samples: NDArray[np.complex64], window: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) Welch periodogram scaled so that its sum over all bins is the mean power of the samples."""
     size = window.size
@@ -140,7 +157,7 @@ def averaged_spectrum(samples: NDArray[np.complex64], window: NDArray[np.float64
 
 
 def mean_over_median(averages: float) -> float:
-    """Of noise power averaged so many times (a gamma variate; Wilson & Hilferty: median = mean (1 - 1/(9 k))^3)."""
+    """Of noise power averaged that many times (a gamma variate; Wilson & Hilferty: median = mean (1 - 1/(9 k))^3)."""
     return (1.0 - 1.0 / (9.0 * max(averages, 1.0))) ** -3
 
 

@@ -78,5 +78,7 @@ class TabulatedAntenna:
 
     def field(self, azimuth_rad: NDArray[np.float64], elevation_rad: float) -> NDArray[np.complex128]:
         """See AntennaField; the table holds at every elevation."""
-        gain = np.interp(np.rad2deg(azimuth_rad), self.azimuth_deg, self.gain_db - self.gain_db.max(), period=360.0)
+        wanted_deg: NDArray[np.float64] = np.rad2deg(azimuth_rad)
+        relative_db: NDArray[np.float64] = self.gain_db - self.gain_db.max()
+        gain = np.interp(wanted_deg, self.azimuth_deg, relative_db, period=360.0)
         return (10.0 ** (gain / 20.0)).astype(np.complex128)

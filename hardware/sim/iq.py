@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.ports import Clock, ReceiverError
 from hardware.readings import Telemetry
+from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.sim.pose_track import PoseTrack
 from hardware.sim.world import RadioLink, World
 
@@ -69,7 +70,7 @@ class SimulatedIq:
     async def blocks(self) -> AsyncIterator[IqBlock]:
         centre_hz = self._centre_hz
         if centre_hz is None:
-            raise ReceiverError("the simulated radio is not open: call open(centre_hz) first")
+            raise ReceiverError(ReceiverNotOpen())
         links = [
             RadioLink(self._world, emitter.frequency_hz)
             for emitter in self._world.emitters

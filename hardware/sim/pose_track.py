@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from hardware.readings import GeoPoint, Telemetry
+from hardware.readings import Place, Telemetry
 from hardware.sim.world import Pose
 
 
@@ -43,9 +43,9 @@ class PoseTrack:
         part = 1.0 if span <= 0 else min(max((at_s - self._before.at_s) / span, 0.0), 1.0)
         a, b = self._before.pose, self._after.pose
         turn = (b.heading_deg - a.heading_deg + 180.0) % 360.0 - 180.0
-        place = GeoPoint(
-            a.place.lat_deg + part * (b.place.lat_deg - a.place.lat_deg),
-            a.place.lon_deg + part * (b.place.lon_deg - a.place.lon_deg),
+        place = Place(
+            a.place.lat + part * (b.place.lat - a.place.lat),
+            a.place.lon + part * (b.place.lon - a.place.lon),
         )
         return Pose(place, a.height_m + part * (b.height_m - a.height_m), (a.heading_deg + part * turn) % 360.0)
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
+from dataclasses import dataclass
 
+from hardware.channels import check_channels
 from hardware.ports import Clock, ReceiverError
-from hardware.readings import PowerSample, Pulses, Telemetry
+from hardware.readings import Channel, PowerSample, Telemetry
+from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
 from hardware.sim.pose_track import PoseTrack
 from hardware.sim.world import Pose, RadioLink, World
 
@@ -15,8 +18,20 @@ DETECTION_DB = 6.0
 """A pulse must stand so far above the noise in the receiver's bandwidth."""
 
 
+@dataclass(slots=True)
+class _Hearing:
+    """A channel that is listened to. next_s: when its next sample is due."""
+
+    channel: Channel
+    link: RadioLink
+    next_s: float = 0.0
+
+
 class SimulatedReceiver:
-    """Power samples `rate_hz` times a second of the clock's time, each made at the vehicle's pose of that moment.
+    """Hears every emitter it is asked for at once, each channel with noise and fading of its own.
+
+    Power samples `rate_hz` times a second of the clock's time (of a tag one a pulse; a tag of another rhythm is not
+    heard), each made at the vehicle's pose of that moment.
 
     Telemetry comes in steps: a sample waits until a heading at or after its own time was heard, and place and heading
     are interpolated between the two snapshots around it; what is `telemetry_held_s` late is not waited for. Nothing is
@@ -33,34 +48,25 @@ class SimulatedReceiver:
         ground_amsl_m: float = 0.0,
         telemetry_held_s: float = 0.5,
     ) -> None:
-        if not rate_hz > 0:
-            raise ReceiverError(f"the sample rate is {rate_hz} Hz; it must be greater than zero")
         self._world = world
         self._telemetry = pose
         self._clock = clock
         self._period_s = 1.0 / rate_hz
         self._ground_amsl_m = ground_amsl_m
         self._telemetry_held_s = telemetry_held_s
-        self._link: RadioLink | None = None
+        self._hearings: list[_Hearing] = []
         self._silent = False
         self._gone = False
-        self._pulses: Pulses | None = None
 
-    def expect(self, pulses: Pulses | None) -> None:
-        """See HearsPulses: one sample a pulse of the world's tag; a tag of another rhythm is not heard."""
-        self._pulses = pulses
-
-    async def open(self, frequency_hz: float) -> None:
-        """Tune. Raises ReceiverError when the frequency is not positive or the device was unplugged."""
+    async def open(self, channels: Sequence[Channel]) -> None:
+        """See the Receiver port."""
         if self._gone:
-            raise ReceiverError("the simulated receiver was unplugged; plug it in again (restart the simulation)")
-        if not frequency_hz > 0:
-            raise ReceiverError(f"cannot tune to {frequency_hz} Hz; give the emitter's frequency in hertz")
-        if self._link is None or self._link.frequency_hz != frequency_hz:
-            self._link = RadioLink(self._world, frequency_hz)
+            raise ReceiverError(ReceiverUnplugged())
+        check_channels(channels)
+        self._hearings = [_Hearing(channel, RadioLink(self._world, channel.frequency_hz)) for channel in channels]
 
     async def close(self) -> None:
-        self._link = None
+        self._hearings = []
 
     def silence(self, silent: bool) -> None:
         """Stop or resume delivering samples, as a hung driver would."""
@@ -72,45 +78,55 @@ class SimulatedReceiver:
 
     async def samples(self) -> AsyncIterator[PowerSample]:
         """See the Receiver port."""
-        if self._link is None:
-            raise ReceiverError("the receiver is not open: call open(frequency_hz) first")
-        link = self._link
+        hearings = self._hearings
+        if not hearings:
+            raise ReceiverError(ReceiverNotOpen())
         track = PoseTrack(self._ground_amsl_m, self._telemetry_held_s)
-        next_s = self._next_s(link, self._clock.now())
-        while self._link is link:
+        self._wait(hearings, self._clock.now())
+        while self._hearings is hearings:
             if self._gone:
-                raise ReceiverError("the simulated receiver was unplugged")
+                raise ReceiverError(ReceiverUnplugged())
             now = self._clock.now()
             known_until = track.hear(self._telemetry(), now)
             if known_until is None or self._silent:
-                next_s = self._next_s(link, now)
+                self._wait(hearings, now)
             else:
-                while next_s <= known_until and self._link is link:
-                    yield self._sample(link, next_s, track.at(next_s))
-                    next_s = self._next_s(link, next_s)
+                while self._hearings is hearings:
+                    due = min(hearings, key=lambda hearing: hearing.next_s)
+                    if due.next_s > known_until:
+                        break
+                    yield self._sample(due, track.at(due.next_s))
+                    due.next_s = self._next_s(due, due.next_s)
             await self._clock.sleep(self._period_s)
             await asyncio.sleep(0)
 
-    def _next_s(self, link: RadioLink, after_s: float) -> float:
+    def _wait(self, hearings: Sequence[_Hearing], now_s: float) -> None:
+        """What was due until now is not heard."""
+        for hearing in hearings:
+            hearing.next_s = self._next_s(hearing, now_s)
+
+    def _next_s(self, hearing: _Hearing, after_s: float) -> float:
         """When the next sample is due: the middle of the next pulse, when pulses are listened to."""
-        if self._pulses is None:
+        pulses = hearing.channel.pulses
+        if pulses is None:
             return after_s + self._period_s
-        emitter = self._world.emitter_at(link.frequency_hz)
-        period_s, middle_s = self._pulses.period_s, 0.0
+        emitter = self._world.emitter_at(hearing.channel.frequency_hz)
+        period_s, middle_s = pulses.period_s, 0.0
         if emitter is not None and emitter.pulse_period_s is not None:
             period_s, middle_s = emitter.pulse_period_s, emitter.pulse_width_s / 2.0
         return (math.floor((after_s - middle_s) / period_s + 1e-6) + 1) * period_s + middle_s
 
-    def _sample(self, link: RadioLink, at_s: float, pose: Pose) -> PowerSample:
-        power_dbm, clipped = link.power_dbm(at_s, pose)
+    def _sample(self, hearing: _Hearing, pose: Pose) -> PowerSample:
+        at_s, channel = hearing.next_s, hearing.channel
+        power_dbm, clipped = hearing.link.power_dbm(at_s, pose)
         noise_dbm = self._world.front_end.noise_dbm
-        if self._pulses is not None and not (self._in_rhythm(link) and power_dbm > noise_dbm + DETECTION_DB):
-            return PowerSample(at_s, link.frequency_hz, noise_dbm, noise_dbm, detected=False)
-        return PowerSample(at_s, link.frequency_hz, power_dbm, noise_dbm, clipped)
+        if channel.pulses is not None and not (self._in_rhythm(channel) and power_dbm > noise_dbm + DETECTION_DB):
+            return PowerSample(at_s, channel.frequency_hz, noise_dbm, noise_dbm, detected=False)
+        return PowerSample(at_s, channel.frequency_hz, power_dbm, noise_dbm, clipped)
 
-    def _in_rhythm(self, link: RadioLink) -> bool:
+    def _in_rhythm(self, channel: Channel) -> bool:
         """Whether the world sends the pulses that are listened to."""
-        emitter, pulses = self._world.emitter_at(link.frequency_hz), self._pulses
+        emitter, pulses = self._world.emitter_at(channel.frequency_hz), channel.pulses
         if emitter is None or emitter.pulse_period_s is None or pulses is None:
             return False
         return abs(emitter.pulse_period_s - pulses.period_s) <= pulses.jitter_s

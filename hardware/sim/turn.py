@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
 from hardware.sim.world import RadioLink
 
 
 def turn_once(
     link: RadioLink,
-    place: GeoPoint,
+    place: Place,
     height_m: float = 40.0,
     *,
     start_s: float = 0.0,

@@ -13,7 +13,7 @@ import numpy as np
 
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import SMALL_YAGI, make_pattern, save_pattern
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sim.propagation import Fading
 from hardware.sim.world import Emitter, Pose, RadioLink, World
 
@@ -23,7 +23,7 @@ def measure_pattern(world: World, step_deg: float = 5.0, turns: int = 10) -> Ant
 
     Anechoic range: no reflectors, no ground, no fading; receiver noise and gain jitter stay.
     """
-    emitter = dataclasses.replace(world.emitters[0], place=GeoPoint(0.0, 0.0), pulse_period_s=None)
+    emitter = dataclasses.replace(world.emitters[0], place=Place(0.0, 0.0), pulse_period_s=None)
     hall = dataclasses.replace(
         world,
         emitters=(emitter,),
@@ -34,7 +34,7 @@ def measure_pattern(world: World, step_deg: float = 5.0, turns: int = 10) -> Ant
         antenna_offset_deg=0.0,
     )
     link = RadioLink(hall, emitter.frequency_hz)
-    south = GeoPoint(-60.0 / 110_574.0, 0.0)
+    south = Place(-60.0 / 110_574.0, 0.0)
     angle = np.arange(0.0, 360.0, step_deg)
     reading = np.zeros((turns, angle.size))
     for turn in range(turns):
@@ -57,7 +57,7 @@ def main() -> None:
     parser.add_argument("file", nargs="?", default=str(SMALL_YAGI), help="where to write the pattern (JSON)")
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
-    save_pattern(measure_pattern(World((Emitter(GeoPoint(0.0, 0.0)),), seed=arguments.seed)), arguments.file)
+    save_pattern(measure_pattern(World((Emitter(Place(0.0, 0.0)),), seed=arguments.seed)), arguments.file)
 
 
 if __name__ == "__main__":

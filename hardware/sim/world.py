@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sim.antenna import AntennaField, YagiOnAirframe
 from hardware.sim.propagation import SPEED_OF_LIGHT_M_S, Fading, FadingProcess, two_ray_gain
 
@@ -27,7 +27,7 @@ class WorldError(ValueError):
 class Emitter:
     """A transmitter that stands still. `pulse_period_s` None: a carrier; else pulses of `pulse_width_s`."""
 
-    place: GeoPoint
+    place: Place
     frequency_hz: float = 868_300_000.0
     power_dbm: float = -10.0
     height_m: float = 1.5
@@ -49,7 +49,7 @@ class Reflector:
     loss_db: power lost in the reflection; phase_rad: phase turned by it.
     """
 
-    place: GeoPoint
+    place: Place
     loss_db: float = 6.0
     phase_rad: float = math.pi
 
@@ -77,7 +77,7 @@ class FrontEnd:
 class Pose:
     """The vehicle in the world. heading_deg: what the vehicle reports for its nose; height above the (flat) ground."""
 
-    place: GeoPoint
+    place: Place
     height_m: float
     heading_deg: float
 
@@ -114,7 +114,7 @@ class World:
         return complex(self.received_fields(emitter, pose.place, pose.height_m, np.array([pose.heading_deg]))[0])
 
     def received_fields(
-        self, emitter: Emitter, place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+        self, emitter: Emitter, place: Place, height_m: float, heading_deg: NDArray[np.float64]
     ) -> NDArray[np.complex128]:
         """(n,) the same for a vehicle that turns on one place: (n,) reported headings."""
         frame = LocalFrame(place)
@@ -159,7 +159,7 @@ class RadioLink:
         return complex(self.amplitudes(np.array([at_s]), pose.place, pose.height_m, heading)[0])
 
     def amplitudes(
-        self, at_s: NDArray[np.float64], place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+        self, at_s: NDArray[np.float64], place: Place, height_m: float, heading_deg: NDArray[np.float64]
     ) -> NDArray[np.complex128]:
         """(n,) the same at (n,) times and headings of a vehicle that turns on one place."""
         emitter = self.world.emitter_at(self.frequency_hz)
@@ -178,7 +178,7 @@ class RadioLink:
         return float(reading[0]), bool(clipped[0])
 
     def powers_dbm(
-        self, at_s: NDArray[np.float64], place: GeoPoint, height_m: float, heading_deg: NDArray[np.float64]
+        self, at_s: NDArray[np.float64], place: Place, height_m: float, heading_deg: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """(n,) readings in dBm and whether each clipped: mean of |signal + noise|^2 over `averages` draws, jittered."""
         front_end = self.world.front_end

@@ -10,7 +10,8 @@ import numpy as np
 
 from planner.belief.grid import GridBelief, smallest_set
 from planner.geometry import cells_hull, centres
-from planner.types import Estimate, Estimator, FloatArray, Ring
+from planner.options import Estimator
+from planner.types import Estimate, FloatArray, Ring
 
 TIE_BITS = 20
 """Weights are compared by their leading 64 - 20 bits (2e-10 relative): rounding must not decide between equal cells."""

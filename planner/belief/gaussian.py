@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.observation import expected_bearing, validate_bearing, wrap
+from planner.reasons import MeanAtSensor, UnusableGaussian
 from planner.types import Bearing, FloatArray, PlannerError
 
 
@@ -20,9 +21,9 @@ class GaussianBelief:
     def __post_init__(self) -> None:
         mean, covariance = np.array(self.mean, dtype=float), np.array(self.covariance, dtype=float)
         if mean.shape != (2,) or covariance.shape != (2, 2) or not np.isfinite(np.append(covariance, mean)).all():
-            raise PlannerError("a Gaussian belief needs two finite coordinates and a finite 2 x 2 covariance")
+            raise PlannerError(UnusableGaussian())
         if np.linalg.eigvalsh(covariance)[0] <= 0:
-            raise PlannerError("the covariance of a Gaussian belief must be positive definite")
+            raise PlannerError(UnusableGaussian())
         object.__setattr__(self, "mean", mean)
         object.__setattr__(self, "covariance", covariance)
 
@@ -57,5 +58,5 @@ def _jacobian(x: FloatArray, bearing: Bearing) -> FloatArray:
     dx, dy = x[0] - bearing.x, x[1] - bearing.y
     r2 = dx * dx + dy * dy
     if r2 == 0.0:
-        raise PlannerError("the Gaussian belief's mean lies at the sensor: a bearing has no derivative there")
+        raise PlannerError(MeanAtSensor())
     return np.array([-dy, dx]) / r2

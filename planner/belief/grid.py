@@ -22,11 +22,13 @@ from planner.geometry import (
     clip_wedge,
     convex_hull,
     signed_area,
-    validate_region,
+    validate_area,
 )
 from planner.observation import WEDGE_SIGMAS, cuts, hard_likelihood, mixture_likelihood, validate_bearing
+from planner.reasons import PriorOutsideArea, UnusableGaussian, UnusableRing, disagreement
 from planner.types import (
     Bearing,
+    BoolArray,
     FloatArray,
     GaussianPrior,
     InconsistentBearings,
@@ -78,10 +80,12 @@ class GridBelief:
 
     @property
     def nx(self) -> int:
+        """Columns of cells, west to east."""
         return self.density.shape[1]
 
     @property
     def ny(self) -> int:
+        """Rows of cells, south to north."""
         return self.density.shape[0]
 
     @property
@@ -100,7 +104,7 @@ class GridBelief:
 
 def prior_belief(problem: Problem) -> GridBelief:
     """The belief before any bearing. PlannerError when area or prior is unusable."""
-    area = validate_region(problem.area, "the target area")
+    area = validate_area(problem.area)
     prior = problem.prior
     possible = area
     if isinstance(prior, RingPrior):
@@ -116,7 +120,7 @@ def prior_belief(problem: Problem) -> GridBelief:
         density *= _ring_share(prior, x, y, h)
     mass = density.sum()
     if not mass > 0:
-        raise PlannerError("the prior has no mass inside the target area: move it or enlarge the area")
+        raise PlannerError(PriorOutsideArea())
     flat = not isinstance(prior, GaussianPrior)
     return GridBelief(density / mass, x_min, y_min, h, area, possible, bearings=0, flat_prior=flat)
 
@@ -174,12 +178,12 @@ def _update_soft(belief: GridBelief, bearing: Bearing) -> GridBelief:
     return _doubled(belief) if coarse and 4 * belief.density.size <= MOST_CELLS else belief
 
 
-def smallest_set(belief: GridBelief, share: float) -> np.ndarray:
+def smallest_set(belief: GridBelief, share: float) -> BoolArray:
     """(ny, nx) bool: the fewest cells that hold `share` of the mass; ties go to the first cell in row order."""
     flat = belief.density.ravel()
     order = np.argsort(-flat, kind="stable")
-    cumulative = np.cumsum(flat[order])
-    count = int(np.searchsorted(cumulative, share * cumulative[-1])) + 1
+    cumulative: FloatArray = np.cumsum(flat[order])
+    count = int(np.searchsorted(cumulative, share * float(cumulative[-1]))) + 1
     chosen = np.zeros(flat.size, dtype=bool)
     chosen[order[:count]] = True
     return chosen.reshape(belief.density.shape)
@@ -216,7 +220,7 @@ def aligned_range(low: float, high: float, h: float, n: int) -> tuple[int, int]:
     return first, min(max(int(np.ceil(high / h - _ALIGN)), first + 1), n)
 
 
-def _extent_of(belief: GridBelief, cells: np.ndarray) -> tuple[float, float, float, float]:
+def _extent_of(belief: GridBelief, cells: BoolArray) -> tuple[float, float, float, float]:
     """(x_min, y_min, x_max, y_max) of the marked cells' outer edges."""
     rows, columns = np.flatnonzero(cells.any(axis=1)), np.flatnonzero(cells.any(axis=0))
     x0, y0, h = belief.x0, belief.y0, belief.h
@@ -224,18 +228,13 @@ def _extent_of(belief: GridBelief, cells: np.ndarray) -> tuple[float, float, flo
 
 
 def _no_common_point(belief: GridBelief) -> InconsistentBearings:
-    if belief.bearings == 0:
-        return InconsistentBearings("the bearing points past the target area: check area, antenna and place")
-    return InconsistentBearings(
-        f"the +-4 sigma wedges of {belief.bearings + 1} bearings have no common point in the area: "
-        "at least one bearing is an outlier"
-    )
+    return InconsistentBearings(disagreement(belief.bearings + 1))
 
 
 def _gaussian(prior: GaussianPrior, x: FloatArray, y: FloatArray) -> FloatArray:
     covariance = np.asarray(prior.covariance, dtype=float)
     if covariance.shape != (2, 2) or not np.isfinite(covariance).all() or np.linalg.eigvalsh(covariance)[0] <= 0:
-        raise PlannerError("the Gaussian prior needs a positive definite 2 x 2 covariance in m^2")
+        raise PlannerError(UnusableGaussian())
     inverse = np.linalg.inv(covariance)
     dx, dy = x - prior.x, y - prior.y
     return np.exp(-0.5 * (inverse[0, 0] * dx**2 + 2 * inverse[0, 1] * dx * dy + inverse[1, 1] * dy**2))
@@ -254,12 +253,12 @@ def _ring_share(prior: RingPrior, x: FloatArray, y: FloatArray, h: float, sample
 
 def _clip_to_disc(area: Region, prior: RingPrior, corners: int = 96) -> Region:
     if not (np.isfinite([prior.x, prior.y, prior.inner, prior.outer]).all() and 0 <= prior.inner < prior.outer):
-        raise PlannerError("the ring prior needs finite radii with 0 <= inner < outer")
+        raise PlannerError(UnusableRing())
     angles = 2 * np.pi * np.arange(corners) / corners
     around = prior.outer / np.cos(np.pi / corners)
     disc = np.column_stack([prior.x + around * np.cos(angles), prior.y + around * np.sin(angles)])
     clipped = tuple(clip_convex(ring, disc) for ring in area)
     possible = tuple(ring for ring in clipped if len(ring) >= 3 and abs(signed_area(ring)) > 0)
     if not possible:
-        raise PlannerError("the prior has no mass inside the target area: move it or enlarge the area")
+        raise PlannerError(PriorOutsideArea())
     return possible

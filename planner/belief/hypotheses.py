@@ -16,7 +16,7 @@ from planner.belief.estimate import most_likely
 from planner.belief.grid import GridBelief, smallest_set
 from planner.belief.verdict import points_at
 from planner.geometry import cells_hull
-from planner.types import Bearing, Ring
+from planner.types import Bearing, BoolArray, Ring
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +48,7 @@ def hypotheses(
     return tuple(sorted(kept, key=lambda one: -one.mass))
 
 
-def _hypothesis(belief: GridBelief, bearings: Sequence[Bearing], cells: np.ndarray) -> Hypothesis:
+def _hypothesis(belief: GridBelief, bearings: Sequence[Bearing], cells: BoolArray) -> Hypothesis:
     rows, columns = np.nonzero(cells)
     mass = belief.density[rows, columns]
     heaviest = most_likely(mass)

@@ -8,41 +8,47 @@ import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.geometry import clip_wedge, validate_region
+from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
+from planner.reasons import (
+    CrossingAngleTooSmall,
+    EstimateContradicted,
+    ExpectedErrorTooLarge,
+    NoBearingYet,
+    NotYetReason,
+    TooFewPlaces,
+    TooFewPlacesAgree,
+    disagreement,
+)
 from planner.types import Bearing, FloatArray, LocalizationRule, Problem, Region, Verdict
 
 
 def verdict(
     problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief | None
 ) -> Verdict:
-    """Localized, or why not yet, in the operator's words. belief: None when the bearings are inconsistent.
+    """Localized, or why not yet. belief: None when the bearings are inconsistent.
 
     Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
     """
     consistent = belief is not None and wedges_meet(problem.area, bearings)
     if belief is None:
-        return Verdict(False, False, (_INCONSISTENT,))
+        return Verdict(False, False, (disagreement(len(bearings)),))
     spread = estimate(belief, problem.estimator)
     if not bearings:
-        return Verdict(False, consistent, ("not yet: no bearing taken",), spread)
+        return Verdict(False, consistent, (NoBearingYet(),), spread)
     against = tuple(i for i, b in enumerate(bearings) if not points_at(b, spread.x, spread.y))
     supporting = [b for i, b in enumerate(bearings) if i not in against]
-    reasons = [
+    reasons: list[NotYetReason] = [
         *_place_reasons(rule, bearings, supporting),
         *_angle_reasons(rule, supporting, spread.x, spread.y),
     ]
     if against and len(supporting) < max(3, 2 * len(against)):
-        share = f"{len(against)} of {len(bearings)} bearings contradict"
-        reasons.append(f"not yet: {share} the estimate, another look is needed")
+        reasons.append(EstimateContradicted(len(against), len(bearings)))
     elif not wedges_meet(problem.area, supporting):
-        reasons.append(_INCONSISTENT)
+        reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
-        reasons.append(f"not yet: expected error {spread.expected_rmse:.0f} m, wanted below {rule.threshold:.0f} m")
+        reasons.append(ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
-
-
-_INCONSISTENT = "not yet: the bearings contradict each other, at least one is an outlier"
 
 
 def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:
@@ -50,7 +56,7 @@ def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:
 
     Wedges too wide to cut (half angle above 80 deg) never contradict.
     """
-    remaining: Region = validate_region(area, "the target area")
+    remaining: Region = validate_area(area)
     for bearing in bearings:
         half = WEDGE_SIGMAS * bearing.sigma
         if half > WIDEST_HARD_WEDGE:
@@ -87,29 +93,21 @@ def distinct_places(bearings: Sequence[Bearing], distance: float) -> int:
     return len(places)
 
 
-def _place_reasons(rule: LocalizationRule, bearings: Sequence[Bearing], supporting: Sequence[Bearing]) -> list[str]:
-    taken, places = (distinct_places(some, rule.min_place_distance) for some in (bearings, supporting))
-    if places >= rule.min_places:
+def _place_reasons(
+    rule: LocalizationRule, bearings: Sequence[Bearing], supporting: Sequence[Bearing]
+) -> list[NotYetReason]:
+    taken, agreeing = (distinct_places(some, rule.min_place_distance) for some in (bearings, supporting))
+    if agreeing >= rule.min_places:
         return []
-    if taken > places:
-        return [f"not yet: only {_count(places, 'place')} agree on the estimate, {rule.min_places} are needed"]
-    if len(bearings) == 1:
-        return [f"not yet: one bearing from one place, {rule.min_places} places are needed"]
-    if places == 1:
-        return [f"not yet: all bearings from one place, {rule.min_places} are needed"]
-    return [f"not yet: bearings from {_count(places, 'place')}, {rule.min_places} are needed"]
+    if taken > agreeing:
+        return [TooFewPlacesAgree(agreeing, taken, rule.min_places)]
+    return [TooFewPlaces(len(bearings), taken, rule.min_places)]
 
 
-def _angle_reasons(rule: LocalizationRule, supporting: Sequence[Bearing], x: float, y: float) -> list[str]:
+def _angle_reasons(rule: LocalizationRule, supporting: Sequence[Bearing], x: float, y: float) -> list[NotYetReason]:
     if distinct_places(supporting, rule.min_place_distance) < 2:
         return []
     angle = best_crossing_angle(supporting, x, y)
     if angle >= rule.min_crossing_angle:
         return []
-    which = "both bearings" if len(supporting) == 2 else "all bearings"
-    wanted = np.rad2deg(rule.min_crossing_angle)
-    return [f"not yet: {which} from one side, crossing at {np.rad2deg(angle):.0f} deg, {wanted:.0f} deg are needed"]
-
-
-def _count(n: int, what: str) -> str:
-    return {0: f"no {what}", 1: f"one {what}", 2: f"two {what}s"}.get(n, f"{n} {what}s")
+    return [CrossingAngleTooSmall(float(np.rad2deg(angle)), float(np.rad2deg(rule.min_crossing_angle)))]

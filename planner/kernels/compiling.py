@@ -3,25 +3,40 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from types import ModuleType
-from typing import Any
+from typing import Any, Protocol, TypeVar, cast
 
 from numba import njit
 
 from planner.sources import digest
 
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Compiler(Protocol):
+    """A decorator: what it returns is called as the function that it is given."""
+
+    def __call__(self, function: Function, /) -> Function: ...
+
+
 _FLAGS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _FASTMATH = {"reassoc", "contract", "arcp", "nsz"}
 # numba's types leave out _nrt and forceinline.
 
-entry = njit(fastmath=_FASTMATH, cache=True, **_FLAGS)
+entry = cast(Compiler, njit(fastmath=_FASTMATH, cache=True, **_FLAGS))
 """For what Python calls; nothing else is kept on disk, since the machine code of all it calls is part of its own."""
-allocating = njit(fastmath=_FASTMATH, **_FLAGS)
+allocating = cast(Compiler, njit(fastmath=_FASTMATH, **_FLAGS))
 """For what makes arrays."""
-jit = njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS)  # pyright: ignore[reportCallIssue]
+jit = cast(Compiler, njit(fastmath=_FASTMATH, _nrt=False, **_FLAGS))  # pyright: ignore[reportCallIssue]
 """Counts no references to arrays: numba's atomic counters took a sixth of the time, and threads fought for them."""
-inlined = njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS)  # pyright: ignore[reportCallIssue]
+inlined = cast(Compiler, njit(fastmath=_FASTMATH, _nrt=False, forceinline=True, **_FLAGS))  # pyright: ignore[reportCallIssue]
 """For functions that take `rules` or `work`: these are passed by value, some hundred words a call."""
+
+exact = cast(Compiler, njit(nogil=True))
+"""In the order that is written: geometry that a rounding could turn round."""
+exact_entry = cast(Compiler, njit(cache=True, nogil=True))
+"""As `exact`, for what Python calls."""
 
 COMPILED_IN = ("kernels/**/*.py", "belief/estimate.py", "belief/grid.py", "observation.py")
 """Code or constants of these files are in the machine code."""

@@ -5,16 +5,17 @@ A detailed coast line has a thousand corners, so a visibility graph asks a thous
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from planner.geometry import edges
+from planner.kernels.compiling import exact, exact_entry
 from planner.types import FloatArray, Region
 
 FREE, TOUCHES, CROSSES = 0, 1, 2
 
 
-def meetings(starts: FloatArray, ends: FloatArray, region: Region) -> np.ndarray:
+def meetings(starts: FloatArray, ends: FloatArray, region: Region) -> NDArray[np.int8]:
     """(n, m) int8 for the segments from (n, 2) `starts` to (m, 2) `ends`, m ENU.
 
     CROSSES: properly through an edge of the region. TOUCHES: has a point in common with one (a corner, a piece of it)
@@ -28,14 +29,14 @@ def meetings(starts: FloatArray, ends: FloatArray, region: Region) -> np.ndarray
     return met
 
 
-@numba.njit(nogil=True)
-def _side(ox, oy, px, py, qx, qy):
+@exact
+def _side(ox: float, oy: float, px: float, py: float, qx: float, qy: float) -> float:
     """z of (p - o) x (q - o): positive when q lies left of o -> p."""
     return (px - ox) * (qy - oy) - (py - oy) * (qx - ox)
 
 
-@numba.njit(cache=True, nogil=True)
-def _meetings(starts, ends, a, b, met):
+@exact_entry
+def _meetings(starts: FloatArray, ends: FloatArray, a: FloatArray, b: FloatArray, met: NDArray[np.int8]) -> None:
     for i in range(len(starts)):
         px, py = starts[i, 0], starts[i, 1]
         for j in range(len(ends)):

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from planner.kernels.compiling import entry
 from planner.types import FloatArray
 
 WEDGE = 4.0  # cells further than 4 sigma from the bearing are impossible (thesis 4.3.1)
@@ -25,7 +25,7 @@ def expected_entropies_reference(
     """
     answer = np.empty(len(places))
     for index, place in enumerate(places):
-        entropies = []
+        entropies: list[float] = []
         for aim in aims:
             bearing = np.arctan2(aim[1] - place[1], aim[0] - place[0])
             error = np.arctan2(cells[:, 1] - place[1], cells[:, 0] - place[0]) - bearing
@@ -37,7 +37,7 @@ def expected_entropies_reference(
                 continue
             posterior /= posterior.sum()
             posterior = posterior[posterior > 0]
-            entropies.append(-np.sum(posterior * np.log(posterior)))  # (3.59)
+            entropies.append(float(-np.sum(posterior * np.log(posterior))))  # (3.59)
         answer[index] = np.mean(entropies)
     return answer
 
@@ -54,8 +54,16 @@ def expected_entropies(
     )
 
 
-@numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _entropies(x, y, mass, log_mass, places, aims, sigma):
+@entry
+def _entropies(
+    x: FloatArray,
+    y: FloatArray,
+    mass: FloatArray,
+    log_mass: FloatArray,
+    places: FloatArray,
+    aims: FloatArray,
+    sigma: float,
+) -> FloatArray:
     answer = np.empty(len(places))
     errors = np.empty(len(x))
     seen = np.empty(len(x), dtype=np.int64)

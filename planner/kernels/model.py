@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from planner.observation import WEDGE_SIGMAS
-from planner.types import FloatArray
+from planner.types import FloatArray, IntArray
 
 MAP, EXPECTED_VALUE, GEOMETRIC_MEDIAN = 0, 1, 2
 ELLIPSE, FISHER = 0, 1
@@ -38,8 +37,8 @@ class Start(NamedTuple):
     """
 
     density: FloatArray
-    low: NDArray[np.int64]
-    high: NDArray[np.int64]
+    low: IntArray
+    high: IntArray
     x0: float
     y0: float
     h: float
@@ -90,7 +89,7 @@ class Actions(NamedTuple):
     places: FloatArray
     costs: FloatArray
     headings: FloatArray
-    lattice: NDArray[np.int64]
+    lattice: IntArray
 
 
 class Paths(NamedTuple):
@@ -103,20 +102,28 @@ class Paths(NamedTuple):
 class Tasks(NamedTuple):
     """Which rollouts to run. action, path: (t,) indices."""
 
-    action: NDArray[np.int64]
-    path: NDArray[np.int64]
+    action: IntArray
+    path: IntArray
+
+    def part(self, where: slice) -> Tasks:
+        """Views of some of the tasks."""
+        return Tasks(self.action[where], self.path[where])
 
 
 class Outcomes(NamedTuple):
     """Where results go. costs: (t,) s. bearings: (t,) taken in the rollout. ends: (t, 10) see CLOSED_FEATURES."""
 
     costs: FloatArray
-    bearings: NDArray[np.int64]
+    bearings: IntArray
     ends: FloatArray
+
+    def part(self, where: slice) -> Outcomes:
+        """Views of where the results of some of the tasks go."""
+        return Outcomes(self.costs[where], self.bearings[where], self.ends[where])
 
 
 def outcomes(tasks: int) -> Outcomes:
-    """Room for the results of so many rollouts."""
+    """Zeros for the results of this many rollouts."""
     return Outcomes(np.zeros(tasks), np.zeros(tasks, dtype=np.int64), np.zeros((tasks, CLOSED_FEATURES)))
 
 

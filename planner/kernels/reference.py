@@ -2,7 +2,7 @@
 
 A rollout takes a first action, then follows the base policy until the expected RMSE of its own belief falls below the
 threshold (4.11) or the horizon is reached. Each step: measure with the sample path's noise, clip the possible
-positions to the bearing's wedge, crop the grid, multiply the likelihood in, look at the estimate.
+positions to the bearing's wedge, crop the grid, multiply the likelihood in, take the estimate.
 
 Where rounding could decide, both kernels leave it no say: cells are compared by the leading 44 bits of their weight
 (the first of equal ones wins), of actions that are equal to 1e-9 the first wins, and edges are met 1e-9 of a
@@ -57,7 +57,7 @@ class Belief(NamedTuple):
     doubled: bool
 
 
-class Look(NamedTuple):
+class PointEstimate(NamedTuple):
     """The estimate of a belief and its spread (m, m^2)."""
 
     x: float
@@ -80,7 +80,7 @@ def rollout(
     start: Start, rules: Rules, actions: Actions, action: int, target: FloatArray, noise: FloatArray
 ) -> tuple[float, int, FloatArray]:
     """Cost (s), bearings taken, and the end (see CLOSED_FEATURES) of one sample path."""
-    columns = np.arange(start.density.shape[1])
+    columns = np.arange(int(start.density.shape[1]))
     live = (columns >= start.low[:, None]) & (columns < start.high[:, None])
     weight = np.where(live, start.density, 0.0)
     belief = Belief(weight, start.x0, start.y0, start.h, start.hull, start.bearings, doubled=False)
@@ -90,11 +90,11 @@ def rollout(
     while True:
         belief = measure(belief, rules, place, target, float(noise[step]))
         step += 1
-        look = estimate(belief, rules.estimator, start.flat)
-        localized = look.expected_rmse < rules.threshold  # (4.11)
+        estimated = estimate(belief, rules.estimator, start.flat)
+        localized = estimated.expected_rmse < rules.threshold  # (4.11)
         if localized or step == rules.horizon:
             break
-        following, next_lattice = base_policy(belief, look, rules, place)
+        following, next_lattice = base_policy(belief, estimated, rules, place)
         flight = following - place
         distance = float(np.hypot(*flight))
         if lattice >= 0 and next_lattice >= 0 and len(rules.travel):
@@ -102,8 +102,18 @@ def rollout(
         direction = float(np.arctan2(flight[1], flight[0])) if distance > 0 else heading
         cost += flight_time(rules, distance, direction - heading) + rules.measurement_time  # (4.5)
         place, heading, lattice = following, direction, next_lattice
-    left_over = rules.threshold if localized else look.expected_rmse
-    end = [*place, look.x, look.y, look.xx, look.xy, look.yy, left_over, belief.bearings, localized]
+    left_over = rules.threshold if localized else estimated.expected_rmse
+    end = [
+        *place,
+        estimated.x,
+        estimated.y,
+        estimated.xx,
+        estimated.xy,
+        estimated.yy,
+        left_over,
+        belief.bearings,
+        localized,
+    ]
     return cost, step, np.array(end, dtype=float)
 
 
@@ -122,12 +132,12 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
         return unchanged
     weight, x0, y0, h = _cropped(belief, hull)
     ny, nx = weight.shape
-    dy = y0 + (np.arange(ny) + 0.5) * h - place[1]
+    rows, columns = np.arange(int(ny)), np.arange(int(nx))
+    dy = y0 + (rows + 0.5) * h - place[1]
     low = np.zeros(ny)
     high = np.full(ny, float(nx))
     for normal in (to_left_of_right, to_right_of_left, np.array([np.cos(angle), np.sin(angle)])):
         low, high = _narrowed(low, high, normal, dy, x0 - place[0], h)
-    columns = np.arange(nx)
     touched = (columns >= low[:, None]) & (columns < high[:, None])
     dx = x0 + (columns + 0.5) * h - place[0]
     weight = np.where(touched, weight, 0.0) * likelihood(rules, dx[None, :], dy[:, None], angle, NEARLY * h)
@@ -179,7 +189,7 @@ def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, ahead
     return np.asarray(root**LIKELIHOOD_POWER, dtype=np.float64)
 
 
-def estimate(belief: Belief, estimator: int, flat: bool) -> Look:
+def estimate(belief: Belief, estimator: int, flat: bool) -> PointEstimate:
     """Point estimate, covariance about it (3.34), expected RMSE (3.58)."""
     rows, columns = np.nonzero(belief.weight)
     weight = belief.weight[rows, columns]
@@ -194,7 +204,7 @@ def estimate(belief: Belief, estimator: int, flat: bool) -> Look:
         px, py = float(x[best]), float(y[best])
     dx, dy = x - px, y - py
     expected_rmse = float(mass @ np.sqrt(dx**2 + dy**2))
-    return Look(px, py, float(mass @ dx**2), float(mass @ (dx * dy)), float(mass @ dy**2), expected_rmse)
+    return PointEstimate(px, py, float(mass @ dx**2), float(mass @ (dx * dy)), float(mass @ dy**2), expected_rmse)
 
 
 def _median(
@@ -206,26 +216,28 @@ def _median(
     return px, py
 
 
-def base_policy(belief: Belief, look: Look, rules: Rules, place: FloatArray) -> tuple[FloatArray, int]:
+def base_policy(belief: Belief, estimated: PointEstimate, rules: Rules, place: FloatArray) -> tuple[FloatArray, int]:
     """The next place (2,) and its index in the fixed lattice (-1: none)."""
     if rules.policy == ELLIPSE:
-        return ellipse_action(look, place, rules.ratios, rules.distances), -1
+        return ellipse_action(estimated, place, rules.ratios, rules.distances), -1
     places = rules.places if len(rules.places) else grid_places(belief, rules)
-    return fisher_action(belief, look, rules, places)
+    return fisher_action(belief, estimated, rules, places)
 
 
-def ellipse_action(look: Look, place: FloatArray, ratios: FloatArray, distances: FloatArray) -> FloatArray:
+def ellipse_action(
+    estimated: PointEstimate, place: FloatArray, ratios: FloatArray, distances: FloatArray
+) -> FloatArray:
     """r = s2 PLI(s1 / s2) from the estimate, perpendicular to the major axis, on the platform's side (4.3.2)."""
-    mean, difference = 0.5 * (look.xx + look.yy), 0.5 * (look.xx - look.yy)
-    spread = np.hypot(difference, look.xy)
+    mean, difference = 0.5 * (estimated.xx + estimated.yy), 0.5 * (estimated.xx - estimated.yy)
+    spread = np.hypot(difference, estimated.xy)
     round_ = spread <= NEARLY * mean
-    minor = np.pi / 2 if round_ else 0.5 * np.arctan2(look.xy, difference) + np.pi / 2
+    minor = np.pi / 2 if round_ else 0.5 * np.arctan2(estimated.xy, difference) + np.pi / 2
     s1 = np.sqrt(mean + spread)
     s2 = max(np.sqrt(max(mean - spread, 0.0)), 1e-6 * s1)
     step = s2 * extrapolated(s1 / s2, ratios, distances) * np.array([np.cos(minor), np.sin(minor)])
-    side = (place[0] - look.x) * step[0] + (place[1] - look.y) * step[1]
+    side = (place[0] - estimated.x) * step[0] + (place[1] - estimated.y) * step[1]
     sign = -1.0 if side < -NEARLY * (step @ step) else 1.0
-    return np.array([look.x, look.y]) + sign * step
+    return np.array([estimated.x, estimated.y]) + sign * step
 
 
 def extrapolated(ratio: float, ratios: FloatArray, distances: FloatArray) -> float:
@@ -251,7 +263,7 @@ def grid_places(belief: Belief, rules: Rules) -> FloatArray:
     return np.column_stack([np.tile(x, rules.grid_y), np.repeat(y, rules.grid_x)])
 
 
-def fisher_action(belief: Belief, look: Look, rules: Rules, places: FloatArray) -> tuple[FloatArray, int]:
+def fisher_action(belief: Belief, estimated: PointEstimate, rules: Rules, places: FloatArray) -> tuple[FloatArray, int]:
     """argmax_a det(P^-1 + J(x~, a)) over the places far enough from C95 (6.2.2).
 
     J = g g^T / sigma^2 with g = (y, -x) / r^2 has rank one: the determinant grows with g^T P g, P^-1 is not needed.
@@ -260,9 +272,9 @@ def fisher_action(belief: Belief, look: Look, rules: Rules, places: FloatArray) 
     if rules.standoff > 0:
         clearance = distance_to_convex(places, confidence_hull(belief))
         allowed = clearance >= min(rules.standoff, second_largest(clearance)) - NEARLY * rules.standoff
-    x, y = look.x - places[:, 0], look.y - places[:, 1]
+    x, y = estimated.x - places[:, 0], estimated.y - places[:, 1]
     r2 = np.maximum(x**2 + y**2, belief.h**2)
-    gain = (look.xx * y**2 - 2.0 * look.xy * x * y + look.yy * x**2) / r2**2
+    gain = (estimated.xx * y**2 - 2.0 * estimated.xy * x * y + estimated.yy * x**2) / r2**2
     candidates = np.flatnonzero(allowed)
     best = int(candidates[np.argmax(gain[candidates] >= gain[candidates].max() * (1.0 - NEARLY))])
     return places[best], best if len(rules.places) else -1
@@ -279,8 +291,8 @@ def confidence_hull(belief: Belief) -> FloatArray:
     bins = weight.view(np.int64) >> HISTOGRAM_SHIFT
     below_top = bins.max() - bins
     counted = below_top < HISTOGRAM_BINS
-    share = np.bincount(below_top[counted], weights=weight[counted])
-    last = int(np.searchsorted(np.cumsum(share), CONFIDENCE * weight.sum() * (1.0 - NEARLY)))
+    share = np.asarray(np.bincount(below_top[counted], weights=weight[counted]), dtype=np.float64)
+    last = int(np.searchsorted(np.cumsum(share), CONFIDENCE * float(weight.sum()) * (1.0 - NEARLY)))
     return cells_hull(below_top <= last, belief.x0, belief.y0, belief.h)
 
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.airspace import may_fly
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
-from planner.geometry import bounds, centres, contains, distance_to_convex
+from planner.geometry import bounds, centres, distance_to_convex
+from planner.reasons import NoPlaceToFly, TooManyPlaces, UnusableNumber
 from planner.types import FloatArray, PlannerError, Problem
 
 MOST_PLACES = 20_000
@@ -18,11 +20,11 @@ MOST_PLACES = 20_000
 
 
 def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
-    """(n, 2) m: every place where the platform may measure, before the distance to C95 is looked at."""
+    """(n, 2) m: every place where the platform may measure, whatever its distance to C95."""
     places = lattice(problem) if problem.action_spacing is not None else belief_grid(problem, belief)
     allowed = may_fly(problem, places)
     if not allowed.any():
-        raise PlannerError("no place may be flown to: flight area and no-fly areas leave none, enlarge the fence")
+        raise PlannerError(NoPlaceToFly())
     return places[allowed]
 
 
@@ -45,11 +47,11 @@ def lattice(problem: Problem) -> FloatArray:
     """
     spacing = problem.action_spacing
     if spacing is None or not (np.isfinite(spacing) and spacing > 0):
-        raise PlannerError(f"the action lattice needs a positive spacing, got {spacing}")
+        raise PlannerError(UnusableNumber("action_spacing", "positive", str(spacing)))
     x_min, y_min, x_max, y_max = bounds(problem.area if problem.flight_area is None else problem.flight_area)
     if (x_max - x_min) * (y_max - y_min) > MOST_PLACES * spacing**2:
         finest = np.ceil(np.sqrt((x_max - x_min) * (y_max - y_min) / MOST_PLACES))
-        raise PlannerError(f"places every {spacing:g} m are more than {MOST_PLACES}: use at least {finest:.0f} m")
+        raise PlannerError(TooManyPlaces(float(spacing), MOST_PLACES, float(finest)))
     x, y = _centred(x_min, x_max, spacing), _centred(y_min, y_max, spacing)
     return _product(x, y)
 
@@ -58,7 +60,7 @@ def belief_grid(problem: Problem, belief: GridBelief) -> FloatArray:
     """(X Y, 2) m: cell centres of the action rectangle; west to east first."""
     nx, ny = problem.action_grid
     if nx < 1 or ny < 1:
-        raise PlannerError(f"the action grid needs at least one cell each way, got {nx} x {ny}")
+        raise PlannerError(UnusableNumber("action_grid", "at_least_one", f"{nx} x {ny}"))
     left, bottom, right, top = action_rectangle(problem, belief)
     return _product(centres(left, (right - left) / nx, nx), centres(bottom, (top - bottom) / ny, ny))
 
@@ -80,16 +82,6 @@ def flight_window(problem: Problem) -> FloatArray:
     if problem.flight_area is None:
         return np.array([-np.inf, -np.inf, np.inf, np.inf])
     return np.array(bounds(problem.flight_area))
-
-
-def may_fly(problem: Problem, places: FloatArray) -> np.ndarray:
-    """(n,) bool: inside the flight area and outside every no-fly area."""
-    allowed = np.ones(len(places), dtype=bool)
-    if problem.flight_area is not None:
-        allowed &= contains(problem.flight_area, places)
-    for ring in problem.no_fly:
-        allowed &= ~contains((ring,), places)
-    return allowed
 
 
 def _centred(low: float, high: float, spacing: float) -> FloatArray:

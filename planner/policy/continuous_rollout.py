@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from planner.belief.grid import GridBelief
+from planner.options import BasePolicy, ContinuousSelection, Sampling
 from planner.policy.actions import action_rectangle
-from planner.policy.allowed import nearest_allowed
-from planner.policy.ellipse import ellipse
-from planner.policy.fisher import fisher
-from planner.policy.rollout import RolloutSampler, clock
-from planner.policy.simulation import HORIZON, BasePolicy, KernelName, simulate
-from planner.sampling import Sampling
+from planner.policy.base import BASE_POLICIES
+from planner.policy.feasible import nearest_feasible
+from planner.policy.rollout import RolloutSampler
+from planner.policy.simulation import HORIZON, KernelName, simulate
+from planner.reasons import BudgetTooSmall, FixedSamplePaths, QuickestPlaceFound
 from planner.selection.bfgs import bfgs
 from planner.selection.continuous import PlacesResult, Rectangle, SamplePlaces
 from planner.selection.quadrant import quadrant_search
 from planner.selection.sgd import sgd
-from planner.types import Candidate, Decision, PlannerError, Problem
-
-ContinuousSelection = Literal["quadrant", "sgd", "bfgs"]
+from planner.types import Candidate, Decision, FloatArray, PlannerError, Problem
 
 NO_WAY = 1e6
 """s, the cost of a place without a way to it: a gradient cannot use infinity."""
@@ -35,10 +32,10 @@ class ContinuousRollout:
     deterministic sampling there are as many paths as the selection needs for a place, a power of two.
     """
 
-    selection: ContinuousSelection = "quadrant"
-    sampling: Sampling = "crn"
-    base_policy: BasePolicy = "ellipse"
-    budget: int = 3600
+    selection: ContinuousSelection
+    sampling: Sampling
+    base_policy: BasePolicy
+    budget: int
     threads: int = 1
     horizon: int = HORIZON
     kernel: KernelName = "compiled"
@@ -48,7 +45,7 @@ class ContinuousRollout:
     def __call__(
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
     ) -> Decision:
-        """PlannerError when the budget does not reach for one look at every place the selection needs."""
+        """PlannerError when the budget does not reach for one sample path for every place the selection needs."""
         simulation = simulate(
             problem,
             belief,
@@ -60,29 +57,28 @@ class ContinuousRollout:
         )
         sampling = "deterministic" if self.selection == "bfgs" else self.sampling
         if sampling == "deterministic" and self.selection == "sgd":
-            raise PlannerError("gradient descent takes new sample paths every step: use crn or pmc sampling")
+            raise PlannerError(FixedSamplePaths(self.paths))
         budget, paths = self.budget, self.paths
         if sampling == "deterministic" and self.selection == "quadrant":
             places = 9 + 5 * self.levels
             if budget < places:
-                raise PlannerError(f"quadrant search looks at {places} places: give a budget of {places} or more")
+                raise PlannerError(BudgetTooSmall(budget, places))
             paths = 2 ** int(np.log2(budget // places))
             budget = paths * places
         sampler = RolloutSampler(simulation, belief, sampling, rng, paths=paths)
 
-        def sample(places, path_from, path_to):
-            costs = sampler.anywhere(places, path_from, path_to)
+        def sample(places: FloatArray, path_from: int, path_to: int) -> FloatArray:
+            costs = sampler.sample_places(places, path_from, path_to)
             return np.minimum(costs, NO_WAY)
 
-        base = (ellipse if self.base_policy == "ellipse" else fisher)(problem, belief, platform, rng)
+        base = BASE_POLICIES[self.base_policy](problem, belief, platform, rng)
         result = self._select(sample, Rectangle(*action_rectangle(problem, belief)), (base.x, base.y), budget)
         wanted = result.places[result.best]
-        x, y = nearest_allowed(problem, belief, wanted)
+        x, y = nearest_feasible(problem, belief, wanted)
         return Decision(
             float(x),
             float(y),
-            reason=f"localized in about {clock(result.means[result.best])} by way of this place, found by "
-            f"{self.selection.replace('_', ' ')}",
+            reason=QuickestPlaceFound(float(result.means[result.best]), self.selection),
             candidates=_candidates(result),
             rollouts=sampler.used,
         )

@@ -12,28 +12,29 @@ import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.kernels.reference import Look, ellipse_action
+from planner.kernels.reference import PointEstimate, ellipse_action
 from planner.policy.ellipse_table import TABLE
+from planner.reasons import BesideEllipse
 from planner.types import Decision, FloatArray, Problem
 
 
 def ellipse(
     problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator | None = None
 ) -> Decision:
-    """The place beside the ellipse on the platform's side; constraints are not looked at, `rng` is not used."""
-    look = estimate(belief, problem.estimator)
-    (xx, xy), (_, yy) = look.covariance
+    """The place beside the ellipse on the platform's side; it ignores constraints and `rng`."""
+    estimated = estimate(belief, problem.estimator)
+    (xx, xy), (_, yy) = estimated.covariance
     ratios, distances = table(problem.sigma)
-    seen = Look(look.x, look.y, xx, xy, yy, look.expected_rmse)
+    seen = PointEstimate(estimated.x, estimated.y, xx, xy, yy, estimated.expected_rmse)
     x, y = ellipse_action(seen, np.array(platform, dtype=float), ratios, distances)
-    return Decision(float(x), float(y), reason="across the long axis of the belief, on the nearer side")
+    return Decision(float(x), float(y), reason=BesideEllipse("tabulated"))
 
 
 def table(sigma: float) -> tuple[FloatArray, FloatArray]:
     """s1 / s2 (n,) and r / s2 (n,) for a bearing noise in rad, linear between the tabulated noises."""
     ratios, sigmas, distances = _read()
-    at = np.clip(sigma, sigmas[0], sigmas[-1])
-    return ratios, np.array([np.interp(at, sigmas, column) for column in distances.T])
+    at = min(max(sigma, float(sigmas[0])), float(sigmas[-1]))
+    return ratios, np.array([np.interp(at, sigmas, distances[:, k]) for k in range(len(ratios))])
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Computes the ellipse policy's table PLI(s1 / s2): run `python -m planner.policy.ellipse_table` to write it anew.
+"""Computes the ellipse policy's table PLI(s1 / s2); `python -m planner.policy.ellipse_table` writes it again.
 
 For s2 = 1 and each s1 the distance r from the estimate, perpendicular to the major axis, with the least expected RMSE
 after one more bearing: the average over target positions and over bearings, binned to 1 degree (4.3.2). The problem

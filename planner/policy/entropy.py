@@ -14,6 +14,7 @@ from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.kernels.entropy import expected_entropies
 from planner.policy.actions import constrained_actions
+from planner.reasons import LeastEntropy, NoPlaceSeesBelief
 from planner.sampling import equal_mass_points
 from planner.types import Decision, PlannerError, Problem
 
@@ -51,13 +52,13 @@ class Entropy:
         entropies = expected_entropies(cells, belief.density[rows, columns], places, aims, problem.sigma)
         least = float(entropies.min())
         if not np.isfinite(least):
-            raise PlannerError("no allowed place sees the belief: widen the flight area or lower the standoff distance")
+            raise PlannerError(NoPlaceSeesBelief())
         equal = np.flatnonzero(entropies <= least + 1e-9)
         best = equal[np.argmin(np.hypot(*(places[equal] - np.array(platform)).T))]
         return Decision(
             float(places[best, 0]),
             float(places[best, 1]),
-            reason=f"the next bearing is expected to leave {least:.2f} nat, least of {len(places)} places",
+            reason=LeastEntropy(least, len(places)),
         )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.policy.actions import constrained_actions
+from planner.reasons import MostInformation
 from planner.types import Decision, Estimate, FloatArray, Problem
 
 
@@ -19,21 +20,21 @@ def fisher(
 ) -> Decision:
     """The allowed place with the largest information determinant; `platform` and `rng` are not used."""
     places = constrained_actions(problem, belief)
-    look = estimate(belief, problem.estimator)
-    gains = information_gain(look, places, nearest=belief.h)
+    estimated = estimate(belief, problem.estimator)
+    gains = information_gain(estimated, places, nearest=belief.h)
     best = first_best(gains)
     return Decision(
         float(places[best, 0]),
         float(places[best, 1]),
-        reason=f"a bearing from here narrows the belief most, {len(places)} places compared",
+        reason=MostInformation(len(places), "estimate"),
     )
 
 
-def information_gain(look: Estimate, places: FloatArray, nearest: float) -> FloatArray:
+def information_gain(estimated: Estimate, places: FloatArray, nearest: float) -> FloatArray:
     """(n,) sigma^2 g^T P g of each place; places nearer to the estimate than `nearest` m count as that far."""
-    x, y = look.x - places[:, 0], look.y - places[:, 1]
+    x, y = estimated.x - places[:, 0], estimated.y - places[:, 1]
     r2 = np.maximum(x**2 + y**2, nearest**2)
-    (xx, xy), (_, yy) = look.covariance
+    (xx, xy), (_, yy) = estimated.covariance
     return (xx * y**2 - 2.0 * xy * x * y + yy * x**2) / r2**2
 
 

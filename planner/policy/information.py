@@ -19,6 +19,6 @@ def bearing_information(places: FloatArray, target: FloatArray, sigma: float, ne
     return g[..., :, None] * g[..., None, :] / sigma**2
 
 
-def known_information(look: Estimate) -> FloatArray:
+def prior_information(estimated: Estimate) -> FloatArray:
     """(2, 2) P^-1, finite for a belief without width too."""
-    return np.asarray(np.linalg.inv(look.covariance + 1e-9 * np.eye(2)), dtype=np.float64)
+    return np.asarray(np.linalg.inv(estimated.covariance + 1e-9 * np.eye(2)), dtype=np.float64)

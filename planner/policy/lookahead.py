@@ -7,16 +7,17 @@ The target is taken to be where the estimate is; it may move with a known veloci
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import minimize
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.policy.allowed import nearest_allowed
-from planner.policy.information import bearing_gradient, known_information
-from planner.types import Decision, FloatArray, PlannerError, Problem
+from planner.policy.feasible import nearest_feasible
+from planner.policy.information import bearing_gradient, prior_information
+from planner.reasons import FirstOfRoute
+from planner.types import Decision, FloatArray, Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,14 +35,14 @@ class Course:
     steps: int
     target: FloatArray
     sigma: float
-    velocity: FloatArray = (0.0, 0.0)  # type: ignore[assignment]
-    information: FloatArray = ((0.0, 0.0), (0.0, 0.0))  # type: ignore[assignment]
+    velocity: FloatArray = field(default_factory=lambda: np.zeros(2))
+    information: FloatArray = field(default_factory=lambda: np.zeros((2, 2)))
     bearing_at_start: bool = True
     closest: float = 1e-3
 
     def __post_init__(self) -> None:
         if self.steps < 1 or not self.step > 0 or not self.sigma > 0:
-            raise PlannerError("a course needs at least one step, a positive step length and a positive sigma")
+            raise ValueError("a course needs at least one step, a positive step length and a positive sigma")
         for name in ("starts", "target", "velocity", "information"):
             object.__setattr__(self, name, np.array(getattr(self, name), dtype=np.float64))
         object.__setattr__(self, "starts", np.atleast_2d(self.starts))
@@ -153,7 +154,7 @@ def stationary_course(ratio: float, steps: int = 20, distance: float = 1.0) -> C
 
 @dataclass(frozen=True, slots=True)
 class Lookahead:
-    """As a policy: the first place of the best course of `steps` steps of `step` m each, planned anew every time."""
+    """As a policy: the first place of the best course of `steps` steps of `step` m each, planned again every time."""
 
     steps: int = 4
     step: float = 40.0
@@ -166,19 +167,19 @@ class Lookahead:
         rng: np.random.Generator | None = None,
     ) -> Decision:
         """`rng` is not used."""
-        look = estimate(belief, problem.estimator)
+        estimated = estimate(belief, problem.estimator)
         course = Course(
             starts=np.array([platform]),
             step=self.step,
             steps=self.steps,
-            target=np.array([look.x, look.y]),
+            target=np.array([estimated.x, estimated.y]),
             sigma=problem.sigma,
-            information=known_information(look),
+            information=prior_information(estimated),
             bearing_at_start=False,
             closest=max(belief.h, problem.threshold),
         )
-        x, y = nearest_allowed(problem, belief, places(course, optimal_headings(course))[0, 1])
-        return Decision(float(x), float(y), reason=f"first of {course.steps} steps that tell most about the estimate")
+        x, y = nearest_feasible(problem, belief, places(course, optimal_headings(course))[0, 1])
+        return Decision(float(x), float(y), reason=FirstOfRoute(course.steps, "lookahead"))
 
 
 lookahead = Lookahead()

@@ -6,7 +6,7 @@ Which action is sampled on which path is the selection's business (planner.selec
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -14,16 +14,29 @@ import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
+from planner.options import BasePolicy, DiscreteSelection, Sampling
 from planner.policy.actions import constrained_actions
-from planner.policy.simulation import HORIZON, BasePolicy, KernelName, Simulation, TerminalValue, simulate
-from planner.sampling import Sampling, deterministic_paths, random_paths
+from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, simulate
+from planner.reasons import (
+    BudgetTooSmall,
+    ChoiceReason,
+    EveryPlaceRefused,
+    FixedSamplePaths,
+    LongestLead,
+    NoPlaceInReach,
+    OnlyPlace,
+    QuickestPlace,
+)
+from planner.sampling import deterministic_paths, random_paths
 from planner.selection.sequential_halving import sequential_halving
-from planner.selection.types import IntArray, Selection, SelectionResult
+from planner.selection.types import Selection, SelectionResult
 from planner.selection.uniform import uniform
-from planner.types import Candidate, Decision, FloatArray, PlannerError, Problem
+from planner.types import Candidate, Decision, FloatArray, IntArray, PlannerError, Problem
+
+SELECTIONS: Mapping[DiscreteSelection, Selection] = {"uniform": uniform, "sequential_halving": sequential_halving}
 
 PATH_BLOCK = 64
-"""Common random paths are drawn in blocks of so many, so that path j does not depend on who asked for it first."""
+"""Common random paths are drawn in blocks of this size, so that path j does not depend on who needs it first."""
 
 MOST_LOOKS = 16
 """How often uniform allocation stops to see which actions have lost: every call of the kernel costs some time."""
@@ -31,7 +44,7 @@ MOST_LOOKS = 16
 
 @dataclass(slots=True)
 class RolloutSampler:
-    """Costs of first actions on sample paths: the `sample` that selections call, remembering what it was asked.
+    """Costs of first actions on sample paths: the `sample` that selections call, which remembers the answers.
 
     `paths` deterministic: how many equal-mass paths there are (a power of two).
     """
@@ -43,7 +56,7 @@ class RolloutSampler:
     places: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     paths: int = 8
     used: int = 0
-    seen: dict[int, list[FloatArray]] = field(default_factory=dict)
+    seen: dict[int, list[FloatArray]] = field(default_factory=dict[int, list[FloatArray]])
     _actions: Actions | None = None
     _pool: Paths | None = None
 
@@ -56,7 +69,7 @@ class RolloutSampler:
             self.seen.setdefault(int(index), []).append(row)
         return costs
 
-    def anywhere(self, places: FloatArray, path_from: int, path_to: int) -> FloatArray:
+    def sample_places(self, places: FloatArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s: the `SamplePlaces` of continuous selections."""
         actions = self.simulation.first_actions(places)
         return self._costs(actions, np.arange(len(places)), path_from, path_to)
@@ -78,7 +91,7 @@ class RolloutSampler:
             if self._pool is None:
                 self._pool = deterministic_paths(self.belief, self.paths, self.simulation.rules.horizon)
             if count > self.paths:
-                raise PlannerError(f"there are {self.paths} deterministic paths, {count} were asked for")
+                raise PlannerError(FixedSamplePaths(self.paths))
             return self._pool
         have = 0 if self._pool is None else len(self._pool.targets)
         while have < count:
@@ -102,10 +115,10 @@ class Rollout:
     that the budget affords. terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
     """
 
-    selection: Selection = sequential_halving
-    sampling: Sampling = "crn"
-    base_policy: BasePolicy = "ellipse"
-    budget: int = 3600
+    selection: Selection
+    sampling: Sampling
+    base_policy: BasePolicy
+    budget: int
     threads: int = 1
     horizon: int = HORIZON
     kernel: KernelName = "compiled"
@@ -131,7 +144,7 @@ class Rollout:
         budget, paths = self.budget, 8
         if self.sampling == "deterministic":
             if budget < len(places):
-                raise PlannerError(f"{len(places)} actions need a budget of at least as many rollouts, got {budget}")
+                raise PlannerError(BudgetTooSmall(budget, len(places)))
             paths = 2 ** int(np.log2(budget // len(places)))
             budget = paths * len(places)
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
@@ -151,10 +164,10 @@ class Rollout:
         for refused in self.without:
             places = places[np.hypot(*(places - np.array(refused)).T) >= 0.5 * near]
         if len(places) == 0:
-            raise PlannerError("every place has been refused: hold, or choose the next place by hand")
+            raise PlannerError(EveryPlaceRefused())
         reachable = np.isfinite(simulation.first_actions(places).costs)
         if not reachable.any():
-            raise PlannerError("no place can be reached from here without crossing a no-fly area or the fence")
+            raise PlannerError(NoPlaceInReach())
         return places[reachable]
 
 
@@ -176,19 +189,11 @@ def _decision(places: FloatArray, result: SelectionResult, sampler: RolloutSampl
     )
 
 
-def _reason(result: SelectionResult) -> str:
-    about = f"localized in about {clock(result.means[result.best])} by way of this place"
+def _reason(result: SelectionResult) -> ChoiceReason:
+    expected_time = float(result.means[result.best])
     others = np.delete(result.means, result.best)
-    n = 1 + int(np.isfinite(others).sum())
-    if n == 1:
-        return f"{about}, the only one {'allowed' if len(result.means) == 1 else 'tried'}"
-    gain = float(np.nanmin(others) - result.means[result.best])
-    if gain >= 0.5:
-        return f"{about}, {gain:.0f} s sooner than by any other of {n} places tried"
-    return f"{about}; of {n} places tried it held its lead over the most simulated flights"
-
-
-def clock(seconds: float) -> str:
-    """m:ss"""
-    whole = round(seconds)
-    return f"{whole // 60}:{whole % 60:02d}"
+    tried = 1 + int(np.isfinite(others).sum())
+    if tried == 1:
+        return OnlyPlace(expected_time, "allowed" if len(result.means) == 1 else "tried")
+    gain = float(np.nanmin(others)) - expected_time
+    return QuickestPlace(expected_time, gain, tried) if gain >= 0.5 else LongestLead(expected_time, tried)

@@ -12,8 +12,8 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from planner.airspace import may_fly
 from planner.belief.grid import GridBelief
 from planner.kernels import compiled, reference
 from planner.kernels.model import (
@@ -35,12 +35,13 @@ from planner.kernels.model import (
     outcomes,
 )
 from planner.motion import flight_time, turn_between, validate_motion
-from planner.policy.actions import flight_window, lattice, may_fly
+from planner.options import BasePolicy
+from planner.policy.actions import flight_window, lattice
 from planner.policy.ellipse import table
-from planner.travel import RoadMap, lattice_distances, road_map, straight_suffices, travel_distances
-from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, PlannerError, Problem
+from planner.reasons import UnusableNumber
+from planner.travel import VisibilityGraph, lattice_distances, straight_suffices, travel_distances, visibility_graph
+from planner.types import FloatArray, FullMotion, IntArray, LinearConstantMotion, LinearMotion, PlannerError, Problem
 
-BasePolicy = Literal["ellipse", "fisher"]
 KernelName = Literal["compiled", "reference"]
 TerminalValue = Callable[[FloatArray], FloatArray]
 """Time still needed, (t,) s, from the ends (t, 10) of rollouts that were cut; columns as CLOSED_FEATURES."""
@@ -61,7 +62,7 @@ class Simulation:
     rules: Rules
     platform: FloatArray
     heading: float | None
-    roads: RoadMap | None
+    graph: VisibilityGraph | None
     threads: int = 1
     kernel: KernelName = "compiled"
     terminal: TerminalValue | None = None
@@ -70,16 +71,16 @@ class Simulation:
         """(a, 2) m places as first actions: cost of flying there and measuring once (4.5); infinite without a way."""
         places = np.ascontiguousarray(places, dtype=float).reshape(-1, 2)
         flights = places - self.platform
-        if self.roads is None:
+        if self.graph is None:
             distances = np.hypot(*flights.T)
         else:
-            distances = travel_distances(self.problem, self.roads, self.platform, places)
+            distances = travel_distances(self.problem, self.graph, self.platform, places)
         directions = np.arctan2(flights[:, 1], flights[:, 0])
         turns = UNKNOWN_TURN if self.heading is None else turn_between(self.heading, directions)
         costs = flight_time(self.problem.motion, distances, turns) + self.problem.measurement_time
         return Actions(places, costs, directions, self._in_lattice(places))
 
-    def _in_lattice(self, places: FloatArray) -> NDArray[np.int64]:
+    def _in_lattice(self, places: FloatArray) -> IntArray:
         if len(self.rules.travel) == 0:
             return np.full(len(places), -1, dtype=np.int64)
         index = {(float(x), float(y)): k for k, (x, y) in enumerate(self.rules.places)}
@@ -96,10 +97,8 @@ class Simulation:
             cuts = np.linspace(0, len(tasks.action), parts + 1).astype(int)
             slices = [slice(a, b) for a, b in pairwise(cuts)]
             with ThreadPoolExecutor(parts) as pool:
-                jobs = [
-                    pool.submit(kernel, self.start, self.rules, actions, paths, _part(tasks, s), _part(out, s))
-                    for s in slices
-                ]
+                shared = (self.start, self.rules, actions, paths)
+                jobs = [pool.submit(kernel, *shared, tasks.part(s), out.part(s)) for s in slices]
                 for job in jobs:
                     job.result()
         if self.terminal is not None:
@@ -123,17 +122,19 @@ def simulate(
     """Prepare rollouts from this belief. PlannerError for numbers that cannot be flown or measured with."""
     here = np.array(platform, dtype=float)
     if here.shape != (2,) or not np.isfinite(here).all():
-        raise PlannerError("the platform's position must be two finite numbers")
-    if horizon < 1 or threads < 1:
-        raise PlannerError(f"horizon and threads must be at least 1, got {horizon} and {threads}")
-    roads = None if straight_suffices(problem) else road_map(problem)
+        raise PlannerError(UnusableNumber("platform_position", "finite", str(platform)))
+    if horizon < 1:
+        raise PlannerError(UnusableNumber("horizon", "at_least_one", str(horizon)))
+    if threads < 1:
+        raise PlannerError(UnusableNumber("threads", "at_least_one", str(threads)))
+    graph = None if straight_suffices(problem) else visibility_graph(problem)
     return Simulation(
         problem,
         start_of(belief),
-        rules_of(problem, base_policy, horizon, roads),
+        rules_of(problem, base_policy, horizon, graph),
         here,
         heading,
-        roads,
+        graph,
         threads,
         kernel,
         terminal,
@@ -158,13 +159,9 @@ def start_of(belief: GridBelief) -> Start:
     )
 
 
-def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: RoadMap | None = None) -> Rules:
+def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, graph: VisibilityGraph | None = None) -> Rules:
     """The problem as kernel numbers."""
-    for name in ("sigma", "threshold"):
-        if not (np.isfinite(getattr(problem, name)) and getattr(problem, name) > 0):
-            raise PlannerError(f"{name} must be a positive number, got {getattr(problem, name)}")
-    if not (np.isfinite(problem.measurement_time) and problem.measurement_time >= 0):
-        raise PlannerError(f"the measurement time must be a number >= 0, got {problem.measurement_time}")
+    _validate_numbers(problem)
     validate_motion(problem.motion)
     sigma = float(min(problem.sigma, WIDEST_SIGMA))
     coefficients, edge = likelihood_polynomial(sigma)
@@ -173,7 +170,7 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: Roa
         places = lattice(problem)
         places = np.ascontiguousarray(places[may_fly(problem, places)])
     travel = np.empty((0, 0))
-    if roads is not None and len(places) > 0:
+    if graph is not None and len(places) > 0:
         travel = np.ascontiguousarray(lattice_distances(problem, places))
     ratios, distances = table(problem.sigma)
     motion, speed, constant, turn_rate, acceleration = _motion_numbers(problem)
@@ -204,6 +201,15 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, roads: Roa
     )
 
 
+def _validate_numbers(problem: Problem) -> None:
+    if not (np.isfinite(problem.sigma) and problem.sigma > 0):
+        raise PlannerError(UnusableNumber("sigma", "positive", f"{problem.sigma:g}"))
+    if not (np.isfinite(problem.threshold) and problem.threshold > 0):
+        raise PlannerError(UnusableNumber("threshold", "positive", f"{problem.threshold:g}"))
+    if not (np.isfinite(problem.measurement_time) and problem.measurement_time >= 0):
+        raise PlannerError(UnusableNumber("measurement_time", "not_negative", f"{problem.measurement_time:g}"))
+
+
 def _motion_numbers(problem: Problem) -> tuple[int, float, float, float, float]:
     match problem.motion:
         case LinearMotion(speed):
@@ -212,7 +218,3 @@ def _motion_numbers(problem: Problem) -> tuple[int, float, float, float, float]:
             return LINEAR, float(speed), float(constant), 1.0, 1.0
         case FullMotion(turn_rate, acceleration, speed, constant):
             return FULL, float(speed), float(constant), float(turn_rate), float(acceleration)
-
-
-def _part(arrays, where: slice):
-    return type(arrays)(*(array[where] for array in arrays))

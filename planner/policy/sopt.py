@@ -16,31 +16,32 @@ import numpy as np
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.motion import flight_time
-from planner.policy.ahead import PlansAhead
-from planner.policy.allowed import nearest_allowed
+from planner.policy.feasible import nearest_feasible
+from planner.policy.route import RoutePolicy
+from planner.reasons import RoutePlanner
 from planner.types import Estimate, FloatArray, Problem
 
 
 @dataclass(frozen=True, slots=True)
-class Sopt(PlansAhead):
+class Sopt(RoutePolicy):
     """deviations: size of the ellipse. most: bearings tried at each place. distances: values of r1 tried."""
 
-    what: ClassVar[str] = "bearings that would fix the near edge of the belief"
+    planner: ClassVar[RoutePlanner] = "sopt"
     deviations: float = 3.0
     most: int = 30
     distances: int = 50
 
     def route(self, problem: Problem, belief: GridBelief, platform: tuple[float, float]) -> FloatArray:
         """(k1 + k2, 2) m."""
-        look = estimate(belief, problem.estimator)
-        here, centre = np.array(platform, dtype=np.float64), np.array([look.x, look.y])
-        target = pseudo_target(look, here, self.deviations)
+        estimated = estimate(belief, problem.estimator)
+        here, centre = np.array(platform, dtype=np.float64), np.array([estimated.x, estimated.y])
+        target = pseudo_target(estimated, here, self.deviations)
         k1, k2, r1, r2 = self._quickest(problem, float(np.hypot(*(target - here))))
         ahead = (target - here) / max(float(np.hypot(*(target - here))), 1e-9)
         first = target - r1 * ahead
         across = r2 * np.array([-ahead[1], ahead[0]])
         second = min((target + across, target - across), key=lambda place: float(np.hypot(*(place - centre))))
-        first, second = (nearest_allowed(problem, belief, place) for place in (first, second))
+        first, second = (nearest_feasible(problem, belief, place) for place in (first, second))
         return np.concatenate([np.repeat(first[None], k1, axis=0), np.repeat(second[None], k2, axis=0)])
 
     def _quickest(self, problem: Problem, distance: float) -> tuple[int, int, float, float]:
@@ -59,12 +60,15 @@ class Sopt(PlansAhead):
         return int(k[i]), int(k[j]), float(r1[d]), float(r2[i, j, d])
 
 
-def pseudo_target(look: Estimate, platform: FloatArray, deviations: float, corners: int = 720) -> FloatArray:
-    """(2,) m: the corner nearest to the platform of the `deviations`-sigma ellipse drawn with so many corners."""
-    variances, axes = np.linalg.eigh(look.covariance)
+def pseudo_target(estimated: Estimate, platform: FloatArray, deviations: float, corners: int = 720) -> FloatArray:
+    """(2,) m: the corner nearest to the platform of the `deviations`-sigma ellipse, drawn as a polygon of `corners`."""
+    variances, axes = np.linalg.eigh(estimated.covariance)
     angles = 2 * np.pi * np.arange(corners) / corners
     circle = np.stack([np.cos(angles), np.sin(angles)])
-    edge = np.array([look.x, look.y]) + deviations * (axes @ (np.sqrt(np.maximum(variances, 0))[:, None] * circle)).T
+    edge = (
+        np.array([estimated.x, estimated.y])
+        + deviations * (axes @ (np.sqrt(np.maximum(variances, 0))[:, None] * circle)).T
+    )
     return edge[np.argmin(np.hypot(*(edge - platform).T))]
 
 

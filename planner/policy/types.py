@@ -20,3 +20,15 @@ class Policy(Protocol):
     def __call__(
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
     ) -> Decision: ...
+
+
+class DeterministicPolicy(Protocol):
+    """A `Policy` that uses no chance: it may be called without a generator."""
+
+    def __call__(
+        self,
+        problem: Problem,
+        belief: GridBelief,
+        platform: tuple[float, float],
+        rng: np.random.Generator | None = None,
+    ) -> Decision: ...

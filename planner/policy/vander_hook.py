@@ -8,7 +8,8 @@ import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.policy.allowed import nearest_allowed
+from planner.policy.feasible import nearest_feasible
+from planner.reasons import BesideEllipse
 from planner.types import Decision, Problem
 
 
@@ -26,14 +27,14 @@ class CautiousGreedy:
         rng: np.random.Generator | None = None,
     ) -> Decision:
         """The place on the platform's side of the major axis. `rng` is not used."""
-        look = estimate(belief, problem.estimator)
-        variances, axes = np.linalg.eigh(look.covariance)
+        estimated = estimate(belief, problem.estimator)
+        variances, axes = np.linalg.eigh(estimated.covariance)
         minor = axes[:, 0]
-        centre = np.array([look.x, look.y])
+        centre = np.array([estimated.x, estimated.y])
         side = 1.0 if minor @ (np.array(platform) - centre) >= 0 else -1.0
         wanted = centre + side * self.deviations * np.sqrt(variances[0]) * minor
-        x, y = nearest_allowed(problem, belief, wanted)
-        return Decision(float(x), float(y), reason="across the long axis of the belief, just outside its ellipse")
+        x, y = nearest_feasible(problem, belief, wanted)
+        return Decision(float(x), float(y), reason=BesideEllipse("just_outside"))
 
 
 vander_hook = CautiousGreedy()

@@ -7,7 +7,8 @@ from contextlib import suppress
 import numpy as np
 from scipy.optimize import minimize
 
-from planner.selection.continuous import Notebook, PlacesResult, Rectangle, SamplePlaces
+from planner.reasons import BudgetTooSmall
+from planner.selection.continuous import PlacesResult, Rectangle, SamplePlaces, VisitedPlaces
 from planner.types import FloatArray, PlannerError
 
 
@@ -31,19 +32,17 @@ def bfgs(
     the best place looked at, by then or when the budget is spent.
     """
     if paths < 1 or budget < 5 * paths:
-        raise PlannerError(
-            f"a gradient for BFGS needs {5 * max(paths, 1)} rollouts, the budget is {budget}: raise the budget"
-        )
+        raise PlannerError(BudgetTooSmall(budget, 5 * max(paths, 1)))
     half = difference / 2
     stencil = np.array([[0.0, 0.0], [half, 0.0], [-half, 0.0], [0.0, half], [0.0, -half]])
-    notebook = Notebook(sample)
+    visited = VisitedPlaces(sample)
 
     def value_and_gradient(place: FloatArray) -> tuple[float, FloatArray]:
-        if (notebook.visited + len(stencil)) * paths > budget:
+        if (len(visited) + len(stencil)) * paths > budget:
             raise _BudgetSpent
-        values = notebook.visit(rectangle.clip(place + stencil), 0, paths)
+        values = visited.visit(rectangle.clip(place + stencil), 0, paths)
         return float(values[0]), np.array([values[1] - values[2], values[3] - values[4]]) / difference
 
     with suppress(_BudgetSpent):
         minimize(value_and_gradient, rectangle.clip(np.array(start, dtype=np.float64)), jac=True, method="BFGS")
-    return notebook.result()
+    return visited.result()

@@ -7,15 +7,15 @@ from typing import Protocol
 
 import numpy as np
 
+from planner.reasons import BudgetTooSmall
 from planner.selection.tally import Tally
-from planner.selection.types import IntArray
-from planner.types import FloatArray, PlannerError
+from planner.types import FloatArray, IntArray, PlannerError
 
 
 class SamplePlaces(Protocol):
     """Costs (k, path_to - path_from), s, of places (k, 2), m, on the sample paths path_from <= j < path_to."""
 
-    def __call__(self, places: FloatArray, path_from: int, path_to: int) -> FloatArray: ...
+    def __call__(self, places: FloatArray, path_from: int, path_to: int, /) -> FloatArray: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Rectangle:
 
     def __post_init__(self) -> None:
         if not (self.x0 < self.x1 and self.y0 < self.y1):
-            raise PlannerError(f"the action rectangle {self} is empty: give x0 < x1 and y0 < y1")
+            raise ValueError(f"the action rectangle {self} is empty: give x0 < x1 and y0 < y1")
 
     def clip(self, places: FloatArray) -> FloatArray:
         """The nearest places (k, 2) inside."""
@@ -38,7 +38,7 @@ class Rectangle:
 
 @dataclass(frozen=True, slots=True)
 class PlacesResult:
-    """Every place looked at, in order, and what was learned of it; `best` indexes the chosen one.
+    """Every place visited, in order, and what was learned of it; `best` indexes the chosen one.
 
     places: (n, 2) m. means, std_errors: (n,) s, as in `SelectionResult`. counts: (n,) samples spent.
     """
@@ -50,7 +50,7 @@ class PlacesResult:
     counts: IntArray
 
 
-class Notebook:
+class VisitedPlaces:
     """Collects the places that a continuous selection visits, each sampled once with a set of paths."""
 
     def __init__(self, sample: SamplePlaces) -> None:
@@ -58,7 +58,7 @@ class Notebook:
         self._places: list[FloatArray] = []
         self._costs: list[FloatArray] = []
 
-    def visit(self, places: FloatArray, path_from: int, path_to: int) -> FloatArray:
+    def visit(self, places: FloatArray, path_from: int, path_to: int, /) -> FloatArray:
         """Mean costs (k,) of new places (k, 2)."""
         costs = self._sample(places, path_from, path_to)
         self._places.append(np.array(places, dtype=np.float64))
@@ -77,13 +77,12 @@ class Notebook:
         chosen = int(np.argmin(means)) if best is None else best
         return PlacesResult(chosen, places, means, tally.std_errors(), tally.counts)
 
-    @property
-    def visited(self) -> int:
+    def __len__(self) -> int:
         return sum(map(len, self._places))
 
 
-def paths_per_place(budget: int, places: int, what: str) -> int:
+def paths_per_place(budget: int, places: int) -> int:
     """R = floor(N / places) sample paths for each place; refuses a budget that gives none."""
     if budget < places:
-        raise PlannerError(f"{what} looks at {places} places: give a budget of {places} or more, not {budget}")
+        raise PlannerError(BudgetTooSmall(budget, places))
     return budget // places

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from planner.selection.continuous import Notebook, PlacesResult, Rectangle, SamplePlaces
+from planner.reasons import BudgetTooSmall
+from planner.selection.continuous import PlacesResult, Rectangle, SamplePlaces, VisitedPlaces
 from planner.types import PlannerError
 
 DIFFERENCE = 20.0  # m between the two places of a finite difference
@@ -29,24 +30,22 @@ def sgd(
     """
     iterations = (budget - paths) // (4 * paths)
     if paths < 1 or iterations < 1:
-        raise PlannerError(
-            f"a step of gradient descent needs {5 * max(paths, 1)} rollouts, the budget is {budget}: raise the budget"
-        )
+        raise PlannerError(BudgetTooSmall(budget, 5 * max(paths, 1)))
     half = DIFFERENCE / 2
     stencil = np.array([[half, 0.0], [-half, 0.0], [0.0, half], [0.0, -half]])
-    notebook = Notebook(sample)
+    visited = VisitedPlaces(sample)
     place = rectangle.clip(np.array([start], dtype=np.float64))
     done = 0
     for iteration in range(1, iterations + 1):
         looked_at = rectangle.clip(place + stencil)
-        values = notebook.visit(looked_at, done, done + paths)
+        values = visited.visit(looked_at, done, done + paths)
         done += paths
         width = np.maximum(np.array([looked_at[0, 0] - looked_at[1, 0], looked_at[2, 1] - looked_at[3, 1]]), 1e-9)
         gradient = np.array([values[0] - values[1], values[2] - values[3]]) / width
         norm = float(np.hypot(*gradient))
         if not math.isfinite(norm):
-            raise PlannerError("gradient descent came upon a place of infinite cost: use a discrete selection instead")
+            raise ValueError("gradient descent came upon a place of infinite cost: use a discrete selection instead")
         if norm > 0:
             place = rectangle.clip(place - step_length(iteration, iterations) * gradient / norm)
-    notebook.visit(place, done, done + paths)
-    return notebook.result(best=notebook.visited - 1)
+    visited.visit(place, done, done + paths)
+    return visited.result(best=len(visited) - 1)

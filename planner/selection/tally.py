@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.selection.types import IntArray, SelectionResult
-from planner.types import FloatArray, PlannerError
+from planner.reasons import UnusableNumber
+from planner.selection.types import SelectionResult
+from planner.types import FloatArray, IntArray, PlannerError
 
 
 class Tally:
@@ -21,9 +22,9 @@ class Tally:
     def add(self, actions: IntArray, costs: FloatArray) -> None:
         """Take in `costs` (k, m) of `actions` (k,), each named at most once; ill-shaped or NaN costs are refused."""
         if costs.ndim != 2 or costs.shape[0] != len(actions):
-            raise PlannerError(f"a sample of {len(actions)} actions must give a row each, got shape {costs.shape}")
+            raise ValueError(f"a sample of {len(actions)} actions must give a row each, got shape {costs.shape}")
         if np.isnan(costs).any():
-            raise PlannerError("a sampled cost is NaN: the stochastic function must give a number for every action")
+            raise ValueError("a sampled cost is NaN: the stochastic function must give a number for every action")
         if not self.counts.any() and costs.size:
             finite = costs[np.isfinite(costs)]
             self._origin = float(finite[0]) if finite.size else 0.0
@@ -45,15 +46,16 @@ class Tally:
             return np.where((self.counts >= 2) & np.isfinite(self.sums), np.sqrt(variance / n), np.nan)
 
     def result(self, best: int) -> SelectionResult:
+        """What has been learned so far, with the chosen action."""
         return SelectionResult(best, self.means(), self.std_errors(), self.counts, self.dropped_in_round)
 
 
 def check_budget(n_actions: int, budget: int) -> None:
     """Refuse a selection among nothing or with nothing to spend."""
     if n_actions < 1:
-        raise PlannerError("there is no action to choose from: widen the flight area or lower the standoff distance")
+        raise PlannerError(UnusableNumber("actions", "at_least_one", str(n_actions)))
     if budget < 1:
-        raise PlannerError(f"a budget of {budget} rollouts decides nothing: give at least 1, better one an action")
+        raise PlannerError(UnusableNumber("budget", "at_least_one", str(budget)))
 
 
 def spread_evenly(n_actions: int, n_kept: int) -> IntArray:

@@ -10,17 +10,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from planner.types import FloatArray
-
-IntArray = NDArray[np.int64]
+from planner.types import FloatArray, IntArray
 
 
 class Sample(Protocol):
     """Costs (k, path_to - path_from), s, of actions (k,) on the sample paths path_from <= j < path_to."""
 
-    def __call__(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray: ...
+    def __call__(self, actions: IntArray, path_from: int, path_to: int, /) -> FloatArray: ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from planner.selection.tally import Tally, check_budget, spread_evenly
-from planner.selection.types import IntArray, Sample, SelectionResult
-from planner.types import FloatArray
+from planner.selection.types import Sample, SelectionResult
+from planner.types import FloatArray, IntArray
 
 ROUNDING = 1e-12
 """Of a sum: what is equal but for rounding is not given up."""
@@ -25,7 +25,7 @@ def uniform(
 
     least: (n,) lower bound of any single cost of each action. With it, an action is given up as soon as its partial
     sum plus the least possible rest exceeds the best complete sum, looked at every `stride` paths. That is exact: the
-    chosen action is the one that the whole budget would have chosen, given that path j costs the same whenever asked.
+    chosen action is the one that the whole budget would have chosen, given that path j costs the same at any time.
     What was given up counts as dropped in round 1; its mean is over its first paths only, and larger than the best.
     """
     del rng  # the allocation is fixed

@@ -8,8 +8,9 @@ import numpy as np
 
 from planner.belief.grid import GridBelief, prior_belief
 from planner.kernels.model import Tasks
+from planner.options import STUDY, BasePolicy
 from planner.policy.actions import constrained_actions
-from planner.policy.simulation import HORIZON, BasePolicy, Simulation, simulate
+from planner.policy.simulation import HORIZON, Simulation, simulate
 from planner.sampling import random_paths
 from planner.study.scenarios import Scenario
 from planner.types import FloatArray, Problem
@@ -28,7 +29,7 @@ class ActionValues:
     std_errors: FloatArray
 
 
-def values_of_grid(scenario: Scenario, paths: int, base_policy: BasePolicy = "ellipse") -> ActionValues:
+def values_of_grid(scenario: Scenario, paths: int, base_policy: BasePolicy = STUDY.base_policy) -> ActionValues:
     """Of every place of the scenario's action space, at the first decision on the prior."""
     belief = prior_belief(scenario.problem)
     places = constrained_actions(scenario.problem, belief)
@@ -36,7 +37,7 @@ def values_of_grid(scenario: Scenario, paths: int, base_policy: BasePolicy = "el
 
 
 def values_of_places(
-    scenario: Scenario, places: FloatArray, paths: int, base_policy: BasePolicy = "ellipse"
+    scenario: Scenario, places: FloatArray, paths: int, base_policy: BasePolicy = STUDY.base_policy
 ) -> FloatArray:
     """(n,) s of first actions (n, 2), m, all on the same sample paths: their differences are sharper than they are."""
     belief = prior_belief(scenario.problem)

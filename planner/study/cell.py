@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, TypeVar, get_args
 
+from planner.options import FIELD, STUDY, BasePolicy, ContinuousSelection, DiscreteSelection, Estimator, Sampling
 from planner.policy.continuous_rollout import ContinuousRollout
 from planner.policy.ellipse import ellipse
 from planner.policy.entropy import entpp, entpp8
 from planner.policy.fisher import fisher
 from planner.policy.lookahead import Lookahead, lookahead
-from planner.policy.rollout import Rollout
+from planner.policy.rollout import SELECTIONS, Rollout
 from planner.policy.sopt import sopt
 from planner.policy.tokekar import tokekar_subset, tokekar_tree, tokekar_worst_case
 from planner.policy.types import Policy
 from planner.policy.vander_hook import vander_hook
-from planner.selection.sequential_halving import sequential_halving
-from planner.selection.uniform import uniform
+from planner.study.errors import StudyError
 from planner.study.scenarios import Scenario, scenario
-from planner.types import PlannerError
+
+Name = TypeVar("Name", bound=str)
 
 PLANNERS: dict[str, Policy] = {
     "base": ellipse,
@@ -35,12 +36,11 @@ PLANNERS: dict[str, Policy] = {
 }
 """Planners without settings; `rollout` is the one with."""
 
-DISCRETE = {"uniform": uniform, "sequential_halving": sequential_halving}
-CONTINUOUS = ("quadrant", "sgd", "bfgs")
-SELECTIONS = (*DISCRETE, *CONTINUOUS)
-SAMPLINGS = ("deterministic", "crn", "pmc")
-BASE_POLICIES = ("ellipse", "fisher")
-ESTIMATORS = ("map", "expected_value", "geometric_median")
+CONTINUOUS: tuple[ContinuousSelection, ...] = get_args(ContinuousSelection)
+SELECTION_NAMES: tuple[DiscreteSelection | ContinuousSelection, ...] = (*SELECTIONS, *CONTINUOUS)
+SAMPLINGS: tuple[Sampling, ...] = get_args(Sampling)
+BASE_POLICY_NAMES: tuple[BasePolicy, ...] = get_args(BasePolicy)
+ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
 ROLLOUT_ONLY = ("selection", "sampling", "budget", "base_policy")
 
 
@@ -55,9 +55,9 @@ class Cell:
     scenario: str = "2"
     config: str = "medium"
     planner: str = "base"
-    selection: str = "sequential_halving"
-    sampling: str = "crn"
-    budget: int = 3600
+    selection: str = STUDY.selection
+    sampling: str = STUDY.sampling
+    budget: int = STUDY.budget
     actions: str | None = None
     estimator: str | None = None
     base_policy: str | None = None
@@ -66,36 +66,42 @@ class Cell:
 
     def __post_init__(self) -> None:
         _one_of("planner", self.planner, (*PLANNERS, "rollout"))
-        _one_of("selection", self.selection, SELECTIONS)
+        _one_of("selection", self.selection, SELECTION_NAMES)
         _one_of("sampling", self.sampling, SAMPLINGS)
-        if self.estimator is not None:
-            _one_of("estimator", self.estimator, ESTIMATORS)
         if self.base_policy is not None:
-            _one_of("base policy", self.base_policy, BASE_POLICIES)
+            _one_of("base policy", self.base_policy, BASE_POLICY_NAMES)
         if self.budget < 1:
-            raise PlannerError(f"the budget must be at least one rollout, got {self.budget}")
+            raise StudyError(f"the budget must be at least one rollout, got {self.budget}")
         if self.seed < 0:
-            raise PlannerError(f"the seed must be 0 or more, got {self.seed}")
+            raise StudyError(f"the seed must be 0 or more, got {self.seed}")
         self.case()
 
     def case(self) -> Scenario:
+        """The scenario with what this cell changes about it. StudyError for names that do not exist."""
         grid = None if self.actions is None else parse_grid(self.actions)
         return scenario(
             self.scenario,
             self.config,
-            estimator=self.estimator,  # type: ignore[arg-type]
+            estimator=None if self.estimator is None else self._known_estimator(self.estimator),
             action_grid=grid,
             measurement_time=self.measurement_time,
         )
 
+    @staticmethod
+    def _known_estimator(name: str) -> Estimator:
+        return _one_of("estimator", name, ESTIMATORS)
+
     def policy(self) -> Policy:
+        """The planner with its settings."""
         if self.planner != "rollout":
             return PLANNERS[self.planner]
-        base = self.base_policy or ("fisher" if self.scenario == "field" else "ellipse")
-        shared: dict[str, Any] = {"sampling": self.sampling, "base_policy": base, "budget": self.budget, "threads": 1}
-        if self.selection in DISCRETE:
-            return Rollout(selection=DISCRETE[self.selection], **shared)
-        return ContinuousRollout(selection=self.selection, **shared)  # type: ignore[arg-type]
+        usual = FIELD if self.scenario == "field" else STUDY
+        base: BasePolicy = _one_of("base policy", self.base_policy or usual.base_policy, BASE_POLICY_NAMES)
+        sampling: Sampling = _one_of("sampling", self.sampling, SAMPLINGS)
+        selection: DiscreteSelection | ContinuousSelection = _one_of("selection", self.selection, SELECTION_NAMES)
+        if selection == "uniform" or selection == "sequential_halving":
+            return Rollout(SELECTIONS[selection], sampling, base, self.budget)
+        return ContinuousRollout(selection, sampling, base, self.budget)
 
     def repeatable(self) -> bool:
         """Whether the planner uses no chance, so that equal beliefs get equal decisions."""
@@ -123,10 +129,12 @@ def parse_grid(text: str) -> tuple[int, int]:
     """ "20x20" as (20, 20)."""
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isdecimal() and int(part) >= 1 for part in parts):
-        raise PlannerError(f'"{text}" is no action grid: write columns x rows, for instance 20x20')
+        raise StudyError(f'"{text}" is no action grid: write columns x rows, for instance 20x20')
     return int(parts[0]), int(parts[1])
 
 
-def _one_of(what: str, value: str, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise PlannerError(f"there is no {what} {value!r}: choose one of {', '.join(allowed)}")
+def _one_of(what: str, value: str, known: tuple[Name, ...]) -> Name:
+    for name in known:
+        if value == name:
+            return name
+    raise StudyError(f"there is no {what} {value!r}: choose one of {', '.join(known)}")

@@ -1,5 +1,8 @@
 """Fig. 3.9: courses of the deterministic lookahead for a stationary target, myopic, moving target, two platforms."""
 
+# matplotlib's own types leave the keyword arguments of its drawing methods unknown.
+# pyright: reportUnknownMemberType=false
+
 from __future__ import annotations
 
 from dataclasses import replace

@@ -3,6 +3,9 @@
 All are drawn from the missions, the cells' summaries, and `paths`: how many sample paths value a first action.
 """
 
+# matplotlib's own types leave the keyword arguments of its drawing methods unknown.
+# pyright: reportUnknownMemberType=false
+
 from __future__ import annotations
 
 from collections import defaultdict
@@ -207,7 +210,7 @@ def _rollouts(summaries: list[Summary]) -> list[Summary]:
 
 def _one_a_planner(summaries: list[Summary]) -> list[Summary]:
     """The medium one of cells that differ in the configuration only, the quickest of rollout's selections each."""
-    kept: dict[tuple, Summary] = {}
+    kept: dict[tuple[str, str | None], Summary] = {}
     for summary in sorted(summaries, key=lambda s: (s.cell.config != "medium", s.mean_s)):
         cell = summary.cell
         kept.setdefault((cell.planner, cell.selection if cell.planner == "rollout" else None), summary)

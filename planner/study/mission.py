@@ -11,7 +11,7 @@ from planner.belief.grid import GridBelief, prior_belief, update
 from planner.geometry import distance_to_convex
 from planner.motion import flight_time, turn_between
 from planner.observation import expected_bearing, wrap
-from planner.policy.ahead import PlansAhead
+from planner.policy.route import RoutePolicy
 from planner.policy.types import Policy
 from planner.sampling import random_noise
 from planner.study.scenarios import Scenario
@@ -60,7 +60,7 @@ def opening(scenario: Scenario, policy: Policy, *, repeatable: bool) -> Opening:
     belief = prior_belief(scenario.problem)
     if scenario.bearing_at_start or not repeatable:
         return Opening(belief, None, None)
-    if isinstance(policy, PlansAhead):
+    if isinstance(policy, RoutePolicy):
         return Opening(belief, None, policy.route(scenario.problem, belief, scenario.platform))
     return Opening(belief, policy(scenario.problem, belief, scenario.platform, np.random.default_rng(0)), None)
 
@@ -79,8 +79,8 @@ def fly(scenario: Scenario, policy: Policy, start: Opening, run: int, seed: int)
     best_value = np.nan
     queue: list[FloatArray] = [here] if scenario.bearing_at_start else []
     while True:
-        look = estimate(belief, problem.estimator)
-        if look.expected_rmse < problem.threshold or bearings == MOST_BEARINGS:  # (4.11)
+        estimated = estimate(belief, problem.estimator)
+        if estimated.expected_rmse < problem.threshold or bearings == MOST_BEARINGS:  # (4.11)
             break
         if not queue:
             decided = _decide(scenario, policy, start, belief, here, chance[2], at_start=bearings == 0)
@@ -107,9 +107,9 @@ def fly(scenario: Scenario, policy: Policy, start: Opening, run: int, seed: int)
         time=time,
         travel=travel,
         bearings=bearings,
-        localized=bool(look.expected_rmse < problem.threshold),
-        error=float(np.hypot(look.x - target[0], look.y - target[1])),
-        expected_rmse=look.expected_rmse,
+        localized=bool(estimated.expected_rmse < problem.threshold),
+        error=float(np.hypot(estimated.x - target[0], estimated.y - target[1])),
+        expected_rmse=estimated.expected_rmse,
         in_c95=bool(distance_to_convex(target[None], confidence_region(belief))[0] <= 0),
         target_x=float(target[0]),
         target_y=float(target[1]),
@@ -138,7 +138,7 @@ def _decide(
     at_start: bool,
 ) -> _Decided:
     platform = (float(here[0]), float(here[1]))
-    if isinstance(policy, PlansAhead):
+    if isinstance(policy, RoutePolicy):
         kept = start.route if at_start else None
         route = policy.route(scenario.problem, belief, platform) if kept is None else kept
         return _Decided(list(route), 0, np.nan)

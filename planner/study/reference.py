@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +26,7 @@ _SCENARIO_2 = {
 _TABLE_4_2_ROLLOUT = {"selection": "uniform", "sampling": "deterministic", "budget": 3200}
 
 
-def printed(fields: dict) -> Printed | None:
+def printed(fields: Mapping[str, Any]) -> Printed | None:
     """The thesis' cell (Table 4.2, Scenario 3's ENTPP, the 57.3 s of sequential halving) with these settings."""
     if fields["measurement_time"] is not None:
         return None
@@ -40,7 +42,7 @@ def printed(fields: dict) -> Printed | None:
     return Printed(*_SCENARIO_2[planner][("fast", "medium", "slow").index(config)])
 
 
-def _rollout(fields: dict) -> Printed | None:
+def _rollout(fields: Mapping[str, Any]) -> Printed | None:
     if fields["actions"] not in (None, "20x20") or fields["base_policy"] not in (None, "ellipse"):
         return None
     own_map = fields["estimator"] in (None, "map")
@@ -49,7 +51,7 @@ def _rollout(fields: dict) -> Printed | None:
             return Printed(*_SCENARIO_2["rollout"][("fast", "medium", "slow").index(fields["config"])])
         if fields["estimator"] == "expected_value" and fields["config"] == "medium":
             return Printed(56.4, float("nan"), float("nan"))
-    halving = fields["selection"] == "sequential_halving" and fields["sampling"] == "crn"
+    halving: bool = fields["selection"] == "sequential_halving" and fields["sampling"] == "crn"
     if halving and own_map and fields["config"] == "medium" and 3600 <= fields["budget"] <= 10800:
         return Printed(57.3, 0.6, float("nan"))
     return None

@@ -9,10 +9,10 @@ from typing import Any
 import pandas as pd
 
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.figures import FIGURES
 from planner.study.store import read_results
 from planner.study.table import Summary, summarize
-from planner.types import PlannerError
 
 _SETTINGS = tuple(Cell.__dataclass_fields__)
 
@@ -22,25 +22,25 @@ def report(
 ) -> tuple[list[Summary], list[Path]]:
     """Summaries of all cells in `directory`, and the PNG files drawn into `figures`.
 
-    remark: told which figures were left out, and what they need. paths: on how many sample paths first actions are
-    valued.
+    remark: called for each figure that is left out, with what it needs. paths: on how many sample paths first actions
+    are valued.
     """
     if paths < 2:
-        raise PlannerError(f"first actions are valued on 2 sample paths or more, got {paths}")
+        raise StudyError(f"first actions are valued on 2 sample paths or more, got {paths}")
     results = read_results(directory)
     summaries = [summarize(cell_of(missions), missions) for _, missions in results.groupby("cell", sort=True)]
     try:
         figures.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise PlannerError(f"{figures}: cannot hold figures ({error.strerror}); choose another directory") from error
-    drawn = []
+        raise StudyError(f"{figures}: cannot hold figures ({error.strerror}); choose another directory") from error
+    drawn: list[Path] = []
     for name, (draw, needs) in FIGURES.items():
         figure = draw(results, summaries, paths)
         if figure is None:
             remark(f"no {name}.png: it needs {needs}")
             continue
         path = figures / f"{name}.png"
-        figure.savefig(path, dpi=110, bbox_inches="tight")
+        figure.savefig(path, dpi=110, bbox_inches="tight")  # pyright: ignore[reportUnknownMemberType]
         drawn.append(path)
     return summaries, drawn
 

@@ -1,34 +1,35 @@
-"""Flies the missions of a cell: here, in several processes, or on a Dask cluster; goes on where it was broken off."""
+"""Flies the missions of a cell: here, in several processes, or on a Dask cluster; resumes where it was interrupted."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from functools import lru_cache
+from functools import lru_cache, partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any, cast
 
 import pandas as pd
 
 from planner.policy.types import Policy
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.mission import Mission, Opening, fly, opening
 from planner.study.scenarios import Scenario
 from planner.study.store import Results
-from planner.types import PlannerError
 
 BLOCK_SECONDS = 2.0
-"""Work is handed out in blocks of about so long, so that progress shows and little is lost."""
+"""Work is handed out in blocks of about this length, so that progress shows and little is lost."""
 
 WRITE_EVERY = 10.0
 """s between writes of the results file."""
 
 Progress = Callable[[int], None]
-"""Told how many more missions are done."""
+"""Called with how many more missions are done."""
 
 Remark = Callable[[str], None]
-"""Told what the user should know."""
+"""Called with what the user should know."""
 
 
 def run_cell(
@@ -47,7 +48,7 @@ def run_cell(
     either: mission k is decided by the cell and k alone.
     """
     if runs < 1 or workers < 1:
-        raise PlannerError(f"runs and workers must be 1 or more, got {runs} and {workers}")
+        raise StudyError(f"runs and workers must be 1 or more, got {runs} and {workers}")
     results = Results(directory, cell)
     if results.stale:
         remark(f"{results.path}: {results.stale} missions were flown by another version of the planner, flown again")
@@ -113,14 +114,14 @@ def _on_dask(cell: Cell, blocks: list[list[int]], scheduler: str) -> Iterator[li
         from distributed import Client
         from distributed import as_completed as completed
     except ImportError as error:
-        raise PlannerError("--scheduler needs Dask: install crossfix[study]") from error
+        raise StudyError("--scheduler needs Dask: install crossfix[study]") from error
     try:
-        client = Client(scheduler, timeout=10)
+        client: Any = Client(scheduler, timeout=10)  # Dask has no types
     except (OSError, ValueError) as error:
-        raise PlannerError(f"no Dask scheduler answers at {scheduler}: {error}") from error
+        raise StudyError(f"no Dask scheduler answers at {scheduler}: {error}") from error
     with client:
         if not client.scheduler_info()["workers"]:
-            raise PlannerError(f"the Dask scheduler at {scheduler} has no workers: start `dask worker {scheduler}`")
-        jobs = client.map(lambda block: fly_block(cell, block), blocks, pure=False)
-        for job in completed(jobs):
+            raise StudyError(f"the Dask scheduler at {scheduler} has no workers: start `dask worker {scheduler}`")
+        jobs: list[Any] = client.map(partial(fly_block, cell), blocks, pure=False)
+        for job in cast(Iterator[Any], completed(jobs)):
             yield job.result()

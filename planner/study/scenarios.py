@@ -8,15 +8,17 @@ from typing import Literal
 
 import numpy as np
 
+from planner.options import Estimator
+from planner.study.errors import StudyError
 from planner.types import (
-    Estimator,
     FloatArray,
     GaussianPrior,
     LinearMotion,
-    PlannerError,
+    Prior,
     Problem,
     Ring,
     RingPrior,
+    UniformPrior,
 )
 
 ScenarioName = Literal["1", "2", "3", "field"]
@@ -50,11 +52,11 @@ def scenario(
     action_grid: tuple[int, int] | None = None,
     measurement_time: float | None = None,
 ) -> Scenario:
-    """A scenario by name, its configuration and what departs from it. PlannerError for names that do not exist."""
+    """A scenario by name, its configuration and what departs from it. StudyError for names that do not exist."""
     if name not in _SCENARIOS:
-        raise PlannerError(f"there is no scenario {name!r}: choose one of {', '.join(_SCENARIOS)}")
+        raise StudyError(f"there is no scenario {name!r}: choose one of {', '.join(_SCENARIOS)}")
     if config not in MEASUREMENT_TIMES:
-        raise PlannerError(f"there is no configuration {config!r}: choose one of {', '.join(MEASUREMENT_TIMES)}")
+        raise StudyError(f"there is no configuration {config!r}: choose one of {', '.join(MEASUREMENT_TIMES)}")
     made = _SCENARIOS[name](MEASUREMENT_TIMES[config])
     problem = made.problem
     if estimator is not None:
@@ -63,16 +65,18 @@ def scenario(
         problem = replace(problem, action_grid=action_grid, action_spacing=None)
     if measurement_time is not None:
         if not 0 <= measurement_time < np.inf:
-            raise PlannerError(f"the measurement time must be a number of seconds, 0 or more, got {measurement_time}")
+            raise StudyError(f"the measurement time must be a number of seconds, 0 or more, got {measurement_time}")
         problem = replace(problem, measurement_time=measurement_time)
     return replace(made, problem=problem)
 
 
 def rectangle(width: float, height: float) -> Ring:
+    """(4, 2) m, its south-west corner at the origin."""
     return np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
 
 
-def _thesis_problem(measurement_time: float, **changes) -> Problem:
+def _thesis_problem(measurement_time: float, prior: Prior | None = None) -> Problem:
+    """The numbers that scenarios 1 to 3 share; prior None: uniform."""
     square = (rectangle(300.0, 300.0),)
     return Problem(
         area=square,
@@ -81,7 +85,7 @@ def _thesis_problem(measurement_time: float, **changes) -> Problem:
         threshold=5.0,
         measurement_time=measurement_time,
         motion=LinearMotion(5.0),
-        **changes,
+        prior=UniformPrior() if prior is None else prior,
     )
 
 
@@ -123,7 +127,8 @@ def _three(measurement_time: float) -> Scenario:
         return np.array([300.0 + radius * np.cos(angle), 300.0 + radius * np.sin(angle)])
 
     problem = replace(
-        _thesis_problem(measurement_time, prior=RingPrior(300.0, 300.0, inner, outer), estimator="expected_value"),
+        _thesis_problem(measurement_time, RingPrior(300.0, 300.0, inner, outer)),
+        estimator="expected_value",
         area=around,
         flight_area=None,
     )

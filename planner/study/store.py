@@ -11,9 +11,10 @@ import numpy as np
 import pandas as pd
 
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.fingerprint import fingerprint
 from planner.study.mission import Mission
-from planner.types import PlannerError
+from planner.types import BoolArray
 
 CODE = "code"
 """Column with the fingerprint of the planner that flew the mission."""
@@ -22,7 +23,7 @@ COLUMNS = [field.name for field in fields(Mission)]
 
 
 class Results:
-    """The missions of one cell flown so far. A study that was broken off goes on with those that are missing.
+    """The missions of one cell flown so far. A study that was interrupted goes on with those that are missing.
 
     stale: missions on disk that another version of the planner flew; they do not count and go with the next write.
     """
@@ -32,18 +33,18 @@ class Results:
         self._cell = cell
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            self._frame = pd.read_parquet(self.path) if self.path.exists() else pd.DataFrame(columns=[*COLUMNS, CODE])
+            frame = pd.read_parquet(self.path) if self.path.exists() else pd.DataFrame(columns=[*COLUMNS, CODE])
         except (OSError, ValueError) as error:
-            raise PlannerError(f"{self.path}: cannot hold results ({error}); choose another directory") from error
-        if missing := sorted({*COLUMNS, CODE} - set(self._frame.columns)):
-            raise PlannerError(f"{self.path}: lacks the columns {', '.join(missing)}; move it away to start afresh")
-        current = self._frame[CODE].to_numpy(dtype=object) == fingerprint()
+            raise StudyError(f"{self.path}: cannot hold results ({error}); choose another directory") from error
+        if missing := sorted({*COLUMNS, CODE} - set(frame.columns)):
+            raise StudyError(f"{self.path}: lacks the columns {', '.join(missing)}; move it away to start afresh")
+        current: BoolArray = frame[CODE].to_numpy(dtype=object) == fingerprint()
         self.stale = int(np.count_nonzero(~current))
-        self._frame = self._frame.loc[current]
+        self._frame: pd.DataFrame = frame.loc[current]
 
     def missing(self, runs: int) -> list[int]:
         """Run numbers 0 .. runs - 1 that have not been flown."""
-        have = set(self._frame["run"].astype(int)) if len(self._frame) else set()
+        have: set[int] = set(self._frame["run"].to_numpy(dtype=int).tolist())
         return [run for run in range(runs) if run not in have]
 
     def add(self, missions: Iterable[Mission]) -> None:
@@ -64,14 +65,14 @@ class Results:
 
 
 def read_results(directory: Path) -> pd.DataFrame:
-    """All cells in a directory, one row a mission. PlannerError when there are none."""
+    """All cells in a directory, one row a mission. StudyError when there are none."""
     files = sorted(directory.glob("*.parquet"))
     if not files:
-        raise PlannerError(f"{directory}: holds no study results; make some with `crossfix study run`")
+        raise StudyError(f"{directory}: holds no study results; make some with `crossfix study run`")
     try:
         return pd.concat([_labelled(file) for file in files], ignore_index=True)
     except (OSError, ValueError, KeyError) as error:
-        raise PlannerError(f"{directory}: a results file cannot be read ({error})") from error
+        raise StudyError(f"{directory}: a results file cannot be read ({error})") from error
 
 
 def _labelled(file: Path) -> pd.DataFrame:

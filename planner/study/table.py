@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from planner.study.cell import Cell
 from planner.study.reference import Printed, printed
+from planner.types import FloatArray
 
 Z95 = 1.959964
 
@@ -83,7 +83,7 @@ def _mean(missions: pd.DataFrame, column: str) -> float:
     return float(missions[column].to_numpy(dtype=float).mean())
 
 
-def half_width(values: np.ndarray) -> float:
+def half_width(values: FloatArray) -> float:
     """Of the 95 % interval of the mean."""
     return float(Z95 * values.std(ddof=1) / math.sqrt(len(values))) if len(values) > 1 else math.nan
 

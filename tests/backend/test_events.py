@@ -8,10 +8,13 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from backend.events import BearingMeasured, MissionEnded, Recorded
+from backend.events import BearingMeasured, CraftSource, ImportSource, MissionEnded, PersonSource, Recorded
+from backend.reasons import Interrupted
 from backend.spec import Place
 
 BEARING: dict[str, Any] = {
+    "emitter_id": "emitter-1",
+    "source": CraftSource(craft_id="craft-1"),
     "bearing_id": "b",
     "sweep_id": "s",
     "place_number": 1,
@@ -46,6 +49,19 @@ def test_what_is_made_can_be_written_and_read_back() -> None:
         seq=1,
         mission_id="m",
         at_utc="2026-01-01T00:00:00Z",  # type: ignore[arg-type]
-        event=MissionEnded(outcome="failed", reason="interrupted", mission_time_s=0.0),
+        event=MissionEnded(outcome="failed", reason=Interrupted("unreadable"), mission_time_s=0.0),
     )
     assert Recorded.model_validate_json(record.model_dump_json()) == record
+
+
+@pytest.mark.parametrize(
+    "source", [CraftSource(craft_id="craft-2"), ImportSource(recording_id="r"), PersonSource(name="ben")]
+)
+def test_a_bearing_keeps_its_source(source: CraftSource | ImportSource | PersonSource) -> None:
+    made = BearingMeasured(**{**BEARING, "source": source})
+    assert BearingMeasured.model_validate_json(made.model_dump_json()).source == source
+
+
+def test_a_fact_names_its_craft_or_emitter_by_an_id() -> None:
+    with pytest.raises(ValidationError, match="emitter_id"):
+        BearingMeasured(**{**BEARING, "emitter_id": "no id: blanks"})

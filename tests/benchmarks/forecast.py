@@ -1,19 +1,25 @@
 """Did "localized in about ..." come true? Every plan of flown missions beside what then happened.
 
-    python -m tests.benchmarks.forecast data/crossfix.sqlite [more databases]
+    python -m tests.benchmarks.forecast data/crossfix.sqlite [more databases] [--out FOLDER]
 
 Only missions that localized count; times in seconds of the mission.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import sqlite3
 import statistics
-import sys
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.pages import markdown
+from tests.benchmarks.figures.record import Column, Figure, Table
+from tests.benchmarks.figures.writer import add_out, plain, write
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +30,7 @@ class Said:
     happened_s: float
 
 
-def said_in(database: str) -> list[Said]:
+def said_in(database: Path) -> list[Said]:
     """Forecasts of the database's localized missions; the last word before each flight counts."""
     with sqlite3.connect(f"file:{database}?mode=ro", uri=True) as connection:
         rows = connection.execute(
@@ -48,18 +54,53 @@ def said_in(database: str) -> list[Said]:
     ]
 
 
-def report(said: Iterable[Said]) -> None:
-    by_place: dict[int, list[Said]] = defaultdict(list)
+COLUMNS = ("place", "plans", "expected, s", "happened, s", "happened/expected", "within the 90 % figure")
+DECIMALS = (0, 0, 0, 0, 2, 2)
+
+
+def by_place(said: Iterable[Said]) -> Table:
+    """A row for each place's number; the ratio is a median, the times are means."""
+    groups: dict[int, list[Said]] = defaultdict(list)
     for one in said:
-        by_place[one.place_number].append(one)
-    print("place   plans  expected, s  happened, s  happened/expected  within the 90 % figure")
-    for number, ones in sorted(by_place.items()):
+        groups[one.place_number].append(one)
+    rows = []
+    for number, ones in sorted(groups.items()):
         ratio = statistics.median(one.happened_s / one.mean_s for one in ones)
-        within = sum(one.happened_s <= one.p90_s for one in ones) / len(ones)
         expected = statistics.fmean(one.mean_s for one in ones)
         happened = statistics.fmean(one.happened_s for one in ones)
-        print(f"{number:5} {len(ones):7} {expected:12.0f} {happened:12.0f} {ratio:18.2f} {within:23.2f}")
+        rows.append((number, len(ones), expected, happened, ratio, within_90(ones)))
+    columns = tuple(Column(name=name, decimals=places) for name, places in zip(COLUMNS, DECIMALS, strict=True))
+    return Table(name="places", columns=columns, rows=tuple(rows))
+
+
+def within_90(said: Sequence[Said]) -> float:
+    """Share of the forecasts whose 90 % time was kept."""
+    return sum(one.happened_s <= one.p90_s for one in said) / len(said)
+
+
+def figures(said: Sequence[Said]) -> list[Figure]:
+    ratio = statistics.median(one.happened_s / one.mean_s for one in said)
+    return [
+        plain("plans", len(said), ""),
+        plain("time that followed over time expected, median", round(ratio, 2), "times"),
+        plain("within the 90 % time", round(100.0 * within_90(said), 1), "%"),
+    ]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("databases", nargs="+", type=Path)
+    add_out(parser)
+    given = parser.parse_args()
+    begun = begin(__file__)
+    said = [one for database in given.databases for one in said_in(database)]
+    if not said:
+        parser.exit(1, "no mission in these databases localized after a forecast\n")
+    table = by_place(said)
+    print(markdown(table))
+    made = figures(said)
+    write(given.out, "forecast", "Forecasts", begun, made, tables=[table], page="sensor-faults.md#demo-missions")
 
 
 if __name__ == "__main__":
-    report([one for database in sys.argv[1:] for one in said_in(database)])
+    main()

@@ -22,21 +22,23 @@ import signal
 import sys
 import tempfile
 import time
-from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import httpx
 
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import add_out, write
+from tests.benchmarks.kill_findings import Findings, figures, runs
 from tests.conftest import PostgresCluster, postgres_programs, postgres_user
 from tests.system.console import Console, Event, console, simulated_vehicle
 
-HOLD_WITHIN_S = 5.0
 START_PATIENCE_S = 120.0
-ENDED = ("done", "aborted", "failed")
+DOWN = "ground"
+"""The craft's last phase: the mission has ended and it is down."""
 FLYING = ("taking_off", "planning", "flying", "measuring")
 """The mission in the server's hands: no phase in which one is after a restart."""
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
@@ -135,48 +137,14 @@ class Servers:
             await self._zygote.wait()
 
 
-@dataclass
-class Findings:
-    kills: int = 0
-    phases: Counter[str] = field(default_factory=Counter)
-    found_in: Counter[str] = field(default_factory=Counter)
-    acknowledged: int = 0
-    bearings: int = 0
-    missions: int = 0
-    lost: int = 0
-    beliefs_compared: int = 0
-    beliefs_changed: int = 0
-    late_failsafes: int = 0
-    taken_for_a_pilot: int = 0
-    hold_s: dict[str, list[float]] = field(default_factory=lambda: {"forked": [], "whole": []})
+def taken_by_a_pilot(event: dict[str, Any]) -> bool:
+    return event["kind"] == "authority_changed" and event["authority"]["who"] == "pilot"
 
-    def summary(self) -> dict[str, Any]:
-        def spread(values: list[float]) -> dict[str, float] | None:
-            ordered = sorted(values)
-            if not ordered:
-                return None
-            median, worst = ordered[len(ordered) // 2], ordered[-1]
-            return {"starts": len(ordered), "median": round(median, 2), "most": round(worst, 2)}
 
-        return {
-            "kills": self.kills,
-            "killed_in": dict(self.phases.most_common()),
-            "found_in": dict(self.found_in.most_common()),
-            "missions": self.missions,
-            "acknowledged_facts": self.acknowledged,
-            "acknowledged_bearings": self.bearings,
-            "lost_or_changed_facts": self.lost,
-            "beliefs_compared": self.beliefs_compared,
-            "beliefs_changed": self.beliefs_changed,
-            "failsafes_right_after_a_restart": self.late_failsafes,
-            "taken_for_a_pilot": self.taken_for_a_pilot,
-            "start_to_hold_s": {kind: spread(values) for kind, values in self.hold_s.items()},
-        }
-
-    @property
-    def good(self) -> bool:
-        late = [s for values in self.hold_s.values() for s in values if s > HOLD_WITHIN_S]
-        return not (self.lost or self.beliefs_changed or self.taken_for_a_pilot or late)
+def silence_answered(event: dict[str, Any]) -> bool:
+    """The autopilot's failsafe acted because it heard nothing from us."""
+    reason = event.get("reason") or {}
+    return reason.get("code") == "failsafe_flies" and reason["because"] == "silence"
 
 
 def last_belief(events: list[Event]) -> tuple[tuple[str, ...], str] | None:
@@ -204,7 +172,7 @@ async def phase_after_restart(client: httpx.AsyncClient, mission_id: str) -> str
 
 
 async def all_shown(shown: Console, count: int) -> None:
-    """So many events; the websocket is opened again when a busy server closed it, as the page does."""
+    """Wait for this number of events; reopen the websocket when a busy server closed it, as the page does."""
     async with asyncio.timeout(60):
         while len(shown.events) < count:
             if shown.cut_off:
@@ -241,7 +209,7 @@ async def compare(shown: Console, before: list[Event], found: Findings) -> None:
     restarts = len(shown.of("server_restarted"))
 
     def rebuilt_or_over() -> bool:
-        if shown.phases[-1] in ENDED:
+        if shown.phases[-1] == DOWN:
             return True
         kinds = [r["event"]["kind"] for r in shown.events]
         return restarts > 0 and "belief_updated" in kinds[len(kinds) - kinds[::-1].index("server_restarted") :]
@@ -273,13 +241,13 @@ async def loop(
                     await shown.watch()
                     await compare(shown, before, found)
                 if found.kills >= kills:
-                    if mission_id and shown.phases[-1] not in ENDED:
+                    if mission_id and shown.phases[-1] != DOWN:
                         await shown.order("abort")
                     vehicle = await simulated_vehicle(folder)
                     server.kill()
                     await vehicle.stop()
                     return found
-                if not mission_id or shown.phases[-1] in ENDED:
+                if not mission_id or shown.phases[-1] == DOWN:
                     await shown.close()
                     shown.events.clear()
                     await new_mission(shown)
@@ -297,8 +265,8 @@ async def loop(
                 found.bearings += sum(r["event"]["kind"] == "bearing_measured" for r in new)
                 since_kill = before[seen:]
                 seen = len(before)
-                found.taken_for_a_pilot += sum(r["event"]["kind"] == "control_taken" for r in since_kill)
-                found.late_failsafes += sum("had not heard" in r["event"].get("text", "") for r in since_kill)
+                found.taken_for_a_pilot += sum(taken_by_a_pilot(r["event"]) for r in since_kill)
+                found.late_failsafes += sum(silence_answered(r["event"]) for r in since_kill)
             await asyncio.sleep(chance.uniform(*away))
             if sys.stderr.isatty() or found.kills % 20 == 0:
                 print(json.dumps(found.summary()), file=sys.stderr, flush=True)
@@ -364,8 +332,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=3)
     parser.add_argument("--whole", type=int, default=10, metavar="N", help="every N-th start is a whole one; 0: none")
     parser.add_argument("--away", type=float, nargs=2, default=(0.0, 0.0), metavar="S", help="no server for so long")
-    found = asyncio.run(run(**vars(parser.parse_args())))
+    add_out(parser)
+    given = vars(parser.parse_args())
+    out, begun = given.pop("out"), begin(__file__)
+    found = asyncio.run(run(**given))
     print(json.dumps(found.summary(), indent=2))
+    database = {"sqlite": "SQLite", "postgresql": "PostgreSQL"}[given["database"]]
+    made = figures(found, database, begun.load)
+    name, title, page = f"kill_{given['database']}", f"Kill -9, {database}", "faults-in-flight.md#kill--9"
+    write(out, name, title, begun, made, tables=[runs(found, begun)], page=page)
     sys.exit(not found.good)
 
 

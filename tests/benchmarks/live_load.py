@@ -1,11 +1,11 @@
 """How the live channel and the abort hold up under viewers. Prints figures; run it by hand:
 
-    python tests/benchmarks/live_load.py fanout --viewers 100 --stalled 5 --hertz 10 --seconds 60
-    python tests/benchmarks/live_load.py abort --viewers 50 --stalled 5 --times 200
+    python -m tests.benchmarks.live_load fanout --viewers 100 --stalled 5 --hertz 10 --seconds 600
+    python -m tests.benchmarks.live_load abort --viewers 50 --stalled 5 --times 200
 
 fanout: a server process publishes telemetry (and an event a second, a belief every five); this process reads with all
 viewers and measures from the publish to the read. abort: a whole server starts one mission after the other on a
-simulated vehicle and is told ABORT in take-off or soon after, while everybody watches; measured from the request's
+simulated vehicle and gets ABORT in take-off or soon after, while everybody watches; measured from the request's
 arrival in the server to the first command (hold) handed to the vehicle.
 """
 
@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import base64
 import json
 import os
 import random
@@ -27,7 +26,6 @@ from collections import Counter
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, nullcontext
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -35,25 +33,29 @@ from uuid import uuid4
 import numpy as np
 import psutil
 import uvicorn
-import websockets
 
 from backend.api.services import Services
-from backend.events import HoldOrdered, MissionDrafted
+from backend.events import HoldOrdered, MissionDrafted, Recorded
 from backend.live.hub import Hub
 from backend.main import create_app, server_config
-from backend.mission.ports import Status
+from backend.ports import CraftStatus, Status
 from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
 from backend.store.opening import open_journal
-from hardware.readings import GeoPoint, Telemetry
+from hardware.readings import Place, Telemetry
 from hardware.sim.autopilot.launch import find_simulated
 from planner.belief.grid import GridBelief
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, wanted, write
+from tests.benchmarks.live_viewers import Tally, stalled_viewer, view, viewers_only
 
+MODULE = "tests.benchmarks.live_load"
 SPEC = MissionSpec(name="load", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
 TELEMETRY = Telemetry(
     connected=True,
     at_s=0.0,
-    position=GeoPoint(50.623412, 7.204651),
+    position=Place(50.623412, 7.204651),
     altitude_amsl_m=160.3,
     altitude_relative_m=40.3,
     heading_deg=123.4,
@@ -61,7 +63,7 @@ TELEMETRY = Telemetry(
     velocity_east_m_s=-1.1,
     velocity_down_m_s=0.1,
     battery_percent=81.0,
-    gps_fix="3d",
+    gps_fix="3D",
     satellites=14,
     armed=True,
     in_air=True,
@@ -77,16 +79,26 @@ async def publish(services: Services, hertz: float) -> None:
     y, x = np.mgrid[0:100, 0:100]
     density = np.exp(-((x - 30) ** 2 + (y - 60) ** 2) / 400.0)
     belief = GridBelief(density / density.sum(), 0.0, 0.0, 3.0, (), (), 3, True)
-    status = Status("load", "flying", "flying to place 3", None, "ok", -71.0, 0.1, 31.0, "ok")
+    craft = CraftStatus("craft-1", "load", "flying", "ok", -71.0, 0.1, 31.0)
+    status = Status("load", "flying", (craft,), "ok")
+    recorded: Sequence[Recorded] = []
     began = time.monotonic()
     while True:
         now = time.time()
-        hub.telemetry(replace(TELEMETRY, at_s=now, position_at_s=now, heading_at_s=now), now)
+        hub.telemetry("craft-1", replace(TELEMETRY, at_s=now, position_at_s=now, heading_at_s=now), now)
         if tick % round(hertz) == 0:
             hub.status(status)
-            hub.events(await journal.append("load", [HoldOrdered(by="load", reason="x" * 300)]))
+            recorded = await journal.append("load", [HoldOrdered(craft_id="craft-1", by="x" * 300, reason=None)])
+            hub.events(recorded)
         if tick % round(5 * hertz) == 0:
-            hub.belief("load", 3, belief, [(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.61)])
+            hub.belief(
+                "load",
+                "emitter-1",
+                recorded[-1].seq,
+                3,
+                belief,
+                [(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.61)],
+            )
         tick += 1
         await asyncio.sleep(max(0.0, began + tick / hertz - time.monotonic()))
 
@@ -106,53 +118,6 @@ async def serve_fanout(port: int, folder: str, hertz: float) -> None:
             publishing.cancel()
 
     await uvicorn.Server(server_config(settings, create_app(settings, opening))).serve()
-
-
-# Viewers
-
-
-def stalled_viewer(port: int, mission_id: str) -> socket.socket:
-    """Shakes hands and never reads again."""
-    client = socket.socket()
-    client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
-    client.connect(("127.0.0.1", port))
-    key = base64.b64encode(os.urandom(16)).decode()
-    head = f"GET /api/live?mission={mission_id} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
-    client.sendall(
-        f"{head}Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
-    )
-    return client
-
-
-class Tally:
-    """Delays in ms of telemetry messages, and what each viewer got."""
-
-    def __init__(self) -> None:
-        self.delays_ms: list[float] = []
-        self.dropped = 0
-        self.gaps = 0
-        self.messages = 0
-        self.bytes = 0
-
-
-async def view(port: int, mission_id: str, tally: Tally, lite: bool = False) -> None:
-    last_seq = 0
-    url = f"ws://127.0.0.1:{port}/api/live?mission={mission_id}&lite={int(lite)}"
-    async with websockets.connect(url, compression=None, max_queue=None) as websocket:
-        async for content in websocket:
-            now = time.time()
-            tally.messages += 1
-            tally.bytes += len(content)
-            if isinstance(content, bytes):
-                continue
-            if content.startswith('{"type":"telemetry"'):
-                message = json.loads(content)
-                tally.delays_ms.append(1e3 * (now - datetime.fromisoformat(message["at_utc"]).timestamp()))
-                tally.dropped = max(tally.dropped, message["dropped"])
-            elif content.startswith('{"type":"event"'):
-                seq = json.loads(content)["recorded"]["seq"]
-                tally.gaps += seq != last_seq + 1
-                last_seq = seq
 
 
 def percentile(values: Sequence[float], share: float) -> float:
@@ -178,7 +143,7 @@ async def until_answers(port: int) -> None:
 async def fanout(viewers: int, stalled: int, hertz: float, seconds: float) -> dict[str, Any]:
     port = free_port()
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, __file__, "serve-fanout", str(port), folder, str(hertz)]
+        command = [sys.executable, "-m", MODULE, "serve-fanout", str(port), folder, str(hertz)]
         server = await asyncio.create_subprocess_exec(*command)
         watching: list[asyncio.Task[None]] = []
         sockets: list[socket.socket] = []
@@ -252,17 +217,17 @@ async def order(port: int, mission_id: str, kind: str) -> dict[str, Any]:
 
 
 async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
-    from backend.mission.patient_vehicle import PatientVehicle
+    from backend.craft.reconnecting_vehicle import ReconnectingVehicle
     from backend.wiring import open_services
 
     held_at: list[float] = []
-    hold = PatientVehicle.hold
+    hold = ReconnectingVehicle.hold
 
-    async def timed_hold(vehicle: PatientVehicle) -> None:
+    async def timed_hold(self: ReconnectingVehicle) -> None:
         held_at.append(time.perf_counter())
-        await hold(vehicle)
+        await hold(self)
 
-    PatientVehicle.hold = timed_hold
+    ReconnectingVehicle.hold = timed_hold
     port, chance = free_port(), random.Random(1)
     delays_ms, answers_ms, phases = [], [], Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
@@ -285,7 +250,7 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
             )["spec"]
             spec["flight"] |= {"altitude_relative_m": 6.0, "minimum_altitude_relative_m": 3.0}
             watching = await asyncio.create_subprocess_exec(
-                sys.executable, __file__, "viewers", str(port), str(viewers), str(stalled),
+                sys.executable, "-m", MODULE, "viewers", str(port), str(viewers), str(stalled),
                 stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE,
             )  # fmt: skip
             assert watching.stdin is not None
@@ -300,7 +265,7 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
                         await asyncio.sleep(0.2)
                 await asyncio.sleep(chance.uniform(0.1, 1.5))
                 held_at.clear()
-                phase = services.missions.status().phase or ""
+                phase = services.missions.display.status().phase or ""
                 asked = time.perf_counter()
                 reply = await order(port, mission, "abort")
                 answered = time.perf_counter()
@@ -326,25 +291,32 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
     }
 
 
-async def viewers_only(port: int, viewers: int, stalled: int) -> None:
-    """Reads mission ids, one a line; all viewers go over to the new one, then a line says so."""
-    tasks: list[asyncio.Task[None]] = []
-    sockets: list[socket.socket] = []
-    while mission_id := (await asyncio.to_thread(sys.stdin.readline)).strip():
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        for client in sockets:
-            client.close()
-        sockets = [await asyncio.to_thread(stalled_viewer, port, mission_id) for _ in range(stalled)]
-        tallies = [Tally() for _ in range(viewers)]
-        tasks = [asyncio.create_task(view(port, mission_id, tally)) for tally in tallies]
-        while not all(tally.messages for tally in tallies):  # noqa: ASYNC110 (tasks of this process join)
-            await asyncio.sleep(0.02)
-        print("joined", flush=True)
-    for task in tasks:
-        task.cancel()
-    await asyncio.gather(*tasks, return_exceptions=True)
+def fanout_figures(found: dict[str, Any]) -> list[Figure]:
+    """Memory: the last of ten looks against the first."""
+    first_mb, *_, last_mb = found["server_rss_mb"]
+    seconds = f"{found['seconds']:.0f} s"
+    return [
+        wanted("fanout", round(found["p99_ms"], 1), note=seconds),
+        wanted("fanout_memory", round(100.0 * (last_mb / first_mb - 1.0), 2), note=seconds),
+        plain("publish to read, median", round(found["p50_ms"], 1), "ms"),
+        plain("publish to read, worst", round(found["max_ms"], 1), "ms"),
+        plain("telemetry values read", found["messages"], "", note=f"{found['expected']:,} sent"),
+        plain("telemetry values skipped by one viewer, at most", found["dropped_at_most"], ""),
+        plain("events lost or doubled", found["event_gaps"], ""),
+        plain("viewers that dropped out", found["broken_viewers"], ""),
+        plain("server, of one core", round(100.0 * found["server_cpu_share"], 1), "%"),
+        plain("server's memory", last_mb, "MB"),
+    ]
+
+
+def abort_figures(found: dict[str, Any]) -> list[Figure]:
+    return [
+        wanted("abort", round(found["receipt_to_vehicle_p99_ms"], 1), note=f"{found['aborts']} aborts"),
+        plain("request to vehicle command, median", round(found["receipt_to_vehicle_p50_ms"], 1), "ms"),
+        plain("request to vehicle command, worst", round(found["receipt_to_vehicle_max_ms"], 1), "ms"),
+        plain("request to answer, median", round(found["answer_median_ms"], 1), "ms"),
+        *(plain(f"aborted while {phase}", count, "") for phase, count in found["in"].items()),
+    ]
 
 
 def main() -> None:
@@ -359,6 +331,8 @@ def main() -> None:
     two.add_argument("--viewers", type=int, default=50)
     two.add_argument("--stalled", type=int, default=5)
     two.add_argument("--times", type=int, default=int(os.environ.get("CROSSFIX_ABORTS", "200")))
+    for measuring in (one, two):
+        add_out(measuring)
     server = commands.add_parser("serve-fanout")
     for name, kind in (("port", int), ("folder", str), ("hertz", float)):
         server.add_argument(name, type=kind)
@@ -367,9 +341,12 @@ def main() -> None:
         only.add_argument(name, type=kind)
     given = vars(parser.parse_args())
     run = {"fanout": fanout, "abort": abort, "serve-fanout": serve_fanout, "viewers": viewers_only}
-    result = asyncio.run(run[given.pop("command")](**given))
+    kind, out, begun = given.pop("command"), given.pop("out", None), begin(__file__)
+    result = asyncio.run(run[kind](**given))
     if result is not None:
         print(json.dumps(result, indent=2))
+        title, made = {"fanout": ("Live fan-out", fanout_figures), "abort": ("Abort", abort_figures)}[kind]
+        write(out, f"live_{kind}", title, begun, made(result), page="faults-in-flight.md#viewers")
 
 
 if __name__ == "__main__":

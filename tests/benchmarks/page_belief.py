@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -24,10 +25,13 @@ from typing import Any
 import numpy as np
 
 from backend.api.suggestion import suggested_mission
-from backend.events import BearingMeasured
-from backend.mission.localization import localization
-from backend.spec import Place
+from backend.events import FIRST_CRAFT, BearingMeasured, CraftSource
+from backend.search.localization import localization
+from backend.spec import FIRST_EMITTER, Place
 from backend.wire.belief_frame import encode_belief
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 from tests.benchmarks.watched_page import share, spread, watched_page
 from tests.browser.conftest import serving
 from tests.browser.screen import Screen
@@ -86,7 +90,7 @@ def of_one_thread(work: Callable[[], Any], times: int = 9) -> float:
 def own_work() -> dict[str, dict[str, float | None]]:
     """Thread milliseconds of the server's parts after one to six bearings of a typical search."""
     home = Place(lat=50.73, lon=7.1)
-    task = localization(suggested_mission(home), home, 60.0)
+    task = localization(suggested_mission(home), home)
     noise = np.random.default_rng(1)
     measured: list[BearingMeasured] = []
     found: dict[str, list[float]] = {"update": [], "encode": [], "encode_lite": []}
@@ -94,6 +98,8 @@ def own_work() -> dict[str, dict[str, float | None]]:
         bearing = (90 - math.degrees(math.atan2(150.0 - y, 40.0 - x)) + noise.normal(0, 5)) % 360
         measured.append(
             BearingMeasured(
+                emitter_id=FIRST_EMITTER,
+                source=CraftSource(craft_id=FIRST_CRAFT),
                 bearing_id=f"b{number}",
                 sweep_id=f"s{number}",
                 place_number=number,
@@ -113,7 +119,7 @@ def own_work() -> dict[str, dict[str, float | None]]:
         corners = task.corners_lon_lat(belief)
         found["update"].append(of_one_thread(lambda: task.belief_fact(measured)))
         for name, lite in (("encode", False), ("encode_lite", True)):
-            work = lambda lite=lite: encode_belief("m", 1, belief.density, corners, lite=lite)  # noqa: B023, E731
+            work = lambda lite=lite: encode_belief("m", "e", 1, 1, belief.density, corners, lite=lite)  # noqa: B023, E731
             found[name].append(of_one_thread(work))
     return {name: {"median": share(values, 0.5), "worst": share(values, 1.0)} for name, values in found.items()}
 
@@ -133,15 +139,34 @@ def fly(bearings: int, speedup: float) -> list[dict[str, float]]:
     return stages
 
 
+def figures(stages: dict[str, Any], repaints: dict[str, Any], work: dict[str, Any]) -> list[Figure]:
+    whole = stages["whole"]
+    return [
+        wanted("painted", whole["median"], note=f"{whole['of']} bearings"),
+        plain("whole, 95 %", whole["p95"], "ms"),
+        plain("whole, worst", whole["worst"], "ms"),
+        *(plain(f"{name}, median", stages[name]["median"], "ms") for name, *_ in STAGES[:-1]),
+        plain("repaints of the map, median", repaints["median"], ""),
+        *(plain(f"{name.replace('_', ' ')}, one thread", taken["median"], "ms") for name, taken in work.items()),
+    ]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--bearings", type=int, default=12)
     parser.add_argument("--speedup", type=float, default=3.0)
+    add_out(parser)
     arguments = parser.parse_args()
+    begun = begin(__file__)
     seen = fly(arguments.bearings, arguments.speedup)
     stages = {name: spread([one[end] - one[begin] for one in seen]) for name, begin, end in STAGES}
     repaints = spread([one["repaints"] for one in seen])
-    print(json.dumps({"stages_ms": stages, "repaints": repaints, "work_ms": own_work()}))
+    if not seen:
+        sys.exit("no bearing was painted in time")
+    work = own_work()
+    print(json.dumps({"stages_ms": stages, "repaints": repaints, "work_ms": work}))
+    title, made = "A bearing's way to the screen", figures(stages, repaints, work)
+    write(arguments.out, "page_belief", title, begun, made, page="page-speed.md#a-bearings-way-to-the-screen")
 
 
 if __name__ == "__main__":

@@ -15,11 +15,15 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 import httpx
 import websockets
 
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Column, Figure, Table
+from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.browser.conftest import serving
 from tests.browser.served import Server
 
@@ -60,7 +64,7 @@ async def watch(server: Server, mission_id: str, lite: bool, seconds: float) -> 
     return counted, events
 
 
-async def both(server: Server, mission_id: str, seconds: float) -> dict[str, object]:
+async def both(server: Server, mission_id: str, seconds: float) -> dict[str, Any]:
     (normal, events), (lite, thin) = await asyncio.gather(
         watch(server, mission_id, False, seconds), watch(server, mission_id, True, seconds)
     )
@@ -74,15 +78,32 @@ async def both(server: Server, mission_id: str, seconds: float) -> dict[str, obj
     return {"kilobytes_a_minute": {"normal": told(normal), "lite": told(lite)}, "events": [len(events), len(thin)]}
 
 
+def figures(found: dict[str, Any]) -> list[Figure]:
+    sent = found["kilobytes_a_minute"]
+    return [plain(f"sent to a viewer, {kind}", sent[kind]["all"], "kB/min") for kind in ("normal", "lite")]
+
+
+def by_kind(found: dict[str, Any]) -> Table:
+    sent = found["kilobytes_a_minute"]
+    rows = tuple((kind, value, sent["lite"].get(kind, 0.0)) for kind, value in sent["normal"].items())
+    columns = tuple(Column(name=name) for name in ("message", "normal, kB/min", "lite, kB/min"))
+    return Table(name="kinds", columns=columns, rows=rows)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--minutes", type=float, default=3.0)
     parser.add_argument("--speedup", type=float, default=1.0)
+    add_out(parser)
     arguments = parser.parse_args()
+    begun = begin(__file__)
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder), arguments.speedup) as server:
         mission_id = start(server)
-        print(json.dumps(asyncio.run(both(server, mission_id, 60 * arguments.minutes))))
+        found = asyncio.run(both(server, mission_id, 60 * arguments.minutes))
+        print(json.dumps(found))
         command(server, mission_id, "abort")
+    title, page = "What a viewer is sent", "page-speed.md#what-a-viewer-is-sent"
+    write(arguments.out, "page_bytes", title, begun, figures(found), tables=[by_kind(found)], page=page)
 
 
 if __name__ == "__main__":

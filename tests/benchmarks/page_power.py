@@ -15,6 +15,9 @@ import tempfile
 import time
 from pathlib import Path
 
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.benchmarks.page_bytes import command, start
 from tests.benchmarks.watched_page import watched_page
 from tests.browser.conftest import serving
@@ -61,14 +64,14 @@ def shares(seconds: float) -> dict[str, float]:
     return {kind: round(100 * (spent_s(option) - before[kind]) / took, 1) for kind, option in KINDS.items()}
 
 
-def measured(server: Server, seconds: float) -> dict[str, object]:
+def measured(server: Server, seconds: float) -> dict[str, dict[str, float]]:
     ground = server.draft()
     with watched_page() as page:
         screen = Screen(page, server.url)
         screen.open(ground)
         screen.map_ready()
         page.wait_for_timeout(3000)
-        told: dict[str, object] = {"ground": shares(seconds / 4)}
+        told = {"ground": shares(seconds / 4)}
         mission_id = start(server)
         screen.open(mission_id)
         screen.expect_phase("measuring")
@@ -80,12 +83,25 @@ def measured(server: Server, seconds: float) -> dict[str, object]:
     return told
 
 
+def figures(found: dict[str, dict[str, float]]) -> list[Figure]:
+    return [
+        plain(f"{moment}, {'drawing process' if kind == 'drawing' else 'page process'}, of one core", share, "%")
+        for moment, spent in found.items()
+        for kind, share in spent.items()
+    ]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--seconds", type=float, default=60.0)
+    add_out(parser)
     arguments = parser.parse_args()
+    begun = begin(__file__)
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder), 1.0) as server:
-        print(json.dumps(measured(server, arguments.seconds) | {"load": round(os.getloadavg()[0], 1)}))
+        found = measured(server, arguments.seconds)
+    print(json.dumps(found | {"load": round(os.getloadavg()[0], 1)}))
+    title, page = "What watching a mission costs", "page-speed.md#what-drawing-costs"
+    write(arguments.out, "page_power", title, begun, figures(found), page=page)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,9 @@ import httpx
 import numpy as np
 from playwright.sync_api import Page, expect
 
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.benchmarks.watched_page import Counters, watched_page
 from tests.browser.conftest import serving
 from tests.browser.screen import Screen
@@ -56,10 +59,23 @@ def at_the_start(page: Page, counters: Counters) -> dict[str, float]:
     return counters.held()
 
 
+def figures(held: list[dict[str, float]], loops: int, growth_mb_an_hour: float) -> list[Figure]:
+    heap = [sample["heap_mb"] for sample in held]
+    return [
+        plain("replays", loops, ""),
+        plain("growth of the heap, straight line", growth_mb_an_hour, "MB/h"),
+        plain("heap, first sample", heap[0], "MB"),
+        plain("heap, most", max(heap), "MB"),
+        plain("DOM nodes at the end above those at the beginning", held[-1]["nodes"] - held[0]["nodes"], ""),
+    ]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--minutes", type=float, default=60.0)
-    seconds = 60.0 * parser.parse_args().minutes
+    add_out(parser)
+    given = parser.parse_args()
+    seconds, begun = 60.0 * given.minutes, begin(__file__)
     with tempfile.TemporaryDirectory() as folder, serving(Path(folder), speedup=5.0) as server, watched_page() as page:
         page.goto(f"{server.url}#/")
         mission_id = fly(server)
@@ -81,7 +97,10 @@ def main() -> None:
         held.append(at_the_start(page, counters))
         at_s.append(time.monotonic() - began)
     slope = np.polyfit(at_s, [sample["heap_mb"] for sample in held], 1)[0]
-    print(json.dumps({"loops": loops, "growth_mb_an_hour": round(3600 * float(slope), 2), "held": held}))
+    growth = round(3600 * float(slope), 2)
+    print(json.dumps({"loops": loops, "growth_mb_an_hour": growth, "held": held}))
+    made = figures(held, loops, growth)
+    write(given.out, "page_replay", "Replay for an hour", begun, made, page="page-speed.md#frames-and-memory")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """How the search bears a bad sensor: whole missions without sockets, simulated sweeps through finder and localizer.
 
-    python -m tests.benchmarks.sensor_faults --missions 1000        (or: make sensor-faults)
+    python -m tests.benchmarks.sensor_faults --missions 1000 --out docs/measurements        (or: make sensor-faults)
 
 Every mission has an emitter somewhere in the suggested area and the field system's specification; the base policy
 chooses the places, the direction finder reads every sweep of the simulated world, a rejected sweep is taken again as
@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import math
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,30 +20,35 @@ import numpy as np
 from shapely import Point, Polygon
 
 from backend.api.suggestion import HEIGHT_M, WIDTH_M, suggested_mission
-from backend.mission.localization import DOUBT, Localization, localization
-from backend.mission.planning import base_policy_decision
+from backend.search.localization import DOUBT, Localization, localization
+from backend.search.planning import base_policy_decision
 from backend.settings import Settings
-from backend.spec import Place
-from backend.wiring import walls
+from backend.simulation.walls import walls
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.heading_offset import heading_offset
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
-from hardware.readings import BearingReading, GeoPoint, Sweep
+from hardware.readings import BearingReading, Place, Sweep
 from hardware.sim.turn import turn_once
 from hardware.sim.world import Emitter, FrontEnd, RadioLink, World
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
 from planner.belief.verdict import points_at, verdict
+from planner.reasons import BearingsDisagree, EstimateContradicted
 from planner.types import Bearing, Peak
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.pages import markdown
+from tests.benchmarks.figures.record import Cell, Column, Figure, Table
+from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 
-HOME = GeoPoint(50.6234, 7.2046)
+HOME = Place(50.6234, 7.2046)
 FREQUENCY_HZ = 868_300_000.0
 HEIGHT_ABOVE_M = 40.0
 MOST_PLACES = 15
 HEADING_SIGMA_DEG = float(Settings.model_fields["heading_sigma_deg"].default)
 WRONG_DEG = 30.0
+CONTRADICTIONS = (EstimateContradicted, BearingsDisagree)
 OVERDRIVEN = FrontEnd(clip_dbm=-95.0)
 
 
@@ -75,6 +81,8 @@ FAULTS = (
 )
 UNCOVERED = (Fault("heading 10 degrees off", heading_deg=10.0), Fault("heading 20 degrees off", heading_deg=20.0))
 """More than the stated sigma covers: the search can only tell."""
+WANTED_FAULTS = (*(fault for fault in FAULTS if fault.name != "none" and not fault.multipath), *UNCOVERED)
+"""Walls are the world's, no fault of the sensor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,10 +174,10 @@ def as_bearing(reading: BearingReading, x: float, y: float, outlier_probability:
 
 def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectionFinder) -> Outcome:
     """One mission of the suggested specification with the base policy."""
-    home = Place(lat=HOME.lat_deg, lon=HOME.lon_deg)
+    home = HOME
     spec = suggested_mission(home)
     spec = spec.model_copy(update={"planner": spec.planner.model_copy(update={"method": "base_policy"})})
-    task = localization(spec, home, 0.0)
+    task = localization(spec, home)
     sky = make_sky(seed, fault, task.frame)
     bearings: list[Bearing] = []
     faulty: list[bool] = []
@@ -188,7 +196,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
         faulty.append(wrong)
         folded = task.belief(bearings)
         said = verdict(task.problem, task.rule, bearings, folded)
-        doubted = doubted or not said.consistent or any("contradict" in reason for reason in said.reasons)
+        doubted = doubted or not said.consistent or any(isinstance(reason, CONTRADICTIONS) for reason in said.reasons)
         belief = task.planning_belief(bearings) if folded is None else folded
         if said.localized and not offset_stands(bearings, finder.heading_sigma_deg):
             localized = True
@@ -234,30 +242,71 @@ def outcome(
     )
 
 
-def row(fault: Fault, outcomes: Sequence[Outcome]) -> str:
-    """One line of the table; figures of the claims are of the missions that said "localized"."""
+COLUMNS = (
+    Column(name="fault"),
+    Column(name="missions"),
+    Column(name="localized, %", decimals=1),
+    Column(name="truth in C95, %", decimals=1),
+    Column(name="error: median, m", decimals=1),
+    Column(name="90 %", decimals=1),
+    Column(name="99 %", decimals=0),
+    Column(name="stated, m", decimals=1),
+    Column(name="beyond 3 x stated, %", decimals=1),
+    Column(name="bearings", decimals=2),
+    Column(name="rejected sweeps", decimals=2),
+    Column(name="faulty bearings seen through"),
+    Column(name="contradiction told, %", decimals=0),
+    Column(name="common offset told, %", decimals=1),
+)
+CLAIM_COLUMNS = 6
+"""From "truth in C95" on: of the missions that said "localized", empty when none did."""
+
+
+def row(fault: Fault, outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
+    """The cells under `COLUMNS`."""
     claims = [o for o in outcomes if o.localized]
-    errors = np.array([o.error_m for o in claims])
-    stated = np.array([o.stated_m for o in claims])
-    inside = np.mean([o.in_c95 for o in claims])
-    half = 1.96 * math.sqrt(max(float(inside * (1.0 - inside)), 0.25 / len(claims)) / len(claims))
     bad, known = sum(o.faulty for o in outcomes), sum(o.known for o in outcomes)
+    of_claims: tuple[Cell, ...] = (None,) * CLAIM_COLUMNS
+    if claims:
+        errors, stated = np.array([o.error_m for o in claims]), np.array([o.stated_m for o in claims])
+        of_claims = (
+            truth_percent(claims),
+            *(float(value) for value in (np.median(errors), *np.quantile(errors, (0.9, 0.99)), np.mean(stated))),
+            100.0 * float(np.mean(errors > 3.0 * stated)),
+        )
     return (
-        f"| {fault.name} | {len(outcomes)} | {100 * len(claims) / len(outcomes):.1f} % | "
-        f"{100 * inside:.1f} ± {100 * half:.1f} % | {np.median(errors):.1f} | {np.quantile(errors, 0.9):.1f} | "
-        f"{np.quantile(errors, 0.99):.0f} | {np.mean(stated):.1f} | {100 * np.mean(errors > 3.0 * stated):.1f} % | "
-        f"{np.mean([o.bearings for o in outcomes]):.2f} | {np.mean([o.rejected for o in outcomes]):.2f} | "
-        f"{f'{known} of {bad}' if bad else '-'} | {100 * np.mean([o.doubted for o in outcomes]):.0f} % | "
-        f"{100 * np.mean([o.offset_told for o in outcomes]):.1f} % |"
+        fault.name,
+        len(outcomes),
+        100.0 * len(claims) / len(outcomes),
+        *of_claims,
+        float(np.mean([o.bearings for o in outcomes])),
+        float(np.mean([o.rejected for o in outcomes])),
+        f"{known} of {bad}" if bad else None,
+        100.0 * float(np.mean([o.doubted for o in outcomes])),
+        100.0 * float(np.mean([o.offset_told for o in outcomes])),
     )
 
 
-HEADER = (
-    "| fault | missions | localized | truth in C95 | error: median, m | 90 % | 99 % | stated, m | beyond 3 x stated | "
-    "bearings | rejected sweeps | faulty bearings seen through | contradiction told | common offset told |\n"
-    + "|---" * 14
-    + "|"
-)
+def truth_percent(claims: Sequence[Outcome]) -> tuple[float, float]:
+    """(share of the claims with the truth in C95, half its 95 % interval), in %."""
+    inside = float(np.mean([o.in_c95 for o in claims]))
+    half = 1.96 * math.sqrt(max(inside * (1.0 - inside), 0.25 / len(claims)) / len(claims))
+    return 100.0 * inside, 100.0 * half
+
+
+def figures(outcomes: dict[Fault, list[Outcome]]) -> list[Figure]:
+    """Something is wanted of the faults in `WANTED_FAULTS`; a mission that crashes ends the benchmark."""
+    made = [wanted("fault_crashes", 0, note=f"{sum(map(len, outcomes.values()))} missions")]
+    for fault, flown in outcomes.items():
+        claims = [o for o in flown if o.localized]
+        if claims:
+            truth, half = (round(value, 1) for value in truth_percent(claims))
+            note = f"{len(claims)} claims of {len(flown)} missions"
+            if fault in WANTED_FAULTS:
+                made.append(wanted("fault_truth", truth, of=fault.name, ci95=half, note=note))
+            else:
+                made.append(plain(f"truth in C95, {fault.name}", truth, "%", ci95=half, note=note))
+    return made
 
 
 def main() -> None:
@@ -267,15 +316,21 @@ def main() -> None:
     parser.add_argument(
         "--heading-sigma", type=float, default=HEADING_SIGMA_DEG, help="degrees; as the server's setting"
     )
-    parser.add_argument("--only", help="faults whose name contains this")
+    parser.add_argument("--only", default="", help="faults whose name contains this")
+    add_out(parser)
     arguments = parser.parse_args()
+    begun = begin(__file__)
     pattern, finder = load_pattern(SMALL_YAGI), SparseDirectionFinder(heading_sigma_deg=arguments.heading_sigma)
-    print(HEADER)
+    seeds = range(arguments.first_seed, arguments.first_seed + arguments.missions)
+    outcomes: dict[Fault, list[Outcome]] = {}
     for fault in (*FAULTS, *UNCOVERED):
-        if arguments.only and arguments.only not in fault.name:
-            continue
-        seeds = range(arguments.first_seed, arguments.first_seed + arguments.missions)
-        print(row(fault, [fly(seed, fault, pattern, finder) for seed in seeds]), flush=True)
+        if arguments.only in fault.name:
+            print(fault.name, file=sys.stderr, flush=True)
+            outcomes[fault] = [fly(seed, fault, pattern, finder) for seed in seeds]
+    table = Table(name="faults", columns=COLUMNS, rows=tuple(row(*flown) for flown in outcomes.items()))
+    print(markdown(table))
+    made, page = figures(outcomes), "sensor-faults.md"
+    write(arguments.out, "sensor_faults", "Sensor faults", begun, made, tables=[table], page=page)
 
 
 if __name__ == "__main__":

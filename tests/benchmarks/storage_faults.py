@@ -31,6 +31,9 @@ from backend.cli.running import running_server
 from backend.settings import Settings
 from backend.store.tables import events, sweeps
 from hardware.sim.autopilot.launch import SimulatedAutopilot
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 from tests.benchmarks.kill_loop import postgres_cluster
 from tests.system.console import Console, console, simulated_vehicle
 
@@ -44,7 +47,7 @@ def database_state(shown: Console) -> str:
     return shown.messages["status"][-1]["database"]
 
 
-async def begin(shown: Console) -> None:
+async def fly_to_first_bearing(shown: Console) -> None:
     await shown.draft(**LONG_SEARCH)
     await shown.ready(60)
     await shown.watch()
@@ -105,7 +108,7 @@ async def outage(minutes: float, speedup: float, seed: int) -> dict[str, Any]:
             url = await asyncio.to_thread(cluster.new_database)
             settings = Settings(port=0, data_dir=Path(folder), database_url=url, time_factor=speedup, seed=seed)
             async with running_server(settings) as server, console(server.url) as shown:
-                await begin(shown)
+                await fly_to_first_bearing(shown)
                 vehicle = await simulated_vehicle(Path(folder))
                 before = len(shown.events)
                 await asyncio.to_thread(cluster.stop)
@@ -145,7 +148,7 @@ async def full_disk(speedup: float, seed: int) -> dict[str, Any]:
     with small_disk() as disk:
         settings = Settings(port=0, data_dir=disk, time_factor=speedup, seed=seed, disk_low_bytes=0)
         async with running_server(settings) as server, console(server.url) as shown:
-            await begin(shown)
+            await fly_to_first_bearing(shown)
             vehicle = await simulated_vehicle(disk)
             before, began = len(shown.events), time.monotonic()
             ballast = await asyncio.to_thread(fill, disk)
@@ -158,18 +161,51 @@ async def full_disk(speedup: float, seed: int) -> dict[str, Any]:
     return {"disk_full_s": FULL_FOR_S, "warned_after_s": round(warned_s, 2), **found}
 
 
+def outage_figures(found: dict[str, Any]) -> list[Figure]:
+    return [
+        wanted("outage_minutes", found["away_minutes"]),
+        wanted("outage_lost", found["lost_doubled_or_changed"]),
+        plain("all stored after it was back", found["drained_after_s"], "s"),
+        *shared_figures(found),
+    ]
+
+
+def full_disk_figures(found: dict[str, Any]) -> list[Figure]:
+    return [
+        wanted("disk_full", found["warned_after_s"]),
+        wanted("disk_full_lost", found["lost_doubled_or_changed"]),
+        *shared_figures(found),
+    ]
+
+
+def shared_figures(found: dict[str, Any]) -> list[Figure]:
+    return [
+        plain("facts meanwhile", found["facts_during"], ""),
+        plain("bearings meanwhile", found["bearings_during"], ""),
+        plain("most entries waiting on disk", found["most_entries_waiting"], ""),
+        plain("facts shown", found["facts_shown"], ""),
+        plain("facts stored", found["facts_stored"], ""),
+        plain("bearings without their sweep", found["bearings_without_sweep"], ""),
+    ]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fault", choices=("outage", "full-disk"))
     parser.add_argument("--minutes", type=float, default=1.0, help="how long the database is away")
     parser.add_argument("--speedup", type=float, default=2.0)
     parser.add_argument("--seed", type=int, default=3)
+    add_out(parser)
     given = parser.parse_args()
+    begun = begin(__file__)
     if given.fault == "outage":
         result = asyncio.run(outage(given.minutes, given.speedup, given.seed))
+        name, title, made = "storage_outage", "Database away", outage_figures(result)
     else:
         result = asyncio.run(full_disk(given.speedup, given.seed))
+        name, title, made = "storage_full_disk", "Full disk", full_disk_figures(result)
     print(json.dumps(result, indent=2))
+    write(given.out, name, title, begun, made, page="faults-in-flight.md#storage")
     good = not result["lost_doubled_or_changed"] and not result["bearings_without_sweep"] and result["bearings_during"]
     sys.exit(not (good and result.get("warned_after_s", 0.0) <= WARNED_WITHIN_S))
 

@@ -1,12 +1,12 @@
-"""The pilot takes over at random moments (figure 12): how late does a last flight command reach his vehicle?
+"""The pilot takes over at random moments (figure 12): how late does a last flight command reach their vehicle?
 
     python -m tests.benchmarks.takeover --flavour px4 --times 50
     python -m tests.benchmarks.takeover --flavour ardupilot --times 50
 
 A whole mission by the real server at the wall's speed; the simulated autopilot notes when each command arrives. The
-pilot uses his mode switch or, on PX4, every other time his sticks. Besides, after each takeover an operator orders
-everything an operator can order: none of it may reach the vehicle before he gives back. Prints one JSON object; ends
-with status 1 when a command came later than 200 ms.
+pilot uses the mode switch or, on PX4, every other time the sticks. Besides, after each takeover an operator orders
+everything an operator can order: none of it may reach the vehicle before the pilot gives it back. Prints one JSON
+object; ends with status 1 when a command came later than 200 ms.
 """
 
 from __future__ import annotations
@@ -25,6 +25,9 @@ from typing import Any
 from backend.cli.running import running_server
 from backend.settings import Settings
 from hardware.sim.autopilot.launch import SimulatedAutopilot
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 from tests.system.console import Console, console, simulated_vehicle
 
 ALLOWED_S = 0.2
@@ -33,7 +36,7 @@ FLIGHT = {16, 20, 21, 22, 115, 176, 178, 192, 400}
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 MOMENTS = (("flying", 5.0), ("measuring", 12.0), ("measuring", 12.0), ("planning", 0.3))
 """In which phase the pilot strikes, and how many seconds after its beginning at most: a turn is many commands."""
-ENDED = ("returning", "landing", "done", "aborted", "failed")
+ENDED = ("returning", "landing", "ground")
 
 
 async def take_over(vehicle: SimulatedAutopilot, sticks: bool) -> float:
@@ -85,7 +88,7 @@ async def run(flavour: str, times: int, seed: int) -> dict[str, Any]:
                     phases[phase] += 1
                     late.append(after_s)
                 if len(late) < times:
-                    await shown.until(lambda: shown.phases[-1] in ("done", "aborted", "failed"), 240)
+                    await shown.until(lambda: shown.phases[-1] == "ground", 240)
     return {
         "flavour": flavour,
         "takeovers": len(late),
@@ -95,13 +98,27 @@ async def run(flavour: str, times: int, seed: int) -> dict[str, Any]:
     }
 
 
+def figures(found: dict[str, Any]) -> list[Figure]:
+    return [
+        wanted("takeover", found["latest_command_ms"], of=found["flavour"]),
+        plain("takeovers", found["takeovers"], ""),
+        plain("with a flight command afterwards", found["with_a_command_afterwards"], ""),
+        *(plain(f"struck while {phase}", count, "") for phase, count in found["in"].items()),
+    ]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
     parser.add_argument("--times", type=int, default=int(os.environ.get("CROSSFIX_TAKEOVERS", "10")))
     parser.add_argument("--seed", type=int, default=3)
-    result = asyncio.run(run(**vars(parser.parse_args())))
+    add_out(parser)
+    given = parser.parse_args()
+    begun = begin(__file__)
+    result = asyncio.run(run(given.flavour, given.times, given.seed))
     print(json.dumps(result, indent=2))
+    title = f"The pilot takes over, {given.flavour}"
+    write(given.out, f"takeover_{given.flavour}", title, begun, figures(result), page="faults-in-flight.md#takeovers")
     sys.exit(result["latest_command_ms"] > 1e3 * ALLOWED_S)
 
 

@@ -125,7 +125,7 @@ class Screen:
         self.start()
 
     def expect_belief(self, bearings: int) -> None:
-        """The belief after so many bearings is painted on the map."""
+        """The map shows the belief after this number of bearings."""
         until = time.monotonic() + 60
         while self.evaluate("window.crossfixBeliefPainted?.bearings") != bearings:
             assert time.monotonic() < until, f"the belief after {bearings} bearings was not painted"

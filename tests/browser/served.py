@@ -59,12 +59,12 @@ class Server:
 
     def kill(self) -> None:
         self.process.kill()
-        self.process.wait()
+        self.process.communicate()
 
     def stop(self) -> None:
         """The server, and the vehicle that it leaves flying when a mission is in the air."""
         self.process.terminate()
-        self.process.wait(timeout=60)
+        self.process.communicate(timeout=60)
         if (self.data_dir / "simulated_vehicle.json").exists():
             with suppress(OSError):
                 self.order("stop")

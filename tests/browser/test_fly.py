@@ -45,11 +45,12 @@ def test_an_area_is_drawn_flown_and_the_emitter_localized(server: Server, screen
     told = server.get(f"/api/missions/{screen.mission_id}")
     verdict = screen.part("verdict").get_attribute("data-localized")
     assert verdict == str(told["localized"]).lower()
-    if told["estimate"]:
+    (found,) = told["found"]
+    if estimate := found["estimate"]:
         shown = screen.part("estimate-coordinates")
-        assert float(shown.get_attribute("data-lat") or "nan") == told["estimate"]["lat"]
+        assert float(shown.get_attribute("data-lat") or "nan") == estimate["lat"]
         rmse = float(screen.part("expected-rmse").get_attribute("data-value") or "nan")
-        assert rmse == told["estimate"]["expected_rmse_m"]
+        assert rmse == estimate["expected_rmse_m"]
     look_back(screen)
     take_away(server, screen)
 
@@ -114,7 +115,7 @@ def suppose_a_worse_sensor(screen: Screen) -> None:
     expect(screen.part("expected-rmse")).to_have_attribute("data-value", flown or "")
 
 
-def test_each_place_waits_for_the_operator_until_he_aborts(server: Server, screen: Screen) -> None:
+def test_each_place_waits_for_the_operator_until_they_abort(server: Server, screen: Screen) -> None:
     screen.go("#/new")
     screen.part("field-flight-automatic").uncheck()
     fly_quickly(screen)

@@ -182,7 +182,7 @@ def test_a_recorded_rotation_is_imported_and_what_was_not_understood_is_named(
 
 def test_an_antenna_that_was_not_turned_refuses_the_start(draft: Screen) -> None:
     def at_once(route: Route) -> None:
-        route.continue_(post_data=json.dumps(route.request.post_data_json | {"wait_s": 1}))
+        route.continue_(post_data=json.dumps({**(route.request.post_data_json or {}), "wait_s": 1}))
 
     draft.page.route("**/antenna-check", at_once)
     draft.part("antenna").locator("summary").click()

@@ -126,8 +126,8 @@ def fly_by_keyboard(screen: Screen, patient: str) -> None:
 
 
 BANNER_COVERS_NO_TOOL = """() => {
-  const edges = (name) => document.querySelector(`[data-testid=${name}]`).getBoundingClientRect();
-  return edges("alert-banner").bottom <= edges("map-fit").top;
+  const edges = (name) => document.querySelector(`[data-testid=${name}]`)?.getBoundingClientRect();
+  return edges("alert-banner")?.bottom <= edges("map-fit")?.top;
 }"""
 
 
@@ -290,13 +290,13 @@ def test_the_pilot_takes_over_and_keeps_control_and_the_alert_sounds_where_it_is
 
 def test_the_link_goes_silent_and_comes_back_and_no_event_is_missed(flight: Flight) -> None:
     screen = flight.screen
-    taken = flight.kinds().count("control_taken")
+    taken = flight.kinds().count("authority_changed")
     flight.link.silence()
     expect(screen.part("state-words")).to_have_text(re.compile("No connection to the server"))
     expect(screen.part("battery")).to_have_attribute("data-state", "old")
     expect(screen.part("abort")).to_be_enabled()
     flight.server.order("pilot_mode", mode="POSCTL")
-    flight.recorded_again("control_taken", taken)
+    flight.recorded_again("authority_changed", taken)
     flight.link.restore()
     screen.expect_phase("manual")
     expect(screen.part("battery")).to_have_attribute("data-state", "fresh")

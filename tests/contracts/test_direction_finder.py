@@ -11,7 +11,7 @@ from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import CorrelationDirectionFinder, LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.ports import DirectionFinder
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
 
 PATTERN = load_pattern(SMALL_YAGI)
 HEADING = np.arange(0.0, 360.0, 1.5)
@@ -25,7 +25,7 @@ def finder(request: pytest.FixtureRequest) -> DirectionFinder:
 def sweep(bearing_deg: float, noise_db: float = 0.0, **more: object) -> Sweep:
     rng = np.random.default_rng(5)
     power = -60.0 + PATTERN.gain_at(bearing_deg - HEADING) + rng.normal(0.0, 1.0, HEADING.size) * noise_db
-    base = Sweep(HEADING / 30.0, HEADING, power, 868e6, GeoPoint(50.0, 7.0), 100.0)
+    base = Sweep(HEADING / 30.0, HEADING, power, 868e6, Place(50.0, 7.0), 100.0)
     return dataclasses.replace(base, **more)
 
 

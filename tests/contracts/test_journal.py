@@ -1,4 +1,4 @@
-"""What every Journal does (backend.mission.ports): facts in order, without gaps, durable before they are told."""
+"""What every Journal does (backend.ports): facts in order, without gaps, durable before they are sent on."""
 
 from __future__ import annotations
 
@@ -6,18 +6,26 @@ import asyncio
 
 import pytest
 
-from backend.events import HoldOrdered, MissionDrafted, MissionEnded, MissionStarted
-from backend.mission.ports import Journal
+from backend.events import HoldOrdered, MissionDrafted, MissionEnded, MissionStarted, Phase, PhaseChanged
+from backend.ports import Journal
+from backend.reasons.flight import Ordered
+from backend.reasons.search import Localized
 from backend.spec import MissionSpec, Place, Polygon
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
 DRAFT = MissionDrafted(spec=SPEC)
-STARTED = MissionStarted(by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0.1.0")
-ENDED = MissionEnded(outcome="localized", reason="within 10 m", mission_time_s=200.0)
+STARTED = MissionStarted(
+    craft_id="craft-1", by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0.1.0"
+)
+ENDED = MissionEnded(outcome="localized", reason=Localized(), mission_time_s=200.0)
 
 
-def hold(reason: str = "wind") -> HoldOrdered:
-    return HoldOrdered(by="operator", reason=reason)
+def hold(by: str = "operator") -> HoldOrdered:
+    return HoldOrdered(craft_id="craft-1", by=by, reason=None)
+
+
+def craft_in(before: Phase, after: Phase) -> PhaseChanged:
+    return PhaseChanged(craft_id="craft-1", before=before, after=after, reason=Ordered("abort", "operator"))
 
 
 async def test_an_append_of_nothing_is_nothing(journal: Journal):
@@ -32,12 +40,12 @@ async def test_missions_do_not_mix(journal: Journal):
     for mission_id in ("one", "two"):
         read = await journal.read(mission_id)
         assert [(r.seq, r.mission_id) for r in read] == [(1, mission_id), (2, mission_id)]
-        assert read[1].event.reason == mission_id
+        assert read[1].event.by == mission_id
 
 
 async def test_sequence_counts_from_one_without_gaps(journal: Journal):
     first = await journal.append("m", [DRAFT, hold()])
-    second = await journal.append("m", [hold("rain")])
+    second = await journal.append("m", [hold("another")])
     assert [record.seq for record in first + second] == [1, 2, 3]
     assert await journal.read("m") == first + second
     assert await journal.read("m", after=2) == second
@@ -48,7 +56,7 @@ async def test_concurrent_appends_get_distinct_numbers(journal: Journal):
     await asyncio.gather(*(journal.append("m", [hold(str(n))]) for n in range(30)))
     read = await journal.read("m")
     assert [record.seq for record in read] == list(range(1, 32))
-    assert {record.event.reason for record in read[1:]} == {str(n) for n in range(30)}
+    assert {record.event.by for record in read[1:]} == {str(n) for n in range(30)}
 
 
 async def test_a_cancelled_caller_leaves_no_gap_and_no_double(journal: Journal):
@@ -62,14 +70,16 @@ async def test_a_cancelled_caller_leaves_no_gap_and_no_double(journal: Journal):
     await journal.append("m", [hold("end")])
     read = await journal.read("m")
     assert [record.seq for record in read] == list(range(1, len(read) + 1))
-    assert [record.event.reason for record in read[1:]] == [*map(str, range(10)), "end"]
+    assert [record.event.by for record in read[1:]] == [*map(str, range(10)), "end"]
 
 
-async def test_unfinished_are_those_started_and_not_ended(journal: Journal):
+async def test_unfinished_are_those_started_and_not_ended_or_not_down(journal: Journal):
+    up, down = craft_in("ground", "returning"), craft_in("returning", "ground")
     await journal.append("draft", [DRAFT])
     await journal.append("flying", [DRAFT, STARTED])
-    await journal.append("over", [DRAFT, STARTED, ENDED])
-    assert await journal.unfinished() == ["flying"]
+    await journal.append("on its way home", [DRAFT, STARTED, up, ENDED])
+    await journal.append("over", [DRAFT, STARTED, up, ENDED, down])
+    assert sorted(await journal.unfinished()) == ["flying", "on its way home"]
 
 
 async def test_a_mission_begins_with_its_draft(journal: Journal):

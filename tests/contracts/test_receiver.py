@@ -5,18 +5,29 @@ from __future__ import annotations
 import asyncio
 import itertools
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refusing
 from stepped_clock import SteppedClock
 
 from hardware.payload.messages import PROTOCOL, Hello, Samples, WireSample
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub, PayloadSession
 from hardware.ports import Receiver, ReceiverError
-from hardware.readings import GeoPoint, PowerSample, Sweep, Telemetry
+from hardware.readings import Channel, Place, PowerSample, Pulses, Sweep, Telemetry
+from hardware.reasons.channels import (
+    BandTooNarrow,
+    CarriersOnly,
+    FrequencyOutOfRange,
+    FrequencyTwice,
+    NoChannel,
+    OneChannelOnly,
+)
+from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.recorded import RecordedReceiver
 from hardware.sdr.sigmf_file import write_sigmf
@@ -24,11 +35,34 @@ from hardware.sdr.sigmf_playback import SigmfSource
 from hardware.sim.iq import SimulatedIq
 from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World
+from planner.reason import Reason
 
 FREQUENCY_HZ = 868_300_000.0
-HOME = GeoPoint(50.6, 7.2)
+PERIOD_S, WIDTH_S = 0.5, 0.02
+CARRIER = Channel(FREQUENCY_HZ)
+SECOND = Channel(FREQUENCY_HZ - 9_000.0)
+TAG = Channel(FREQUENCY_HZ + 9_000.0, Pulses(WIDTH_S, PERIOD_S))
+FAR = Channel(FREQUENCY_HZ + 40e6)
+HOME = Place(50.6, 7.2)
 PATIENCE_S = 20.0
-WORLD = World((Emitter(GeoPoint(50.601, 7.2), FREQUENCY_HZ),))
+NORTH = Place(50.601, 7.2)
+WORLD = World(
+    (
+        Emitter(NORTH, FREQUENCY_HZ),
+        Emitter(NORTH, SECOND.frequency_hz),
+        Emitter(NORTH, TAG.frequency_hz, pulse_period_s=PERIOD_S, pulse_width_s=WIDTH_S),
+    )
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """several, pulses, far: why it refuses two channels, a tag beside a carrier, and one far away; None: it hears."""
+
+    make: Callable[[Path], Receiver]
+    several: type[Reason] | None = None
+    pulses: type[Reason] | None = None
+    far: type[Reason] | None = None
 
 
 def hovering(clock: SteppedClock) -> Callable[[], Telemetry]:
@@ -46,9 +80,16 @@ def simulated_iq(tmp_path: Path) -> Receiver:
 
 
 def sigmf_recording(tmp_path: Path) -> Receiver:
-    t = np.arange(48_000) / 24_000.0
-    iq = (0.1 * np.exp(2j * np.pi * 1000.0 * t)).astype(np.complex64)
-    return IqReceiver(SigmfSource(write_sigmf(tmp_path / "tone", iq, 24_000.0, FREQUENCY_HZ - 1000.0, 1.78e9)))
+    rate_hz, centre_hz = 48_000.0, FREQUENCY_HZ - 1000.0
+    t = np.arange(int(6 * rate_hz)) / rate_hz
+
+    def tone(channel: Channel) -> np.ndarray:
+        return 0.1 * np.exp(2j * np.pi * (channel.frequency_hz - centre_hz) * t)
+
+    iq = tone(CARRIER) + tone(SECOND) + np.where(t % PERIOD_S < WIDTH_S, tone(TAG), 0.0)
+    rng = np.random.default_rng(1)
+    iq += 1e-4 * (rng.normal(size=t.size) + 1j * rng.normal(size=t.size))
+    return IqReceiver(SigmfSource(write_sigmf(tmp_path / "tones", iq, rate_hz, centre_hz, 1.78e9)))
 
 
 def recorded(tmp_path: Path) -> Receiver:
@@ -58,7 +99,7 @@ def recorded(tmp_path: Path) -> Receiver:
 
 
 class LoopbackPayload:
-    """A PayloadReceiver whose agent is a task in this process: batches of five samples as fast as they are wanted."""
+    """A PayloadReceiver whose agent is a task in this process: five samples a channel as fast as they are wanted."""
 
     def __init__(self) -> None:
         self.hub = PayloadHub(("a-token-of-some-length",))
@@ -67,25 +108,30 @@ class LoopbackPayload:
         self.task: asyncio.Task[None] | None = None
         self.next = 1
 
-    async def open(self, frequency_hz: float) -> None:
+    async def open(self, channels: Sequence[Channel]) -> None:
         if self.task is None:
             self.session.receive(
                 Hello(protocol=PROTOCOL, agent="pi", stream="s", software="", first_seq=1).model_dump_json()
             )
             self.task = asyncio.create_task(self._send())
-        await self.receiver.open(frequency_hz)
+        await self.receiver.open(channels)
 
     async def _send(self) -> None:
         while True:
-            numbers = range(self.next, self.next + 5)
-            rows: list[WireSample] = [(100.0 + k, FREQUENCY_HZ, -60.0, None, False, True) for k in numbers]
+            await asyncio.sleep(0.005)
+            rows: list[WireSample] = [
+                (100.0 + self.next + k, channel.frequency_hz, -60.0, None, False, True)
+                for k in range(5)
+                for channel in self.hub.channels or []
+            ]
+            if not rows:
+                continue
             message = Samples(first_seq=self.next, oldest_seq=1, clock_offset_s=None, samples=rows)
             self.session.receive(message.model_dump_json())
             if self.session.refused:
                 said = [self.session.outgoing.get_nowait() for _ in range(self.session.outgoing.qsize())]
                 raise AssertionError(f"the server refused the samples: {said[-1]}")
-            self.next += 5
-            await asyncio.sleep(0.005)
+            self.next += len(rows)
 
     async def close(self) -> None:
         await self.receiver.close()
@@ -98,9 +144,23 @@ def payload(tmp_path: Path) -> Receiver:
     return LoopbackPayload()
 
 
-@pytest.fixture(params=[simulated, simulated_iq, sigmf_recording, recorded, payload])
-async def receiver(request: pytest.FixtureRequest, tmp_path: Path) -> AsyncIterator[Receiver]:
-    made = request.param(tmp_path)
+RIGS = {
+    "simulated": Rig(simulated),
+    "simulated_iq": Rig(simulated_iq, far=BandTooNarrow),
+    "sigmf_recording": Rig(sigmf_recording, far=BandTooNarrow),
+    "recorded": Rig(recorded, several=OneChannelOnly, pulses=CarriersOnly, far=OneChannelOnly),
+    "payload": Rig(payload),
+}
+
+
+@pytest.fixture(params=RIGS)
+def rig(request: pytest.FixtureRequest) -> Rig:
+    return RIGS[request.param]
+
+
+@pytest.fixture
+async def receiver(rig: Rig, tmp_path: Path) -> AsyncIterator[Receiver]:
+    made = rig.make(tmp_path)
     yield made
     if isinstance(made, LoopbackPayload) and made.task is not None:
         if made.task.done():
@@ -121,8 +181,25 @@ async def first(receiver: Receiver, count: int) -> list[PowerSample]:
     return heard
 
 
+async def hear_each(receiver: Receiver, channels: Sequence[Channel], count: int) -> dict[float, list[PowerSample]]:
+    """At least `count` samples of every channel."""
+    await receiver.open(channels)
+    heard: dict[float, list[PowerSample]] = {channel.frequency_hz: [] for channel in channels}
+    try:
+        async with asyncio.timeout(PATIENCE_S):
+            async for sample in receiver.samples():
+                heard[sample.frequency_hz].append(sample)  # a frequency nobody asked for is a KeyError
+                if min(map(len, heard.values())) >= count:
+                    break
+    except TimeoutError:
+        pytest.fail(f"{count} samples of each were wanted, there are {[len(one) for one in heard.values()]}")
+    await receiver.close()
+    assert min(map(len, heard.values())) >= count, "it ended before"
+    return heard
+
+
 async def test_samples_are_finite_in_time_order_and_of_the_asked_frequency(receiver: Receiver) -> None:
-    await receiver.open(FREQUENCY_HZ)
+    await receiver.open([CARRIER])
     heard = await first(receiver, 20)
     await receiver.close()
     assert len(heard) == 20
@@ -132,12 +209,12 @@ async def test_samples_are_finite_in_time_order_and_of_the_asked_frequency(recei
 
 
 async def test_samples_before_open_are_refused(receiver: Receiver) -> None:
-    with pytest.raises(ReceiverError, match="not open"):
+    with refusing(ReceiverNotOpen(), ReceiverError):
         await anext(aiter(receiver.samples()))
 
 
 async def test_closing_ends_the_samples(receiver: Receiver) -> None:
-    await receiver.open(FREQUENCY_HZ)
+    await receiver.open([CARRIER])
     count = 0
     async with asyncio.timeout(PATIENCE_S):
         async for _ in receiver.samples():
@@ -149,11 +226,55 @@ async def test_closing_ends_the_samples(receiver: Receiver) -> None:
 
 async def test_opens_again_after_closing(receiver: Receiver) -> None:
     for _ in range(2):
-        await receiver.open(FREQUENCY_HZ)
+        await receiver.open([CARRIER])
         assert len(await first(receiver, 3)) == 3
         await receiver.close()
 
 
-async def test_impossible_frequency_is_refused(receiver: Receiver) -> None:
-    with pytest.raises(ReceiverError):
-        await receiver.open(-1.0)
+async def test_two_channels_are_heard_at_once_or_refused(rig: Rig, receiver: Receiver) -> None:
+    if rig.several is not None:
+        with refusing(rig.several, ReceiverError):
+            await receiver.open([CARRIER, SECOND])
+        return
+    for samples in (await hear_each(receiver, [CARRIER, SECOND], 20)).values():
+        assert all(a.at_s < b.at_s for a, b in itertools.pairwise(samples))
+        assert all(s.detected and math.isfinite(s.power_db) for s in samples)
+
+
+async def test_a_tag_is_heard_beside_a_carrier_or_refused(rig: Rig, receiver: Receiver) -> None:
+    if rig.pulses is not None:
+        with refusing(rig.pulses, ReceiverError):
+            await receiver.open([TAG])
+        return
+    heard = await hear_each(receiver, [CARRIER, TAG], 6)
+    pulses = heard[TAG.frequency_hz]
+    assert any(pulse.detected for pulse in pulses)
+    assert all(a.at_s < b.at_s for a, b in itertools.pairwise(pulses))
+    assert all(sample.detected for sample in heard[FREQUENCY_HZ])
+
+
+async def test_a_channel_out_of_band_is_refused_by_name_or_heard(rig: Rig, receiver: Receiver) -> None:
+    if rig.far is None:
+        assert await hear_each(receiver, [CARRIER, FAR], 5)
+        return
+    with pytest.raises(ReceiverError) as refused:
+        await receiver.open([CARRIER, FAR])
+    reason = refused.value.reason
+    assert isinstance(reason, rig.far)
+    if isinstance(reason, BandTooNarrow):
+        assert reason.refused_hz == (FAR.frequency_hz,)
+        assert reason.needed_hz > 40e6
+    assert len((await hear_each(receiver, [CARRIER], 3))[FREQUENCY_HZ]) >= 3
+
+
+@pytest.mark.parametrize(
+    ("channels", "reason"),
+    [
+        ([Channel(-1.0)], FrequencyOutOfRange(-1.0)),
+        ([], NoChannel()),
+        ([CARRIER, Channel(FREQUENCY_HZ, Pulses(WIDTH_S, PERIOD_S))], FrequencyTwice(FREQUENCY_HZ)),
+    ],
+)
+async def test_channels_that_cannot_be_are_refused(receiver: Receiver, channels: list[Channel], reason: Reason) -> None:
+    with refusing(reason, ReceiverError):
+        await receiver.open(channels)

@@ -2,7 +2,7 @@
 
 CROSSFIX_FUZZ_REQUESTS=100000 makes it a long run: the default is a taste of it. A long run is rounds, each with a
 server and a flight of its own: the list of missions and what the generator remembers stay short, and so does the time
-that a request takes.
+that a request takes. CROSSFIX_FUZZ_OUT names the folder for a record of what was found.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 from uuid import uuid4
 
 import httpx
@@ -37,10 +38,13 @@ from schemathesis.checks import (
 )
 
 from backend.api.schema import wire_schema
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import plain, wanted, write
 
 REQUESTS = int(os.environ.get("CROSSFIX_FUZZ_REQUESTS", "400"))
 A_ROUND = int(os.environ.get("CROSSFIX_FUZZ_ROUND", "2000"))
 SEED = int(os.environ.get("CROSSFIX_FUZZ_SEED", "1"))
+OUT = os.environ.get("CROSSFIX_FUZZ_OUT")
 
 WITHOUT = set(os.environ.get("CROSSFIX_FUZZ_WITHOUT", "").split(","))
 """Tags of operations to leave alone."""
@@ -74,15 +78,15 @@ class Targets:
         if isinstance(body, dict) and "area" in body and chance.random() < 0.7:
             body["area"] = self.spec["area"]
         for part, heavy in (("planner", "budget"), ("planner", "action_spacing_m"), ("flight", "fence_margin_m")):
-            if isinstance(body, dict) and isinstance(body.get(part), dict):
-                body[part].pop(heavy, None)
+            if isinstance(body, dict) and isinstance(content := body.get(part), dict):
+                content.pop(heavy, None)
 
 
 def fuzz(base_url: str, requests: int, seed: int, slowest: defaultdict[str, float]) -> Counter[tuple[str, int]]:
     """How often each operation answered what. slowest: seconds of the wall by operation, kept up."""
     targets, seen = Targets(base_url), Counter()
     schema = schemathesis.openapi.from_dict(wire_schema("0"))
-    operations = [result.ok() for result in schema.get_all_operations()]
+    operations = [cast(Any, result).ok() for result in schema.get_all_operations()]
     operations = [operation for operation in operations if not WITHOUT & set(operation.tags or ())]
     modes = [schemathesis.GenerationMode.POSITIVE, schemathesis.GenerationMode.NEGATIVE]
     cases = st.one_of([operation.as_strategy(generation_mode=mode) for operation in operations for mode in modes])
@@ -93,7 +97,7 @@ def fuzz(base_url: str, requests: int, seed: int, slowest: defaultdict[str, floa
         deadline=None,
         database=None,
         phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
+        suppress_health_check=cast(list[HealthCheck], list(HealthCheck)),
     )
     @given(cases, st.integers(0, 2**32))
     def one(case: schemathesis.Case, number: int) -> None:
@@ -124,7 +128,7 @@ def server(folder: Path) -> Iterator[str]:
             assert process.poll() is None, "the server is gone"
         finally:
             process.send_signal(signal.SIGINT)
-            process.wait(timeout=30)
+            process.communicate(timeout=30)
             leave_nothing_flying(folder / "data")
 
 
@@ -141,7 +145,7 @@ def leave_nothing_flying(data_dir: Path) -> None:
 def test_no_request_makes_the_server_stumble(tmp_path: Path, capsys):
     seen: Counter[tuple[str, int]] = Counter()
     slowest: defaultdict[str, float] = defaultdict(float)
-    began = time.monotonic()
+    began, begun = time.monotonic(), begin(__file__)
     for number, done in enumerate(range(0, REQUESTS, A_ROUND)):
         folder = tmp_path / str(number)
         with server(folder) as url:
@@ -157,3 +161,16 @@ def test_no_request_makes_the_server_stumble(tmp_path: Path, capsys):
                 f"{max(slowest.values()):.1f} s: {max(slowest, key=lambda label: slowest[label])}"
             )
     assert sum(seen.values()) >= REQUESTS
+    answered = Counter(status for (_, status), count in seen.items() for _ in range(count))
+    figures = [
+        wanted("fuzz_requests", sum(seen.values())),
+        wanted("fuzz_failures", 0, of="HTTP"),
+        plain("operations", len({label for label, _ in seen}), ""),
+        plain("slowest answer", round(max(slowest.values()), 1), "s"),
+        *(plain(f"answered {status}", count, "") for status, count in sorted(answered.items())),
+    ]
+    command = f"CROSSFIX_FUZZ_REQUESTS={REQUESTS} CROSSFIX_FUZZ_SEED={SEED} pytest tests/fuzz/test_http.py"
+    begun = replace(begun, command=command)
+    write(
+        Path(OUT) if OUT else None, "fuzz_http", "Fuzzing the API", begun, figures, page="faults-in-flight.md#fuzzing"
+    )

@@ -1,6 +1,6 @@
 """Whatever arrives at the live channel, the server neither stumbles nor forgets its other viewers.
 
-CROSSFIX_FUZZ_MESSAGES=100000 makes it a long run.
+CROSSFIX_FUZZ_MESSAGES=100000 makes it a long run. CROSSFIX_FUZZ_OUT names the folder for a record of what was found.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import logging
 import os
 import random
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -20,8 +21,11 @@ import websockets
 
 from backend.cli.running import running_server
 from backend.settings import Settings
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import plain, wanted, write
 
 MESSAGES = int(os.environ.get("CROSSFIX_FUZZ_MESSAGES", "1000"))
+OUT = os.environ.get("CROSSFIX_FUZZ_OUT")
 A_CONNECTION = 25
 KNOWN_CODES = {1000, 1007, 1009, 1013, 4400, 4404}
 """Ended by us, no UTF-8, too long a message, too many viewers, odd address, no such mission."""
@@ -84,6 +88,7 @@ async def one_connection(url: str, chance: random.Random, mission_id: str, ends:
 @pytest.mark.timeout(120 + MESSAGES)
 async def test_no_message_makes_the_live_channel_stumble(tmp_path: Path, capsys):
     chance, ends, sent, faults = random.Random(7), Counter(), 0, Faults()
+    begun = replace(begin(__file__), command=f"CROSSFIX_FUZZ_MESSAGES={MESSAGES} pytest tests/fuzz/test_live.py")
     server_settings = Settings(
         port=0, data_dir=tmp_path, time_factor=10.0, spool_reserve_bytes=2**20, live_ping_timeout_s=60
     )
@@ -100,7 +105,7 @@ async def test_no_message_makes_the_live_channel_stumble(tmp_path: Path, capsys)
             renamed = await client.put(f"/api/missions/{mission_id}/spec", json={**spec, "name": "still here"})
             assert renamed.status_code == 200
             async with asyncio.timeout(20):
-                while "still here" not in await witness.recv():
+                while "still here" not in str(await witness.recv()):
                     pass
         assert (await client.get(f"/api/missions/{mission_id}")).json()["phase"] == "draft"
         async with asyncio.timeout(20):
@@ -110,3 +115,10 @@ async def test_no_message_makes_the_live_channel_stumble(tmp_path: Path, capsys)
         print(f"\n{sent} messages in {sum(ends.values())} connections, ended with {dict(ends)}")
     assert set(ends) <= KNOWN_CODES
     assert faults.records == []
+    figures = [
+        wanted("fuzz_messages", sent, of="live channel"),
+        wanted("fuzz_failures", 0, of="live channel"),
+        plain("connections", sum(ends.values()), ""),
+    ]
+    page = "faults-in-flight.md#fuzzing"
+    write(Path(OUT) if OUT else None, "fuzz_live", "Fuzzing the live channel", begun, figures, page=page)

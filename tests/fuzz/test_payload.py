@@ -1,6 +1,7 @@
 """Odd messages from payloads: each session ends with a reason or goes on, and no wrong sample passes.
 
-CROSSFIX_FUZZ_MESSAGES=100000 makes it a long run (`make fuzz`).
+CROSSFIX_FUZZ_MESSAGES=100000 makes it a long run (`make fuzz`). CROSSFIX_FUZZ_OUT names the folder for a record of what
+was found.
 """
 
 from __future__ import annotations
@@ -9,19 +10,25 @@ import json
 import math
 import os
 import random
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from hardware.payload.messages import PROTOCOL
 from hardware.payload.session import PayloadHub, PayloadSession
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import plain, wanted, write
 
 MESSAGES = int(os.environ.get("CROSSFIX_FUZZ_MESSAGES", "2000"))
-HELLO = {"type": "hello", "protocol": 2, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
+OUT = os.environ.get("CROSSFIX_FUZZ_OUT")
+HELLO = {"type": "hello", "protocol": PROTOCOL, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
 SAMPLE = [1.7e9, 8e8, -80.0, None, False, True]
 SAMPLES = {"type": "samples", "first_seq": 1, "oldest_seq": 1, "clock_offset_s": None, "samples": [SAMPLE] * 3}
 STATUS = {
     "type": "status",
-    "receiver": "listening",
+    "receiver": {"code": "payload_listening", "channels": 1},
     "receiver_ok": True,
     "temperature_c": None,
     "clock_offset_s": None,
@@ -53,6 +60,7 @@ def mutated(message: dict[str, Any], chance: random.Random) -> str:
 @pytest.mark.timeout(60 + MESSAGES // 100)
 def test_no_message_of_a_payload_makes_the_server_stumble(capsys: pytest.CaptureFixture[str]) -> None:
     chance, hub = random.Random(5), PayloadHub(("a token of sixteen letters or more",))
+    begun = replace(begin(__file__), command=f"CROSSFIX_FUZZ_MESSAGES={MESSAGES} pytest tests/fuzz/test_payload.py")
     heard, sent, sessions, refused = hub.subscribe(), 0, 0, 0
     while sent < MESSAGES:
         session = PayloadSession(hub)
@@ -77,3 +85,11 @@ def test_no_message_of_a_payload_makes_the_server_stumble(capsys: pytest.Capture
     passed = list(heard._samples)
     assert passed
     assert all(math.isfinite(s.power_db) and math.isfinite(s.at_s) and abs(s.power_db) <= 400.0 for s in passed)
+    figures = [
+        wanted("fuzz_messages", sent, of="payload"),
+        wanted("fuzz_failures", 0, of="payload"),
+        plain("sessions", sessions, ""),
+        plain("sessions refused", refused, ""),
+    ]
+    page = "faults-in-flight.md#fuzzing"
+    write(Path(OUT) if OUT else None, "fuzz_payload", "Fuzzing the payload's link", begun, figures, page=page)

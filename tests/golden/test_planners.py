@@ -1,6 +1,6 @@
 """Where the planners compared with go, in three situations: planners.json holds their answers.
 
-A change here is a change of behaviour: say why in the commit. CROSSFIX_WRITE_GOLDEN=1 writes the file anew.
+A change here is a change of behaviour: say why in the commit. CROSSFIX_WRITE_GOLDEN=1 rewrites the file.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Seeded decisions kept as JSON: a change of the numbers must be meant.
 
-`CROSSFIX_WRITE_GOLDEN=1 pytest tests/planner/test_golden.py` writes them anew.
+`CROSSFIX_WRITE_GOLDEN=1 pytest tests/planner/test_golden.py` rewrites them.
 """
 
 import json
@@ -13,6 +13,7 @@ import pytest
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import fold
 from planner.geometry import signed_area
+from planner.options import PlannerOptions
 from planner.plan import plan
 from planner.types import Bearing, GaussianPrior, LinearConstantMotion, LinearMotion, Problem, RingPrior
 
@@ -82,7 +83,7 @@ CASES = {
 def decided(name):
     problem, bearings, platform, options = CASES[name]
     belief = fold(problem, bearings)
-    decision = plan(problem, belief, bearings, platform, **options)
+    decision = plan(problem, belief, bearings, platform, PlannerOptions(**options))
     look = estimate(belief, problem.estimator)
     return {
         "place": [decision.x, decision.y],

@@ -37,11 +37,14 @@ def test_outside_the_widened_wedge_nothing_and_in_its_margin_the_edge():
     assert not inside_wedge(bearing, np.array([-10.0]), np.array([0.0]), margin=2.0)[0]
 
 
+HERE = (np.array(100.0), np.array(20.0))
+
+
 @given(st.floats(0.0, 0.5), st.floats(0.1, 1.0))
 def test_a_mixture_integrates_to_one_over_the_bearing(eps, weight):
     angles = np.linspace(-np.pi, np.pi, 20_001)[:-1]
     values = [
-        mixture_likelihood(Bearing(0.0, 0.0, float(z), SIGMA, eps, (Peak(float(z) + 1.5, weight),)), 100.0, 20.0)
+        mixture_likelihood(Bearing(0.0, 0.0, float(z), SIGMA, eps, (Peak(float(z) + 1.5, weight),)), *HERE)
         for z in angles[::50]
     ]
     assert np.mean(values) * 2 * np.pi == pytest.approx(1.0, rel=1e-3)

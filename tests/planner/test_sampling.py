@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from refusals import refusing
 
 from planner.belief.grid import prior_belief
+from planner.reasons import UnusableNumber
 from planner.sampling import deterministic_paths, equal_mass_points, random_noise, random_paths, random_targets
-from planner.types import GaussianPrior, LinearMotion, PlannerError, Problem
+from planner.types import GaussianPrior, LinearMotion, Problem
 
 SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
 
@@ -70,5 +72,5 @@ def test_deterministic_paths_hear_no_noise():
 
 @pytest.mark.parametrize("count", [0, 3, 12])
 def test_deterministic_paths_need_a_power_of_two(count):
-    with pytest.raises(PlannerError, match="power of two"):
+    with refusing(UnusableNumber("paths", "power_of_two", str(count))):
         deterministic_paths(belief(), count, 5)

@@ -5,9 +5,11 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import refusing
 
-from planner.travel import lattice_distances, road_map, straight_suffices, travel_distances, travel_path
-from planner.types import LinearMotion, PlannerError, Problem
+from planner.reasons import NoWay
+from planner.travel import lattice_distances, straight_suffices, travel_distances, travel_path, visibility_graph
+from planner.types import LinearMotion, Problem
 
 
 def rectangle(x0, y0, x1, y1):
@@ -23,42 +25,48 @@ def problem(flight_area=None, no_fly=()):
     return Problem((FENCE,), 0.1, 5.0, 1.0, LinearMotion(5.0), flight_area=area, no_fly=no_fly)
 
 
+def way(problem, start, end):
+    return travel_path(problem, np.array(start, float), np.array(end, float))
+
+
 def length(path):
     return float(np.hypot(*np.diff(path, axis=0).T).sum())
 
 
 def test_a_free_way_is_straight():
-    assert travel_path(problem(FENCE), (10, 10), (90, 80)).tolist() == [[10, 10], [90, 80]]
+    assert way(problem(FENCE), (10, 10), (90, 80)).tolist() == [[10, 10], [90, 80]]
 
 
 def test_a_no_fly_area_is_flown_around_on_the_shorter_side():
-    path = travel_path(problem(FENCE, (rectangle(40, 20, 60, 95),)), (10, 50), (90, 50))
+    path = way(problem(FENCE, (rectangle(40, 20, 60, 95),)), (10, 50), (90, 50))
     assert len(path) == 4
     assert path[1:3, 1].max() < 20.0
     assert length(path) == pytest.approx(length(np.array([[10, 50], [40, 20], [60, 20], [90, 50]])), rel=0.05)
 
 
 def test_a_corner_of_a_non_convex_flight_area_is_turned_inside_it():
-    path = travel_path(problem(CORNER), (95, 35), (35, 95))
+    path = way(problem(CORNER), (95, 35), (35, 95))
     assert len(path) == 3
     assert path[1, 0] < 40.0
     assert path[1, 1] < 40.0
 
 
 def test_a_way_exactly_through_two_corners_is_no_way_through():
-    path = travel_path(problem(no_fly=(rectangle(40, 40, 60, 60),)), (0, 0), (100, 100))
+    path = way(problem(no_fly=(rectangle(40, 40, 60, 60),)), (0, 0), (100, 100))
     assert len(path) == 3
 
 
 def test_a_wall_across_the_fence_leaves_no_way():
     walled = problem(FENCE, (rectangle(40, -10, 60, 110),))
-    with pytest.raises(PlannerError, match="there is no way"):
-        travel_path(walled, (10, 50), (90, 50))
-    assert np.isinf(travel_distances(walled, road_map(walled), np.array([10.0, 50.0]), np.array([[90.0, 50.0]])))[0]
+    with refusing(NoWay(80.0)):
+        way(walled, (10, 50), (90, 50))
+    assert np.isinf(
+        travel_distances(walled, visibility_graph(walled), np.array([10.0, 50.0]), np.array([[90.0, 50.0]]))
+    )[0]
 
 
 def test_a_platform_outside_its_fence_first_comes_back():
-    path = travel_path(problem(FENCE), (-20, 50), (50, 50))
+    path = way(problem(FENCE), (-20, 50), (50, 50))
     assert path[0].tolist() == [-20, 50]
     assert 0 < path[1, 0] < 3
 
@@ -76,18 +84,18 @@ def test_a_way_stays_free_and_is_no_shorter_than_straight(a, b, x, y, size):
     path = travel_path(blocked, a, b)
     assert shapely.LineString(path).intersection(shape.buffer(-1e-6)).length == pytest.approx(0.0, abs=1e-6)
     assert length(path) >= np.hypot(a[0] - b[0], a[1] - b[1]) - 1e-9
-    distance = travel_distances(blocked, road_map(blocked), np.array(a), np.array([b]))[0]
+    distance = travel_distances(blocked, visibility_graph(blocked), np.array(a), np.array([b]))[0]
     assert distance == pytest.approx(length(path))
 
 
 def test_lattice_distances_are_the_ways_of_each_pair():
     blocked = problem(FENCE, (rectangle(30, 30, 70, 70),))
     places = np.array([[10.0, 50.0], [90.0, 50.0], [50.0, 10.0], [50.0, 90.0]])
-    roads = road_map(blocked)
+    graph = visibility_graph(blocked)
     matrix = lattice_distances(blocked, places)
     assert matrix == pytest.approx(matrix.T)
     for start, row in zip(places, matrix, strict=True):
-        assert row == pytest.approx(travel_distances(blocked, roads, start, places))
+        assert row == pytest.approx(travel_distances(blocked, graph, start, places))
 
 
 def test_only_convex_and_empty_air_is_straight():
@@ -101,7 +109,7 @@ def test_a_coast_of_a_thousand_corners_is_flown_around():
     angle = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
     radius = 20 + 2 * np.cos(40 * angle)
     coast = np.column_stack([50 + radius * np.cos(angle), 50 + radius * np.sin(angle)])
-    path = travel_path(problem(FENCE, (coast,)), (10, 50), (90, 50))
+    path = way(problem(FENCE, (coast,)), (10, 50), (90, 50))
     assert shapely.LineString(path).distance(shapely.Polygon(coast)) > 0.0
     around = shapely.MultiPoint([(10, 50), (90, 50), *coast]).convex_hull
     assert length(path) <= 0.5 * around.length + 3

@@ -31,11 +31,11 @@ class Console:
         self._news = asyncio.Event()
         self._watching: asyncio.Task[None] | None = None
 
-    async def draft(self, **changes: dict[str, Any]) -> str:
-        """The suggested mission; `changes`: parts of the specification, merged."""
+    async def draft(self, **changes: Any) -> str:
+        """The suggested mission; `changes`: parts of the specification; an object is merged into its part."""
         spec = (await self.client.get("/api/defaults")).json()["spec"]
         for part, values in changes.items():
-            spec[part] = spec[part] | values
+            spec[part] = spec[part] | values if isinstance(values, dict) else values
         answer = await self.client.post("/api/missions", json=spec)
         assert answer.status_code == 201, answer.text
         self.mission_id = answer.json()["mission_id"]
@@ -55,9 +55,9 @@ class Console:
         assert answer.status_code == 200, answer.text
         return answer.json()
 
-    async def start(self, wall_s: float = 30.0) -> list[str]:
-        """Order it until it is accepted, as a person would; why it was refused before."""
-        refused: list[str] = []
+    async def start(self, wall_s: float = 30.0) -> list[Event]:
+        """Order it until it is accepted, as a person would; the reasons why it was refused before."""
+        refused: list[Event] = []
         try:
             async with asyncio.timeout(wall_s):
                 while not (answer := await self.order("start"))["accepted"]:
@@ -113,6 +113,7 @@ class Console:
 
     @property
     def phases(self) -> list[str]:
+        """Of the craft."""
         return [e["event"]["after"] for e in self.of("phase_changed")]
 
     def story(self) -> str:

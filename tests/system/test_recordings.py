@@ -14,7 +14,7 @@ from console import Console
 
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sdr.sigmf_file import Azimuth, write_sigmf
 
 pytestmark = pytest.mark.system
@@ -23,10 +23,10 @@ REAL = Path(__file__).parents[3] / "shared" / "data" / "uavrt_rotation_example.c
 RATE_HZ = 8000.0
 
 
-def square(place: GeoPoint, side_m: float) -> dict[str, Any]:
+def square(place: Place, side_m: float) -> dict[str, Any]:
     frame, half = LocalFrame(place), side_m / 2.0
     corners = [frame.to_geo(x * half, y * half) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]
-    return {"type": "Polygon", "coordinates": [[(c.lon_deg, c.lat_deg) for c in corners]]}
+    return {"type": "Polygon", "coordinates": [[(c.lon, c.lat) for c in corners]]}
 
 
 async def drafted(operator: Console, **changes: Any) -> dict[str, Any]:
@@ -53,7 +53,7 @@ def plain(path: Path, bearing_deg: float, seed: int) -> Path:
 
 
 async def test_recordings_become_bearings_and_a_belief_of_a_draft(operator: Console, tmp_path: Path) -> None:
-    home = GeoPoint(50.6234, 7.2046)
+    home = Place(50.6234, 7.2046)
     frame, emitter = LocalFrame(home), (40.0, 110.0)
     mission_id = operator.mission_id
     answers = []
@@ -61,22 +61,23 @@ async def test_recordings_become_bearings_and_a_belief_of_a_draft(operator: Cons
         place = frame.to_geo(x, y)
         bearing = math.degrees(math.atan2(emitter[0] - x, emitter[1] - y)) % 360.0
         file = plain(tmp_path / f"turn{k}.csv", bearing, k)
-        words = {"lat": place.lat_deg, "lon": place.lon_deg, "at_utc": f"2026-05-01T10:0{k}:00Z"}
+        words = {"lat": place.lat, "lon": place.lon, "at_utc": f"2026-05-01T10:0{k}:00Z"}
         answer = await sent(operator, mission_id, file, **words)
         assert answer.status_code == 201, answer.text
         answers.append((file, words, answer.json()))
         assert answer.json()["sweeps"][0]["bearing_deg"] == pytest.approx(bearing, abs=3.0)
-        assert [r.split(":")[1] for r in answer.json()["remarks"][:2]] == ["92", "93"]
+        assert [r["line"] for r in answer.json()["remarks"][:2]] == [92, 93]
     mission = (await operator.client.get(f"/api/missions/{mission_id}")).json()
     assert (mission["phase"], mission["bearings"], mission["localized"]) == ("ready", 3, True)
-    found = frame.to_enu(GeoPoint(mission["estimate"]["lat"], mission["estimate"]["lon"]))
+    (estimate,) = [emitter["estimate"] for emitter in mission["found"]]
+    found = frame.to_enu(Place(estimate["lat"], estimate["lon"]))
     assert math.dist(found, emitter) < 15.0
     told = await events(operator, mission_id)
     kinds = [e["event"]["kind"] for e in told]
     ours = kinds[kinds.index("recording_imported") :]
-    assert ours == ["recording_imported", "sweep_started", "bearing_measured", "belief_updated"] * 3
+    assert ours == ["recording_imported", "bearing_measured", "belief_updated"] * 3
     await operator.until(lambda: len(operator.of("belief_updated")) == 3)
-    belief = await operator.client.get(f"/api/missions/{mission_id}/beliefs/2")
+    belief = await operator.client.get(f"/api/missions/{mission_id}/beliefs")
     assert belief.status_code == 200
     sweep_id = answers[1][2]["sweeps"][0]["sweep_id"]
     raw = (await operator.client.get(f"/api/missions/{mission_id}/sweeps/{sweep_id}")).json()
@@ -89,42 +90,48 @@ async def test_recordings_become_bearings_and_a_belief_of_a_draft(operator: Cons
     assert len(await events(operator, mission_id)) == len(told)
 
 
-async def test_imported_bearings_are_flown_with_and_a_flying_mission_takes_none(
+async def test_imported_bearings_are_flown_with_and_a_flying_mission_takes_more(
     operator: Console, tmp_path: Path
 ) -> None:
-    frame = LocalFrame(GeoPoint(50.6234, 7.2046))
+    frame = LocalFrame(Place(50.6234, 7.2046))
     place, mission_id = frame.to_geo(-120.0, 20.0), operator.mission_id
     file = plain(tmp_path / "turn.csv", 30.0, 1)
-    words = {"lat": place.lat_deg, "lon": place.lon_deg}
+    words = {"lat": place.lat, "lon": place.lon}
     imported = await sent(operator, mission_id, file, **words, frequency_hz=868.3e6)
     assert imported.status_code == 201
-    assert "looked for in IQ only" in imported.json()["remarks"][-2]
+    assert imported.json()["remarks"][-2]["code"] == "not_iq"
     await operator.start()
     await operator.until_event("plan_chosen")
     beliefs = operator.of("belief_updated")
     assert [b["event"]["bearings"] for b in beliefs] == [1, 1]
     assert operator.of("plan_chosen")[0]["event"]["place_number"] == 2
-    refused = await sent(operator, mission_id, plain(tmp_path / "other.csv", 40.0, 2), **words)
-    assert refused.status_code == 409
-    assert "flying" in refused.json()["detail"]
+    place_number = operator.of("plan_chosen")[-1]["event"]["place_number"]
+    another = await sent(operator, mission_id, plain(tmp_path / "other.csv", 40.0, 2), **words)
+    assert another.status_code == 201, another.text
+    sources = [e["event"]["source"]["kind"] for e in operator.of("bearing_measured")]
+    await operator.until(lambda: len(operator.of("belief_updated")) > len(beliefs))
+    assert operator.of("belief_updated")[-1]["event"]["bearings"] >= 2
+    assert sources[:1] == ["import"]
+    reached = await operator.until_event("place_reached")
+    assert reached["place_number"] == place_number
 
 
 @pytest.mark.skipif(not REAL.exists(), reason="no real recording on this machine")
 async def test_a_real_rotation_is_read_end_to_end(operator: Console) -> None:
-    there = GeoPoint(35.1779665, -111.65683)
+    there = Place(35.1779665, -111.65683)
     draft = await drafted(operator, area=square(there, 800.0), name="Flagstaff")
     answer = await sent(operator, draft["mission_id"], REAL)
     assert answer.status_code == 201, answer.text
     (sweep,) = answer.json()["sweeps"]
     assert sweep["accepted"]
     assert sweep["bearing_deg"] == pytest.approx(197.6, abs=3.0 * sweep["sigma_deg"])
-    assert sweep["place"]["lat"] == pytest.approx(there.lat_deg, abs=1e-6)
+    assert sweep["place"]["lat"] == pytest.approx(there.lat, abs=1e-6)
     remarks = answer.json()["remarks"]
-    assert [r.split(":")[1] for r in remarks if "-9999" in r] == ["32", "94", "177", "178", "180"]
-    assert all(r.startswith(REAL.name) for r in remarks)
+    assert [r["line"] for r in remarks if r.get("cell") == "-9999"] == [32, 94, 177, 178, 180]
+    assert all(r["file"] == REAL.name for r in remarks)
     wrong = await sent(operator, operator.mission_id, REAL)
     assert wrong.status_code == 422
-    assert "km from the mission's area" in wrong.json()["detail"]
+    assert wrong.json()["reason"]["code"] == "recording_too_far"
 
 
 async def test_iq_of_a_turn_is_imported_with_its_headings(operator: Console, tmp_path: Path) -> None:
@@ -133,14 +140,14 @@ async def test_iq_of_a_turn_is_imported_with_its_headings(operator: Console, tmp
     noise = np.random.default_rng(1).normal(size=(2, t.size)) * 1e-4
     iq = 10.0 ** (gain_db / 20.0 - 1.0) * np.exp(2j * np.pi * 900.0 * t) + noise[0] + 1j * noise[1]
     azimuths = [Azimuth(int(s * RATE_HZ), 0, 30.0 * s % 360.0) for s in np.arange(0.0, 12.0, 0.1)]
-    here = GeoPoint(50.6236, 7.2050)
+    here = Place(50.6236, 7.2050)
     meta = write_sigmf(tmp_path / "t", iq.astype(np.complex64), RATE_HZ, 868.2991e6, 1.78e9, azimuths, here)
     answer = await sent(operator, operator.mission_id, meta.with_suffix(".sigmf-data"), meta)
     assert answer.status_code == 201, answer.text
     assert answer.json()["sweeps"][0]["bearing_deg"] == pytest.approx(70.0, abs=1.5)
     alone = await sent(operator, operator.mission_id, meta)
     assert alone.status_code == 422
-    assert "is missing; it holds the samples" in alone.json()["detail"]
+    assert alone.json()["reason"]["code"] == "sigmf_file_missing"
 
 
 async def test_what_cannot_be_imported_leaves_nothing_behind(operator: Console, tmp_path: Path) -> None:
@@ -151,15 +158,15 @@ async def test_what_cannot_be_imported_leaves_nothing_behind(operator: Console, 
     text.write_text("this is\nno recording\n")
     good = plain(tmp_path / "good.csv", 10.0, 3)
     for files, words, expected in (
-        ((empty,), place, "empty.csv: holds no data"),
-        ((text,), place, "heading"),
-        ((good,), {}, "does not tell where it was recorded"),
-        ((good,), {"lat": 50.6}, "both latitude and longitude"),
+        ((empty,), place, "file_unusable"),
+        ((text,), place, "columns_unknown"),
+        ((good,), {}, "recording_without_place"),
+        ((good,), {"lat": 50.6}, "half_given"),
         ((good,), {"lat": 95, "lon": 7}, "lat"),
         ((good,), place | {"at_utc": "yesterday"}, "at_utc"),
         ((good,), place | {"pulse_width_s": 0.02}, "pulse_period_s"),
         ((good,), place | {"offset_deg": "left"}, "offset_deg"),
-        ((good, text), place, "are two recordings"),
+        ((good, text), place, "two_recordings"),
         ((), place, "files"),
     ):
         answer = await sent(operator, mission_id, *files, **words)

@@ -8,18 +8,18 @@ import httpx
 import pytest
 from console import console
 
-from backend.cli.demo import TAG
+from backend.cli.demo import TAG, TAG_SENSOR
 from backend.cli.running import RunningServer
-from backend.wiring import emitter_place
+from backend.simulation.emitters import EMITTERS, emitter_places
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 pytestmark = pytest.mark.system
 
 
 async def test_a_wildlife_tag_is_found_by_its_pulses(server: RunningServer) -> None:
     async with console(server.url) as operator:
-        await operator.draft(planner={"seed": 3}, **TAG)
+        await operator.draft(planner={"seed": 3}, emitters=[TAG.model_dump(mode="json")], sensor=TAG_SENSOR)
         await operator.ready()
         await operator.watch()
         await operator.start()
@@ -27,12 +27,12 @@ async def test_a_wildlife_tag_is_found_by_its_pulses(server: RunningServer) -> N
         mission = (await operator.client.get(f"/api/missions/{operator.mission_id}")).json()
         assert mission["outcome"] == "localized"
         assert server.receiver is not None
-        home = GeoPoint(mission["home"]["lat"], mission["home"]["lon"])
-        truth = server.receiver.truth
-        assert truth is not None
-        estimate = GeoPoint(mission["estimate"]["lat"], mission["estimate"]["lon"])
-        assert math.hypot(*LocalFrame(truth).to_enu(estimate)) < 4 * mission["estimate"]["expected_rmse_m"]
-        assert math.hypot(*LocalFrame(truth).to_enu(emitter_place(3, home, 150e6))) < 1.0
+        home = Place(mission["home"]["lat"], mission["home"]["lon"])
+        truth = server.receiver.truth[150e6]
+        (found,) = [emitter["estimate"] for emitter in mission["found"]]
+        estimate = Place(found["lat"], found["lon"])
+        assert math.hypot(*LocalFrame(truth).to_enu(estimate)) < 4 * found["expected_rmse_m"]
+        assert math.hypot(*LocalFrame(truth).to_enu(emitter_places(3, home, EMITTERS)[150e6])) < 1.0
         bearing = operator.of("bearing_measured")[0]["event"]
         sweep = await _sweep(operator.client, operator.mission_id, bearing["sweep_id"])
         seconds = sweep["at_s"][-1]

@@ -3,8 +3,8 @@ import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { t } from "../i18n";
 import { SafetyBar } from "../panels/SafetyBar";
-import { overlay } from "./overlay";
-import { route, type Route } from "./route";
+import { overlay } from "../state/overlay";
+import { type Route, route } from "../state/route";
 
 type Page = ComponentType<Record<string, unknown>>;
 type Loader = () => Promise<unknown>;
@@ -34,7 +34,10 @@ function Lazy({ name, quiet = false, ...properties }: { name: keyof typeof loade
   if (state.failed) {
     return (
       <p class="center" role="alert">
-        {t("app.loadFailed")} <button onClick={() => location.reload()}>{t("app.reload")}</button>
+        {t("app.loadFailed")}{" "}
+        <button type="button" onClick={() => location.reload()}>
+          {t("app.reload")}
+        </button>
       </p>
     );
   }

@@ -1,8 +1,9 @@
 // The address says which mission is shown, hence which source speaks: one place decides, whatever page comes or goes.
 import { effect } from "@preact/signals";
-import { route } from "./route";
+import { source } from "../state/connection";
+import { open } from "../state/open";
+import { route } from "../state/route";
 import { sourceFor } from "./sourceFor";
-import { open, source } from "./store";
 
 export function followRoute(): () => void {
   return effect(() => {

@@ -1,8 +1,9 @@
 // Keys: '?' shows the sheet. Flight commands are chords, so that no single stray key flies anything.
 import { sendUrgent, type Urgent } from "../commands/urgent";
-import { overlay, toggle } from "./overlay";
-import { change, settings } from "./settings";
-import { flying, look } from "./store";
+import { flying } from "../state/flying";
+import { look } from "../state/moment";
+import { overlay, toggle } from "../state/overlay";
+import { change, settings } from "../state/settings";
 
 const CHORDS: Record<string, Urgent> = { KeyA: "abort", KeyH: "hold", KeyR: "return" };
 

@@ -137,7 +137,7 @@ export function SlideToConfirm({ label, testId, onConfirm, onCancel, disabled = 
           ›
         </div>
       </div>
-      <button class="icon" aria-label={t("slide.cancel")} data-testid={`${testId}-cancel`} onClick={onCancel}>
+      <button type="button" class="icon" aria-label={t("slide.cancel")} data-testid={`${testId}-cancel`} onClick={onCancel}>
         ✕
       </button>
     </div>

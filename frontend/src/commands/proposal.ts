@@ -1,6 +1,7 @@
 // The operator's own next place: asked what it costs first, flown to only after a slide.
 import { signal } from "@preact/signals";
-import { live, source } from "../app/store";
+import { source } from "../state/connection";
+import { liveMission } from "../state/moment";
 import type { ExpectedTime, Place, Problem } from "../wire";
 import { asProblem, report, send } from "./send";
 
@@ -18,14 +19,14 @@ let asking: AbortController | null = null;
 
 export function propose(place: Place): void {
   const from = source.peek();
-  const id = live.peek().mission.missionId;
+  const id = liveMission.peek().missionId;
   if (!from || !id) return;
   asking?.abort();
   asking = new AbortController();
   const { signal: aborted } = asking;
   report("proposal", null);
   proposal.value = { place, result: null, problem: null, compareS: null };
-  const planned = live.peek().mission.plan?.fact.place;
+  const planned = liveMission.peek().plan?.fact.place;
   const mine = from.expectedTime(id, place, aborted);
   const theirs = planned ? from.expectedTime(id, planned, aborted).catch(() => null) : Promise.resolve(null);
   void Promise.all([mine, theirs]).then(
@@ -47,7 +48,7 @@ export function cancelProposal(): void {
 
 export async function confirmProposal(): Promise<void> {
   const chosen = proposal.peek();
-  const id = live.peek().mission.missionId;
+  const { missionId: id, craftId } = liveMission.peek();
   if (!chosen || !id) return;
-  if (await send("proposal", id, { kind: "override", place: chosen.place })) proposal.value = null;
+  if (await send("proposal", id, { kind: "override", craft_id: craftId, place: chosen.place })) proposal.value = null;
 }

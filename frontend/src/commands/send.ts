@@ -1,9 +1,8 @@
 // Sending a command and telling what became of it, at the place where it was given.
 import { signal } from "@preact/signals";
-import { t } from "../i18n";
-import { source } from "../app/store";
-import { localProblem, RequestFailed, unreachable } from "../sources/problem";
-import type { Command, CommandReply, Problem } from "../wire";
+import { RequestFailed, refusal, unreachable } from "../sources/problem";
+import { source } from "../state/connection";
+import type { Command, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
 export type Desk = "bar" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area";
@@ -16,14 +15,7 @@ export function report(desk: Desk, problem: Problem | null): void {
 }
 
 export const asProblem = (error: unknown): Problem =>
-  error instanceof RequestFailed
-    ? error.problem
-    : unreachable(error instanceof Error ? error.message : String(error)).problem;
-
-export const refusal = (reply: CommandReply): Problem => ({
-  ...localProblem(t("problem.refused"), reply.reason, 200),
-  remedy: reply.remedy,
-});
+  error instanceof RequestFailed ? error.problem : unreachable(error instanceof Error ? error.message : String(error)).problem;
 
 /** True when the server accepted it; otherwise the reason stands at `desk`. */
 export async function send(desk: Desk, missionId: string, command: Command): Promise<boolean> {
@@ -33,7 +25,7 @@ export async function send(desk: Desk, missionId: string, command: Command): Pro
   try {
     const reply = await from.send(missionId, command);
     if (reply.accepted) return true;
-    report(desk, refusal(reply));
+    report(desk, refusal(reply.reason));
   } catch (error) {
     report(desk, asProblem(error));
   }

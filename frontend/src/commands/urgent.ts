@@ -1,9 +1,9 @@
 // Abort, hold and return: sent at once, and again under the same id until the server answers.
 import { signal } from "@preact/signals";
-import { source } from "../app/store";
 import { newCommandId } from "../sources/api";
-import { RequestFailed } from "../sources/problem";
-import { asProblem, refusal, report } from "./send";
+import { RequestFailed, refusal } from "../sources/problem";
+import { source } from "../state/connection";
+import { asProblem, report } from "./send";
 
 export type Urgent = "abort" | "hold" | "return";
 
@@ -36,7 +36,7 @@ export async function sendUrgent(missionId: string, kind: Urgent): Promise<void>
     try {
       const reply = await source.peek()!.send(missionId, { kind }, commandId);
       if (!reply.accepted) {
-        report("bar", refusal(reply));
+        report("bar", refusal(reply.reason));
         break;
       }
       report("bar", null);

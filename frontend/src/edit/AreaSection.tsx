@@ -1,18 +1,21 @@
 // Where it may be: drawn, imported or typed; fence and no-fly areas beside it.
 import { useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { t } from "../i18n";
+import { asProblem } from "../commands/send";
+import { reasonText, t } from "../i18n";
+import { problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
-import { RequestFailed } from "../sources/problem";
-import { NotAPlan, readPlan } from "../sources/qgcPlan";
+import type { RequestFailed } from "../sources/problem";
 import { areaM2, cornerCount, cornersFromText, polygonsOf } from "../state/areas";
+import { settings } from "../state/settings";
 import { formatArea } from "../units/quantities";
 import type { Area } from "../wire";
 import { coverage } from "./coverage";
 import { change, draft } from "./draft";
-import { add, remove, tool, what, type What } from "./drawing";
+import { add, remove, tool, type What, what } from "./drawing";
+import { firstEmitter, PRIOR } from "./emitter";
+import { FormField, Message, PlaceField } from "./FormField";
 import type { NumberField } from "./fields";
-import { FormField, PlaceField } from "./FormField";
+import { NotAPlan, readPlan } from "./qgcPlan";
 
 const MARGIN: NumberField = { kind: "number", path: "flight.fence_margin_m", label: "edit.fence.marginValue", unit: "m", min: 0 };
 
@@ -27,15 +30,15 @@ async function importFile(file: File, kind: What): Promise<string[]> {
   }
   const imported = await api.importArea(text, file.name);
   add(kind, polygonsOf(imported.area as Area));
-  return imported.notes;
+  return imported.notes.map(reasonText);
 }
 
 const importProblem = (name: string, error: unknown): string => {
-  const reason = error instanceof RequestFailed ? `${error.problem.detail} ${error.problem.remedy}`.trim() : error instanceof NotAPlan ? error.message : String(error);
+  const reason = error instanceof NotAPlan ? error.message : problemWords(asProblem(error));
   return t("edit.importFailed", { name, reason });
 };
 
-/** A dropped or chosen file goes into what is being drawn; what was left out or wrong is told. */
+/** A dropped or chosen file goes into what is being drawn; a note says what was left out or wrong. */
 export async function takeFile(file: File, onTold: (lines: string[]) => void): Promise<void> {
   onTold(await importFile(file, what.peek()).catch((error: unknown) => [importProblem(file.name, error)]));
 }
@@ -48,7 +51,7 @@ function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
         (imported) => {
           add(what.peek(), polygonsOf(imported.area as Area));
           setText("");
-          onTold(imported.notes);
+          onTold(imported.notes.map(reasonText));
         },
         (error: unknown) => onTold([importProblem("GeoJSON", error)]),
       );
@@ -68,7 +71,14 @@ function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
       <label class="visually-hidden" for="paste-area">
         {t("edit.area.typed")}
       </label>
-      <textarea id="paste-area" data-testid="paste-area" rows={5} value={text} placeholder={"50.73400 N 7.09800 E\n50.73400 N 7.10200 E\n50.73550 N 7.10200 E"} onInput={(e) => setText(e.currentTarget.value)} />
+      <textarea
+        id="paste-area"
+        data-testid="paste-area"
+        rows={5}
+        value={text}
+        placeholder={"50.73400 N 7.09800 E\n50.73400 N 7.10200 E\n50.73550 N 7.10200 E"}
+        onInput={(e) => setText(e.currentTarget.value)}
+      />
       <button type="button" data-testid="paste-apply" disabled={text.trim() === ""} onClick={use}>
         {t("edit.area.pasteApply")}
       </button>
@@ -77,18 +87,23 @@ function Paste({ onTold }: { onTold: (lines: string[]) => void }) {
 }
 
 function Prior({ failed }: { failed: RequestFailed | null }) {
-  const { prior } = draft.value!.spec;
+  const { prior } = firstEmitter(draft.value!.spec);
   const centre = () => {
     const corners = polygonsOf(draft.peek()!.spec.area as Area).flat(2);
     const mean = (i: 0 | 1) => corners.reduce((sum, p) => sum + p[i], 0) / corners.length;
     return { lat: mean(1), lon: mean(0) };
   };
   const choose = (kind: string) => {
-    if (kind === "gaussian") change("prior", { kind, centre: centre(), sigma_major_m: 50, sigma_minor_m: 50, major_axis_deg: 0 });
-    else if (kind === "ring") change("prior", { kind, centre: centre(), inner_m: 30, outer_m: 300 });
-    else change("prior", { kind: "uniform" });
+    if (kind === "gaussian") change(PRIOR, { kind, centre: centre(), sigma_major_m: 50, sigma_minor_m: 50, major_axis_deg: 0 });
+    else if (kind === "ring") change(PRIOR, { kind, centre: centre(), inner_m: 30, outer_m: 300 });
+    else change(PRIOR, { kind: "uniform" });
   };
-  const metres = (path: string, label: NumberField["label"]): NumberField => ({ kind: "number", path, label, unit: "m" });
+  const metres = (name: string, label: NumberField["label"]): NumberField => ({
+    kind: "number",
+    path: `${PRIOR}.${name}`,
+    label,
+    unit: "m",
+  });
   return (
     <>
       <div class="field">
@@ -98,19 +113,20 @@ function Prior({ failed }: { failed: RequestFailed | null }) {
           <option value="gaussian">{t("edit.prior.gaussian")}</option>
           <option value="ring">{t("edit.prior.ring")}</option>
         </select>
+        <Message id="prior-kind" text={failed?.fieldMessage(PRIOR) ?? null} />
       </div>
-      {prior.kind !== "uniform" && <PlaceField path="prior.centre" label={t("edit.prior.centre")} failed={failed} />}
+      {prior.kind !== "uniform" && <PlaceField path={`${PRIOR}.centre`} label={t("edit.prior.centre")} failed={failed} />}
       {prior.kind === "gaussian" && (
         <>
-          <FormField field={metres("prior.sigma_major_m", "edit.prior.sigmaMajor")} failed={failed} />
-          <FormField field={metres("prior.sigma_minor_m", "edit.prior.sigmaMinor")} failed={failed} />
-          <FormField field={{ kind: "number", path: "prior.major_axis_deg", label: "edit.prior.axis", unit: "°" }} failed={failed} />
+          <FormField field={metres("sigma_major_m", "edit.prior.sigmaMajor")} failed={failed} />
+          <FormField field={metres("sigma_minor_m", "edit.prior.sigmaMinor")} failed={failed} />
+          <FormField field={{ kind: "number", path: `${PRIOR}.major_axis_deg`, label: "edit.prior.axis", unit: "°" }} failed={failed} />
         </>
       )}
       {prior.kind === "ring" && (
         <>
-          <FormField field={metres("prior.inner_m", "edit.prior.inner")} failed={failed} />
-          <FormField field={metres("prior.outer_m", "edit.prior.outer")} failed={failed} />
+          <FormField field={metres("inner_m", "edit.prior.inner")} failed={failed} />
+          <FormField field={metres("outer_m", "edit.prior.outer")} failed={failed} />
         </>
       )}
     </>
@@ -129,10 +145,14 @@ function DrawTools({ onTold }: { onTold: (lines: string[]) => void }) {
     <div class="draw-tools">
       <label class="field-inline">
         {t("edit.draw.what")}
-        <select data-testid="draw-what" value={what.value} onChange={(e) => {
-          tool.value = "none";
-          what.value = e.currentTarget.value as What;
-        }}>
+        <select
+          data-testid="draw-what"
+          value={what.value}
+          onChange={(e) => {
+            tool.value = "none";
+            what.value = e.currentTarget.value as What;
+          }}
+        >
           {KINDS.map((k) => (
             <option value={k.what} key={k.what}>
               {t(k.label)}
@@ -203,17 +223,24 @@ export function AreaSection({ failed, told, onTold }: Properties) {
       </div>
       {coverage.value && (
         <p class={coverage.value.covered ? "muted" : ""} data-testid="coverage" data-covered={coverage.value.covered}>
-          {coverage.value.summary}
+          {reasonText(coverage.value.summary)}
         </p>
       )}
       {(failed?.fieldMessage("area") || failed?.fieldMessage("area.coordinates")) && (
-        <p class="field-message" role="alert">{failed.fieldMessage("area") ?? failed.fieldMessage("area.coordinates")}</p>
+        <p class="field-message" role="alert">
+          {failed.fieldMessage("area") ?? failed.fieldMessage("area.coordinates")}
+        </p>
       )}
       <div class="area-row">
         <span>
-          <strong>{t("edit.fence")}:</strong> {fence ? t("edit.fence.own", { area: formatArea(areaM2(fence), units) }) : t("edit.fence.margin")}
+          <strong>{t("edit.fence")}:</strong>{" "}
+          {fence ? t("edit.fence.own", { area: formatArea(areaM2(fence), units) }) : t("edit.fence.margin")}
         </span>
-        {fence && <button type="button" onClick={() => remove("fence")}>{t("edit.fence.remove")}</button>}
+        {fence && (
+          <button type="button" onClick={() => remove("fence")}>
+            {t("edit.fence.remove")}
+          </button>
+        )}
       </div>
       {!fence && <FormField field={MARGIN} failed={failed} />}
       {(now.spec.flight.no_fly as Area[]).map((area, i) => (

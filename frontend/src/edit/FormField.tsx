@@ -1,11 +1,12 @@
 // One row of the form: label, input, unit, and what is wrong with it.
-import { settings } from "../app/settings";
+
 import { t } from "../i18n";
 import type { RequestFailed } from "../sources/problem";
+import { settings } from "../state/settings";
 import { formatPlace, parsePlace } from "../units/coordinates";
 import type { Place } from "../wire";
 import { change, draft, type } from "./draft";
-import { shownUnit, shownValue, typedNumber, type ChoiceField, type Field, type NumberField } from "./fields";
+import { type ChoiceField, type Field, type NumberField, shownUnit, shownValue, typedNumber } from "./fields";
 import { get } from "./path";
 
 interface Properties<F> {
@@ -15,7 +16,7 @@ interface Properties<F> {
 
 const idOf = (path: string) => `field-${path.replaceAll(".", "-")}`;
 
-function Message({ id, text }: { id: string; text: string | null }) {
+export function Message({ id, text }: { id: string; text: string | null }) {
   return text ? (
     <div class="field-message" id={`${id}-message`} role="alert">
       {text}
@@ -23,8 +24,7 @@ function Message({ id, text }: { id: string; text: string | null }) {
   ) : null;
 }
 
-const unitWords = (unit: string) =>
-  unit === "times" || unit === "places" || unit === "bearings" ? t(`unit.${unit}`) : unit;
+const unitWords = (unit: string) => (unit === "times" || unit === "places" || unit === "bearings" ? t(`unit.${unit}`) : unit);
 
 function NumberInput({ field, failed }: Properties<NumberField>) {
   const now = draft.value!;
@@ -65,7 +65,12 @@ function Choice({ field, failed }: Properties<ChoiceField>) {
   return (
     <div class="field">
       <label for={id}>{t(field.label)}</label>
-      <select id={id} data-testid={id} value={String(get(draft.value!.spec, field.path))} onChange={(e) => change(field.path, e.currentTarget.value)}>
+      <select
+        id={id}
+        data-testid={id}
+        value={String(get(draft.value!.spec, field.path))}
+        onChange={(e) => change(field.path, e.currentTarget.value)}
+      >
         {field.options.map((o) => (
           <option value={o.value} key={o.value}>
             {o.label ? t(o.label) : o.value}

@@ -1,7 +1,7 @@
-import { settings } from "../app/settings";
-import { mission } from "../app/store";
-import { t, told } from "../i18n";
+import { reasonRemedy, reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration, formatLength } from "../units/quantities";
 import type { AreaOutlook } from "../wire";
@@ -30,9 +30,9 @@ function Expected({ found }: { found: AreaOutlook }) {
         </p>
       )}
       {plan && <p class="muted">{t("area.next", { place: formatPlace(plan.place, coordinates) })}</p>}
-      {!plan && !belief.localized && (
+      {found.no_plan && !belief.localized && (
         <p class="refused" role="alert">
-          {t("area.noPlan", { reason: told(found.no_plan) })}
+          {t("area.noPlan", { reason: reasonText(found.no_plan) })}
         </p>
       )}
     </>
@@ -45,9 +45,9 @@ export function OutlookCard({ judged }: { judged: OutlookState }) {
   return (
     <section aria-label={t("area.outlook")} data-testid="outlook" data-allowed={found?.allowed ?? ""}>
       {problem && <ProblemBox problem={problem} />}
-      {found && !found.allowed && (
+      {found?.reason && !found.allowed && (
         <p class="refused" role="alert" data-testid="outlook-refused">
-          {t("area.refused", { reason: told(found.reason), remedy: told(found.remedy) })}
+          {t("area.refused", { reason: reasonText(found.reason) })} {reasonRemedy(found.reason)}
         </p>
       )}
       {found && <Expected found={found} />}

@@ -1,10 +1,11 @@
-import { settings } from "../app/settings";
-import { live, vehicle } from "../app/store";
-import { t, told } from "../i18n";
+import { reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
+import { coveredShare, plannedBudget } from "../state/budget";
+import { telemetry } from "../state/heard";
+import { settings } from "../state/settings";
+import { vehicle } from "../state/vehicle";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration } from "../units/quantities";
-import { coveredShare, plannedBudget } from "../state/budget";
 import type { MissionSpec } from "../wire";
 import { draft } from "./draft";
 import { askPreview, histogram, preview } from "./preview";
@@ -31,7 +32,7 @@ function Histogram({ times }: { times: readonly number[] }) {
 /** How many of the simulated searches the charge covers, the way home from the farthest corner and the reserve kept. */
 function BatteryCover({ times, spec }: { times: readonly number[]; spec: MissionSpec }) {
   const at = vehicle.value.at;
-  const reported = live.value.telemetry?.value.battery_percent ?? null;
+  const reported = telemetry.value?.value.battery_percent ?? null;
   if (!at || times.length < 2) return null;
   const budget = plannedBudget(reported ?? 100, at, spec);
   const share = coveredShare(budget, times);
@@ -51,7 +52,12 @@ export function PreviewCard() {
     <section class="panel" aria-label={t("preview.title")} data-testid="preview">
       <h2>
         {t("preview.title")}
-        <button type="button" data-testid="preview-run" disabled={state?.running || !draft.value?.hasArea} onClick={() => void askPreview(draft.peek()!.spec)}>
+        <button
+          type="button"
+          data-testid="preview-run"
+          disabled={state?.running || !draft.value?.hasArea}
+          onClick={() => void askPreview(draft.peek()!.spec)}
+        >
           {t(state?.running ? "preview.running" : "preview.run")}
         </button>
       </h2>
@@ -67,7 +73,7 @@ export function PreviewCard() {
           {found.times_s.length > 1 && <Histogram times={found.times_s} />}
           <BatteryCover times={found.times_s} spec={draft.value!.spec} />
           <p class="muted">
-            {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: told(found.reason) })}
+            {t("preview.first", { place: formatPlace(found.first_place, settings.value.coordinates), reason: reasonText(found.reason) })}
           </p>
         </>
       )}

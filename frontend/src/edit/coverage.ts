@@ -1,12 +1,12 @@
 // Do the offline maps on this server cover the search area? Asked when the area changes, said in one sentence.
 import { computed, effect, signal } from "@preact/signals";
 import { coverage as ask, listMaps } from "../sources/mapsApi";
-import type { Area } from "../wire";
+import type { Area, Reason } from "../wire";
 import { draft } from "./draft";
 
 export interface Covered {
   covered: boolean;
-  summary: string;
+  summary: Reason;
 }
 
 /** null: nothing to say, since there is no map or no area. */

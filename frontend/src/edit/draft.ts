@@ -18,12 +18,13 @@ const storageKey = (key: string) => `crossfix.draft.${key}`;
 
 export const draft = signal<Draft | null>(null);
 
+/** null when there is none, or one of an older page. */
 export function storedDraft(key: string): Draft | null {
   const stored = localStorage.getItem(storageKey(key));
   if (!stored) return null;
   try {
     const parsed = JSON.parse(stored) as Draft;
-    return parsed.key === key && parsed.spec?.area ? parsed : null;
+    return parsed.key === key && parsed.spec?.area && parsed.spec.emitters?.length > 0 ? parsed : null;
   } catch {
     return null;
   }

@@ -32,7 +32,15 @@ export function remove(kind: What, index = 0): void {
   if (!now) return;
   if (kind === "area") update({ ...now, hasArea: false, suggested: false });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", null) });
-  else update({ ...now, spec: set(now.spec, "flight.no_fly", now.spec.flight.no_fly.filter((_, i) => i !== index)) });
+  else
+    update({
+      ...now,
+      spec: set(
+        now.spec,
+        "flight.no_fly",
+        now.spec.flight.no_fly.filter((_, i) => i !== index),
+      ),
+    });
 }
 
 /** Replaces all polygons of a kind after their corners were moved. */
@@ -42,7 +50,15 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   if (!now || !joined) return;
   if (kind === "area") update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
-  else update({ ...now, spec: set(now.spec, "flight.no_fly", polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings }))) });
+  else
+    update({
+      ...now,
+      spec: set(
+        now.spec,
+        "flight.no_fly",
+        polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings })),
+      ),
+    });
 }
 
 export function polygonsOfKind(kind: What): Rings[] {

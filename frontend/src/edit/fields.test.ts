@@ -1,10 +1,14 @@
 import { expect, it } from "vitest";
-import { someSpec } from "../state/examples";
+import { someSpec } from "../wire/examples";
+import { EMITTER, firstEmitter, PRIOR } from "./emitter";
 import { sections, shownUnit, shownValue, typedNumber } from "./fields";
 import { get, set } from "./path";
+import { presetOf, withPreset } from "./presets";
 
 it("every field of the form exists in the specification, so none edits nothing", () => {
-  for (const field of sections.flatMap((s) => s.fields)) expect(get(someSpec(), field.path), field.path).not.toBeUndefined();
+  const paths = sections.flatMap((s) => s.fields.map((field) => field.path));
+  const ofEmitter = ["label", "frequency_hz", "kind", "prior"].map((name) => `${EMITTER}.${name}`);
+  for (const path of [...paths, ...ofEmitter]) expect(get(someSpec(), path), path).not.toBeUndefined();
 });
 
 it("numbers are read as people type them", () => {
@@ -28,4 +32,25 @@ it("setting a value changes nothing else and nothing in place", () => {
   expect(changed.sensor.sigma_deg).toBe(3);
   expect(spec.sensor.sigma_deg).toBe(7);
   expect(changed.flight).toBe(spec.flight);
+});
+
+it("a field of the emitter sets it in its list, and leaves the other emitters alone", () => {
+  const [first] = someSpec().emitters;
+  const spec = { ...someSpec(), emitters: [first!, { ...first!, emitter_id: "other" }] };
+  const changed = set(spec, `${EMITTER}.frequency_hz`, 1e8);
+  expect(get(changed, `${EMITTER}.frequency_hz`)).toBe(1e8);
+  expect(changed.emitters[1]).toBe(spec.emitters[1]);
+  expect(spec.emitters[0]).toBe(first);
+  expect(set(changed, `${PRIOR}.kind`, "ring").emitters[0]).toEqual({
+    ...first,
+    frequency_hz: 1e8,
+    prior: { ...first!.prior, kind: "ring" },
+  });
+});
+
+it("a preset changes the first emitter and is found again", () => {
+  const beacon = withPreset(someSpec(), "beacon");
+  expect(presetOf(beacon)).toBe("beacon");
+  expect(firstEmitter(beacon)).toMatchObject({ frequency_hz: 121_500_000, kind: "carrier", prior: firstEmitter(someSpec()).prior });
+  expect(presetOf(set(beacon, `${EMITTER}.kind`, "pulsed"))).toBeNull();
 });

@@ -83,14 +83,60 @@ export const sections: readonly Section[] = [
   {
     title: "edit.section.planner",
     fields: [
-      { kind: "choice", path: "planner.method", label: "edit.method", options: [{ value: "rollout", label: "edit.method.rollout" }, { value: "base_policy", label: "edit.method.base_policy" }] },
+      {
+        kind: "choice",
+        path: "planner.method",
+        label: "edit.method",
+        options: [
+          { value: "rollout", label: "edit.method.rollout" },
+          { value: "base_policy", label: "edit.method.base_policy" },
+        ],
+      },
       number("planner.standoff_m", "edit.standoff", "m", { min: 0 }),
       number("planner.budget", "edit.budget", "", { min: 10, max: 100_000, step: 1, more: true }),
       number("planner.action_spacing_m", "edit.spacing", "m", { min: 0.5, more: true }),
-      { kind: "choice", path: "planner.base_policy", label: "edit.basePolicy", options: [{ value: "fisher", label: null }, { value: "ellipse", label: null }], more: true },
-      { kind: "choice", path: "planner.selection", label: "edit.selection", options: [{ value: "sequential_halving", label: "edit.selection.sequential_halving" }, { value: "uniform", label: "edit.selection.uniform" }], more: true },
-      { kind: "choice", path: "planner.sampling", label: "edit.sampling", options: [{ value: "crn", label: null }, { value: "deterministic", label: null }, { value: "pmc", label: null }], more: true },
-      { kind: "choice", path: "planner.estimator", label: "edit.estimator", options: [{ value: "map", label: "edit.estimator.map" }, { value: "expected_value", label: "edit.estimator.expected_value" }, { value: "geometric_median", label: "edit.estimator.geometric_median" }], more: true },
+      {
+        kind: "choice",
+        path: "planner.base_policy",
+        label: "edit.basePolicy",
+        options: [
+          { value: "fisher", label: null },
+          { value: "ellipse", label: null },
+        ],
+        more: true,
+      },
+      {
+        kind: "choice",
+        path: "planner.selection",
+        label: "edit.selection",
+        options: [
+          { value: "sequential_halving", label: "edit.selection.sequential_halving" },
+          { value: "uniform", label: "edit.selection.uniform" },
+        ],
+        more: true,
+      },
+      {
+        kind: "choice",
+        path: "planner.sampling",
+        label: "edit.sampling",
+        options: [
+          { value: "crn", label: null },
+          { value: "deterministic", label: null },
+          { value: "pmc", label: null },
+        ],
+        more: true,
+      },
+      {
+        kind: "choice",
+        path: "planner.estimator",
+        label: "edit.estimator",
+        options: [
+          { value: "map", label: "edit.estimator.map" },
+          { value: "expected_value", label: "edit.estimator.expected_value" },
+          { value: "geometric_median", label: "edit.estimator.geometric_median" },
+        ],
+        more: true,
+      },
       number("planner.seed", "edit.seed", "", { min: 0, step: 1, more: true }),
     ],
   },
@@ -100,10 +146,9 @@ export const sections: readonly Section[] = [
       number("timers.console_lost_hold_s", "edit.consoleHold", "s", { min: 1 }),
       number("timers.console_lost_return_s", "edit.consoleReturn", "s", { min: 1 }),
       number("timers.receiver_silent_s", "edit.receiverSilent", "s", { min: 1, more: true }),
-      number("timers.vehicle_command_s", "edit.commandTimeout", "s", { min: 1, more: true }),
     ],
   },
-]; // prettier-ignore
+];
 
 const IMPERIAL: Partial<Record<Unit, { unit: string; scale: number }>> = {
   m: { unit: "ft", scale: 0.3048 },

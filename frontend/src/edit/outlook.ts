@@ -23,9 +23,9 @@ export function clearOutlook(): void {
   outlook.value = null;
 }
 
-export const searchOf = ({ area, prior, flight }: MissionSpec): SearchArea => ({
+export const searchOf = ({ area, emitters, flight }: MissionSpec): SearchArea => ({
   area,
-  prior,
+  priors: Object.fromEntries(emitters.map(({ emitter_id, prior }) => [emitter_id, prior])),
   fence: flight.fence,
   fence_margin_m: flight.fence_margin_m,
   no_fly: flight.no_fly,

@@ -1,4 +1,4 @@
-// Reading and replacing a value deep inside a plain object, by "a.b.c". Nothing is changed in place.
+// Reading and replacing a value deep inside plain objects and lists, by "a.0.c". Nothing is changed in place.
 
 type Plain = Record<string, unknown>;
 
@@ -10,5 +10,6 @@ export function set<T>(object: T, path: string, value: unknown): T {
   const [key, ...rest] = path.split(".");
   const plain = object as unknown as Plain;
   const next = rest.length === 0 ? value : set(plain[key!] ?? {}, rest.join("."), value);
+  if (Array.isArray(object)) return object.with(Number(key), next) as T;
   return { ...plain, [key!]: next } as T;
 }

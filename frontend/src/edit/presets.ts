@@ -1,6 +1,8 @@
 // What is usually looked for, and how one listens to it. Only these values change; everything else stays as typed.
 import { t } from "../i18n";
 import type { MissionSpec } from "../wire";
+import { EMITTER, firstEmitter } from "./emitter";
+import { set } from "./path";
 
 export type PresetName = "wildlife" | "beacon" | "interference";
 
@@ -22,9 +24,9 @@ export const presetNames = Object.keys(presets) as PresetName[];
 
 export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
   const preset = presets[name];
+  const emitter = { ...firstEmitter(spec), frequency_hz: preset.frequencyHz, kind: preset.kind, label: t(`edit.preset.${name}`) };
   return {
-    ...spec,
-    emitter: { ...spec.emitter, frequency_hz: preset.frequencyHz, kind: preset.kind, label: t(`edit.preset.${name}`) },
+    ...set(spec, EMITTER, emitter),
     sensor: {
       ...spec.sensor,
       sigma_deg: preset.sigmaDeg,
@@ -35,8 +37,9 @@ export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
 }
 
 /** The preset that the values are still those of; null when one was changed. */
-export const presetOf = ({ emitter, sensor }: MissionSpec): PresetName | null =>
-  presetNames.find((name) => {
+export function presetOf(spec: MissionSpec): PresetName | null {
+  const [emitter, { sensor }] = [firstEmitter(spec), spec];
+  const found = presetNames.find((name) => {
     const { frequencyHz, kind, sigmaDeg, measurementS } = presets[name];
     return (
       emitter.frequency_hz === frequencyHz &&
@@ -44,4 +47,6 @@ export const presetOf = ({ emitter, sensor }: MissionSpec): PresetName | null =>
       sensor.sigma_deg === sigmaDeg &&
       sensor.measurement_time_s === measurementS
     );
-  }) ?? null;
+  });
+  return found ?? null;
+}

@@ -1,7 +1,7 @@
 // What to expect of the mission before take-off, asked of the planner.
 import { signal } from "@preact/signals";
-import * as api from "../sources/api";
 import { asProblem } from "../commands/send";
+import * as api from "../sources/api";
 import type { MissionSpec, PlanChosen, Preview, Problem } from "../wire";
 
 export interface PreviewState {
@@ -32,9 +32,12 @@ export async function askPreview(spec: MissionSpec): Promise<void> {
   }
 }
 
+/** As the event would be; no craft has it yet. */
 export const firstPlan = ({ first_place, start: _start, times_s: _times, ...found }: Preview): PlanChosen => ({
   ...found,
   kind: "plan_chosen",
+  craft_id: "",
+  emitter_id: null,
   place_number: 1,
   place: first_place,
   source: "planner",

@@ -1,6 +1,6 @@
 // @vitest-environment happy-dom
 import { expect, it } from "vitest";
-import { someSpec } from "../state/examples";
+import { someSpec } from "../wire/examples";
 import { set } from "./path";
 import { profileOf, profiles, readProfiles, removeProfile, saveProfile, withProfile } from "./profiles";
 

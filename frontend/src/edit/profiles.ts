@@ -6,7 +6,10 @@ export interface Profile {
   name: string;
   sensor: MissionSpec["sensor"];
   motion: MissionSpec["planner"]["motion"];
-  flight: Pick<MissionSpec["flight"], "altitude_relative_m" | "minimum_altitude_relative_m" | "maximum_altitude_relative_m" | "speed_m_s" | "reserve_battery_percent">; // prettier-ignore
+  flight: Pick<
+    MissionSpec["flight"],
+    "altitude_relative_m" | "minimum_altitude_relative_m" | "maximum_altitude_relative_m" | "speed_m_s" | "reserve_battery_percent"
+  >;
 }
 
 const KEY = "crossfix.profiles";
@@ -33,8 +36,7 @@ function keep(next: readonly Profile[]): void {
 }
 
 export function profileOf(spec: MissionSpec, name: string): Profile {
-  const { altitude_relative_m, minimum_altitude_relative_m, maximum_altitude_relative_m, speed_m_s, reserve_battery_percent } =
-    spec.flight;
+  const { altitude_relative_m, minimum_altitude_relative_m, maximum_altitude_relative_m, speed_m_s, reserve_battery_percent } = spec.flight;
   return {
     name,
     sensor: spec.sensor,

@@ -2,25 +2,26 @@
 import { computed, effect } from "@preact/signals";
 import type { GeoJSONSource, Map as GlMap } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
-import { TerraDraw, TerraDrawPolygonMode, TerraDrawRectangleMode, TerraDrawSelectMode, type GeoJSONStoreFeatures } from "terra-draw";
+import { type GeoJSONStoreFeatures, TerraDraw, TerraDrawPolygonMode, TerraDrawRectangleMode, TerraDrawSelectMode } from "terra-draw";
 import { TerraDrawMapLibreGLAdapter } from "terra-draw-maplibre-gl-adapter";
-import { settings } from "../app/settings";
-import { mission, vehicle } from "../app/store";
-import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
 import { draft } from "../edit/draft";
+import { add, polygonsOfKind, replace, tool, what } from "../edit/drawing";
 import { outlook } from "../edit/outlook";
 import { firstPlan, preview } from "../edit/preview";
 import { t } from "../i18n";
+import { type Rings, ringsApart, ringsTogether } from "../state/areas";
+import type { At } from "../state/emitter";
 import { boundsOf, lonLat } from "../state/geometry";
-import type { At } from "../state/mission";
-import { ringsApart, ringsTogether, type Rings } from "../state/areas";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
+import { vehicle } from "../state/vehicle";
 import type { MissionSpec, PlanChosen } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { createMap, fit, framed } from "./createMap";
 import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, planFeatures } from "./features";
 import { addSources, missionLayers } from "./layers";
-import { palettes, type Palette } from "./palette";
+import { type Palette, palettes } from "./palette";
 import { showVehicle } from "./vehicleMarker";
 
 type Hex = `#${string}`;
@@ -62,8 +63,8 @@ const ringsBack = (draw: TerraDraw): Rings[] =>
   ringsTogether(
     draw
       .getSnapshot()
-      .filter((f) => f.properties["mode"] === "polygon" && typeof f.properties["ring"] === "number")
-      .map((f) => ({ polygon: f.properties["polygon"] as number, ring: f.properties["ring"] as number, corners: ringsOf(f)[0] ?? [] })),
+      .filter((f) => f.properties.mode === "polygon" && typeof f.properties.ring === "number")
+      .map((f) => ({ polygon: f.properties.polygon as number, ring: f.properties.ring as number, corners: ringsOf(f)[0] ?? [] })),
   );
 
 /** Carries the chosen tool into Terra Draw, and what was drawn back into the draft. */
@@ -147,7 +148,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
         effect(() => {
           const now = draft.value;
           const shown = now ? planFeatures(now.spec) : collection([]);
-          put("plan", now?.hasArea ? shown : collection(shown.features.filter((f) => f.properties?.["what"] !== "area")));
+          put("plan", now?.hasArea ? shown : collection(shown.features.filter((f) => f.properties?.what !== "area")));
         }),
         effect(() => {
           const start = home.value;
@@ -185,7 +186,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
       if (framing && now) frameDraft(map, now.spec);
     });
     return () => {
-      stops.toReversed().forEach((stop) => stop());
+      for (const stop of stops.toReversed()) stop();
       map.remove();
       tool.value = "none";
     };
@@ -195,6 +196,7 @@ export function EditMap({ onFile }: { onFile: (file: File) => void }) {
       class={`map tool-${tool.value}`}
       ref={box}
       data-testid="edit-map"
+      role="application"
       aria-label={t("map.label")}
       onDragOver={(e) => e.preventDefault()}
       onDrop={(e) => {

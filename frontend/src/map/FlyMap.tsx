@@ -1,24 +1,37 @@
 // The mission on the map: everything follows the page's signals; clicks and drags propose a place, never fly there.
 import { computed, effect, signal } from "@preact/signals";
-import { Marker, type GeoJSONSource, type ImageSource, type Map as GlMap, type MapMouseEvent } from "maplibre-gl";
+import { type GeoJSONSource, type Map as GlMap, type ImageSource, type MapMouseEvent, Marker } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
-import { highlighted } from "../app/highlight";
-import { settings } from "../app/settings";
-import { cursor, mission, path, shownBelief, source, vehicle } from "../app/store";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
-import { t, told, type MessageKey } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
+import { shownBelief } from "../state/belief";
+import { source } from "../state/connection";
 import { boundsOf, lonLat } from "../state/geometry";
+import { highlighted } from "../state/highlight";
 import { inFlight, isHomeward } from "../state/mission";
+import { cursor } from "../state/moment";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
+import { path, vehicle } from "../state/vehicle";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration, formatLength } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
 import { addBasemap, basemap } from "./basemap";
 import { beliefPixels, imageCorners } from "./beliefImage";
 import { createMap, fit, framed, gridStepM } from "./createMap";
-import { areaPoints, candidateFeatures, collection, flightPoints, measuredFeatures, pathFeatures, planFeatures, type Features } from "./features";
+import {
+  areaPoints,
+  candidateFeatures,
+  collection,
+  type Features,
+  flightPoints,
+  measuredFeatures,
+  pathFeatures,
+  planFeatures,
+} from "./features";
 import { hover, watchHover } from "./hover";
-import { addSources, missionLayers, SWITCHES, type SourceName, type Switch } from "./layers";
+import { addSources, missionLayers, type SourceName, SWITCHES, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
 import { palettes } from "./palette";
 import { showVehicle } from "./vehicleMarker";
@@ -52,7 +65,14 @@ function paintBelief(map: GlMap): void {
 
 /** Empty at first; every belief is put into it. */
 function addBelief(map: GlMap): void {
-  const anywhere = imageCorners({ bounds: [[0, 0], [1, 0], [1, 1], [0, 1]] });
+  const anywhere = imageCorners({
+    bounds: [
+      [0, 0],
+      [1, 0],
+      [1, 1],
+      [0, 1],
+    ],
+  });
   map.addSource("belief", { type: "image", coordinates: anywhere });
   map.addLayer(
     { id: "belief", type: "raster", source: "belief", paint: { "raster-fade-duration": 0, "raster-resampling": "linear" } },
@@ -63,7 +83,7 @@ function addBelief(map: GlMap): void {
 function nextElement(): HTMLElement {
   const element = document.createElement("div");
   element.className = "next-place";
-  element.dataset["testid"] = "next-place";
+  element.dataset.testid = "next-place";
   return element;
 }
 
@@ -75,19 +95,6 @@ const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.pl
 const home = computed(() => mission.value.home);
 const phase = computed(() => mission.value.phase);
 
-/** The belief follows its bearing within this, or the bearing is drawn without it. */
-const BELIEF_FOLLOWS_MS = 300;
-
-/** A bearing, its estimate and its belief in one repaint: the belief would have to wait for the bearing's own. */
-function putMeasured(map: GlMap): (() => void) | undefined {
-  const measured = { spec: spec.value, bearings: bearings.value, belief: estimated.value };
-  const draw = () => put(map, "measured", measuredFeatures(measured));
-  const counted = measured.bearings.filter((b) => !b.excluded).length;
-  if (cursor.value !== null || shownBelief.value?.bearings === counted) return void draw();
-  const timer = setTimeout(draw, BELIEF_FOLLOWS_MS);
-  return () => clearTimeout(timer);
-}
-
 function putOverlays(map: GlMap): void {
   const overlays = shownOverlays.value;
   put(map, "overlays", overlays);
@@ -96,8 +103,7 @@ function putOverlays(map: GlMap): void {
   }
 }
 
-const canPropose = () =>
-  cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
+const canPropose = () => cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
 
 /** Everything that follows a signal, each in its own effect so that telemetry never redraws the plan. */
 function bind(map: GlMap): () => void {
@@ -118,7 +124,7 @@ function bind(map: GlMap): () => void {
       put(map, "home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(at) } }] : []));
     }),
     effect(() => paintBelief(map)),
-    effect(() => putMeasured(map)),
+    effect(() => put(map, "measured", measuredFeatures({ spec: spec.value, bearings: bearings.value, belief: estimated.value }))),
     effect(() => {
       for (const layer of missionLayers(palettes[settings.value.theme], basemap.value !== null)) {
         const by = layer.metadata?.switch;
@@ -145,7 +151,7 @@ function bind(map: GlMap): () => void {
     }),
   ];
   return () => {
-    stops.forEach((stop) => stop());
+    for (const stop of stops) stop();
     nextMarker.remove();
   };
 }
@@ -175,10 +181,10 @@ function MapTools({ map }: { map: { current: GlMap | null } }) {
   };
   return (
     <div class="map-tools">
-      <button data-testid="map-fit" onClick={() => map.current && frameAll(map.current, true)}>
+      <button type="button" data-testid="map-fit" onClick={() => map.current && frameAll(map.current, true)}>
         {t("map.fit")}
       </button>
-      <button aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
+      <button type="button" aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
         {t("map.follow")}
       </button>
       <details>
@@ -205,7 +211,7 @@ function Readout() {
       {expected?.allowed && expected.expected_time_s !== null && (
         <strong data-testid="hover-time">{t("map.hover", { time: formatDuration(expected.expected_time_s) })}</strong>
       )}
-      {expected && !expected.allowed && <span>{t("map.hoverNo", { reason: told(expected.reason) })}</span>}
+      {expected?.reason && !expected.allowed && <span>{t("map.hoverNo", { reason: reasonText(expected.reason) })}</span>}
       {basemap.value === null && gridStepM.value !== null && (
         <span class="muted">{t("map.grid", { length: formatLength(gridStepM.value, units) })}</span>
       )}
@@ -260,7 +266,7 @@ export function FlyMap() {
       if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
     });
     created.on("mousemove", "candidates", ({ features }) => {
-      highlighted.value = (features?.[0]?.properties["index"] as number | undefined) ?? null;
+      highlighted.value = (features?.[0]?.properties.index as number | undefined) ?? null;
     });
     created.on("mouseleave", "candidates", () => {
       highlighted.value = null;

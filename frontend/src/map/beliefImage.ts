@@ -3,10 +3,24 @@ import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 
 /** Every sixteenth colour of cividis (Nunez, Anderton, Renslow 2018), linear in between. */
 const CIVIDIS: readonly (readonly [number, number, number])[] = [
-  [0, 34, 78], [0, 46, 106], [26, 56, 111], [50, 67, 109], [67, 78, 108], [83, 90, 109], [97, 101, 111], [111, 112, 115],
-  [125, 124, 120], [140, 136, 120], [155, 148, 118], [171, 160, 114], [188, 174, 108], [205, 187, 99], [222, 201, 88],
-  [240, 216, 70], [254, 232, 56],
-]; // prettier-ignore
+  [0, 34, 78],
+  [0, 46, 106],
+  [26, 56, 111],
+  [50, 67, 109],
+  [67, 78, 108],
+  [83, 90, 109],
+  [97, 101, 111],
+  [111, 112, 115],
+  [125, 124, 120],
+  [140, 136, 120],
+  [155, 148, 118],
+  [171, 160, 114],
+  [188, 174, 108],
+  [205, 187, 99],
+  [222, 201, 88],
+  [240, 216, 70],
+  [254, 232, 56],
+];
 
 export function cividis(share: number): [number, number, number] {
   const position = Math.min(1, Math.max(0, share)) * (CIVIDIS.length - 1);
@@ -54,4 +68,9 @@ export function beliefPixels({ nx, ny, cells }: Pick<BeliefFrame, "nx" | "ny" | 
 }
 
 /** NW, NE, SE, SW: the order in which MapLibre wants an image's corners. */
-export const imageCorners = ({ bounds: [sw, se, ne, nw] }: Pick<BeliefFrame, "bounds">): [LonLat, LonLat, LonLat, LonLat] => [nw, ne, se, sw];
+export const imageCorners = ({ bounds: [sw, se, ne, nw] }: Pick<BeliefFrame, "bounds">): [LonLat, LonLat, LonLat, LonLat] => [
+  nw,
+  ne,
+  se,
+  sw,
+];

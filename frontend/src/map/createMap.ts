@@ -1,7 +1,17 @@
 // A MapLibre map that needs nothing from outside: plain grid, or an offline package from this server.
-import { addProtocol, AttributionControl, Map as GlMap, NavigationControl, ScaleControl, setWorkerUrl, type GeoJSONSource, type StyleSpecification } from "maplibre-gl";
-import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
+
 import { signal } from "@preact/signals";
+import {
+  AttributionControl,
+  addProtocol,
+  type GeoJSONSource,
+  Map as GlMap,
+  NavigationControl,
+  ScaleControl,
+  type StyleSpecification,
+  setWorkerUrl,
+} from "maplibre-gl";
+import workerUrl from "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url";
 import { t } from "../i18n";
 import type { UnitSystem } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
@@ -49,7 +59,7 @@ function plainStyle(colours: Palette): StyleSpecification {
 /** Where the camera was, so that another theme or page shows the same place. */
 let lastCamera: { center: LonLat; zoom: number } | null = null;
 
-/** The mission or draft that the camera was put to last, by any map: another one is framed anew. */
+/** The mission or draft that the camera was put to last, by any map: another one is framed again. */
 export const framed: { what: string | null } = { what: null };
 
 /** Step of the plain grid now, m. */
@@ -87,7 +97,12 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
     const metresPerPixel = (EARTH_PIXEL_M * Math.cos((lat * Math.PI) / 180)) / 2 ** map.getZoom();
     const width = b.getEast() - b.getWest();
     const height = b.getNorth() - b.getSouth();
-    const box = { west: b.getWest() - width / 2, east: b.getEast() + width / 2, south: b.getSouth() - height / 2, north: b.getNorth() + height / 2 };
+    const box = {
+      west: b.getWest() - width / 2,
+      east: b.getEast() + width / 2,
+      south: b.getSouth() - height / 2,
+      north: b.getNorth() + height / 2,
+    };
     const { stepM, lines } = gridLines(box, metresPerPixel, anchor);
     gridStepM.value = stepM;
     map.getSource<GeoJSONSource>("grid")?.setData(lines);
@@ -107,11 +122,9 @@ export function fit(map: GlMap, box: [number, number, number, number], animate: 
   const share = Math.min(1, map.getContainer().clientHeight / 360);
   const bottom = share * COVERED.bottom;
   const beside = { ...COVERED, bottom, top: COVERED.top + bannerPx, left: TOOLS.width };
-  const ways = [
-    { ...beside, right: LEGEND_WIDTH },
-    beside,
-    { ...COVERED, bottom, top: share * TOOLS.height + bannerPx },
-  ].map((padding) => ({ padding, zoom: map.cameraForBounds(box, { padding })?.zoom ?? -1 }));
+  const ways = [{ ...beside, right: LEGEND_WIDTH }, beside, { ...COVERED, bottom, top: share * TOOLS.height + bannerPx }].map(
+    (padding) => ({ padding, zoom: map.cameraForBounds(box, { padding })?.zoom ?? -1 }),
+  );
   const { padding } = ways.reduce((best, way) => (way.zoom > best.zoom + 0.01 ? way : best));
   map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }

@@ -1,16 +1,17 @@
-// The mission as map features. Pure: the same for live, review and fixture.
+// The mission as map features. Pure: the same for a live mission, a review and a recording.
+
+import { marginOutline } from "../state/areas";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
-import type { MissionState } from "../state/mission";
-import { marginOutline } from "../state/areas";
 import { polarScale, radius } from "../state/polar";
+import type { MissionView } from "../state/view";
 import { formatDuration } from "../units/quantities";
 import type { Area, MissionSpec } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 
 export type Features = GeoJSON.FeatureCollection;
 
-type Bearings = Pick<MissionState, "spec" | "bearings">;
+type Bearings = Pick<MissionView, "spec" | "bearings">;
 
 export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
 
@@ -20,10 +21,8 @@ const feature = (geometry: GeoJSON.Geometry, properties: Record<string, unknown>
   properties,
 });
 const point = (at: LonLat, properties: Record<string, unknown> = {}) => feature({ type: "Point", coordinates: at }, properties);
-const line = (coordinates: LonLat[], properties: Record<string, unknown> = {}) =>
-  feature({ type: "LineString", coordinates }, properties);
-const polygon = (ring: LonLat[], properties: Record<string, unknown> = {}) =>
-  feature({ type: "Polygon", coordinates: [ring] }, properties);
+const line = (coordinates: LonLat[], properties: Record<string, unknown> = {}) => feature({ type: "LineString", coordinates }, properties);
+const polygon = (ring: LonLat[], properties: Record<string, unknown> = {}) => feature({ type: "Polygon", coordinates: [ring] }, properties);
 
 export function areaPoints(area: Area): LonLat[] {
   return area.type === "Polygon" ? (area.coordinates.flat() as LonLat[]) : (area.coordinates.flat(2) as LonLat[]);
@@ -84,10 +83,12 @@ function directionFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
       ...fact.peaks.map((peak) => line([at, destination(at, peak.bearing_deg, reach)], { ...shared, what: "peak", weight: peak.weight })),
     ];
   });
-  const leftOut = bearings.filter((b) => b.excluded).map(({ fact }) => {
-    const at = lonLat(fact.place);
-    return line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" });
-  });
+  const leftOut = bearings
+    .filter((b) => b.excluded)
+    .map(({ fact }) => {
+      const at = lonLat(fact.place);
+      return line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" });
+    });
   return [...counted, ...leftOut];
 }
 
@@ -106,7 +107,7 @@ function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
 }
 
 /** The region, the expected error as a circle, the estimate. */
-function estimateFeatures({ belief }: Pick<MissionState, "belief">): GeoJSON.Feature[] {
+function estimateFeatures({ belief }: Pick<MissionView, "belief">): GeoJSON.Feature[] {
   const estimate = belief?.fact.estimate;
   if (!estimate) return [];
   const at = lonLat(estimate);
@@ -118,10 +119,10 @@ function estimateFeatures({ belief }: Pick<MissionState, "belief">): GeoJSON.Fea
 }
 
 /** What the sweeps say and what follows, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
-export const measuredFeatures = (mission: Bearings & Pick<MissionState, "belief">): Features =>
+export const measuredFeatures = (mission: Bearings & Pick<MissionView, "belief">): Features =>
   collection([...directionFeatures(mission), ...roseFeatures(mission), ...placeFeatures(mission), ...estimateFeatures(mission)]);
 
-export function candidateFeatures(mission: Pick<MissionState, "plan">, lit: number | null): Features {
+export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: number | null): Features {
   const plan = mission.plan?.fact;
   if (!plan) return collection([]);
   return collection(

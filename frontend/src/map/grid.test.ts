@@ -12,7 +12,10 @@ it("steps are 1, 2 or 5 times a power of ten, never finer than asked", () => {
 it("lines stay where they are when the map moves", () => {
   const at = (west: number) => gridLines({ west, south: 50, east: west + 0.01, north: 50.01 }, 1, [7, 50]).lines;
   const xs = (lines: GeoJSON.FeatureCollection) =>
-    lines.features.flatMap((f) => (f.geometry.type === "LineString" ? [f.geometry.coordinates] : [])).filter(([a, b]) => a![0] === b![0]).map(([a]) => a![0]!.toFixed(9));
+    lines.features
+      .flatMap((f) => (f.geometry.type === "LineString" ? [f.geometry.coordinates] : []))
+      .filter(([a, b]) => a![0] === b![0])
+      .map(([a]) => a![0]!.toFixed(9));
   const first = new Set(xs(at(7)));
   const moved = xs(at(7.004)).filter((x) => Number(x) <= 7.01);
   expect(moved.length).toBeGreaterThan(2);

@@ -30,11 +30,23 @@ export function gridLines(box: Box, metresPerPixel: number, anchor: [number, num
   const rows = Math.min(MOST_LINES, Math.floor((box.north - box.south) / dy) + 1);
   for (let n = 0, i = first(box.west, anchor[0], dx); n < columns; n++, i++) {
     const x = anchor[0] + i * dx;
-    line([[x, box.south], [x, box.north]], i % 5 === 0);
+    line(
+      [
+        [x, box.south],
+        [x, box.north],
+      ],
+      i % 5 === 0,
+    );
   }
   for (let n = 0, i = first(box.south, anchor[1], dy); n < rows; n++, i++) {
     const y = anchor[1] + i * dy;
-    line([[box.west, y], [box.east, y]], i % 5 === 0);
+    line(
+      [
+        [box.west, y],
+        [box.east, y],
+      ],
+      i % 5 === 0,
+    );
   }
   return { stepM, lines: { type: "FeatureCollection", features } };
 }

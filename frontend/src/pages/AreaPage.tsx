@@ -1,19 +1,19 @@
-// The search area of a mission in flight: drawn anew while it holds, judged by the planner, changed by a slide.
+// The search area of a mission in flight: drawn again while it holds, judged by the planner, changed by a slide.
 import { useEffect, useState } from "preact/hooks";
-import { go, missionAddress, type Route } from "../app/route";
-import { mission } from "../app/store";
-import { asProblem, send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
+import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { EditMapArea } from "../edit/EditMapArea";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
 import { ProblemBox, ProblemNote } from "../panels/ProblemNote";
 import * as api from "../sources/api";
+import { go, missionAddress, type Route } from "../state/route";
+import { mission } from "../state/shown";
 import type { MissionSpec, Problem } from "../wire";
+import { EditMapArea } from "./EditMapArea";
 
 type AreaRoute = Extract<Route, { page: "area" }>;
 
@@ -35,7 +35,9 @@ export function AreaPage({ route }: { route: AreaRoute }) {
     if (kept) update(kept);
     else load();
     const stops = [watchCoverage(), forgetOutlookOfOthers(), clearOutlook];
-    return () => stops.forEach((stop) => stop());
+    return () => {
+      for (const stop of stops) stop();
+    };
   }, [key]);
 
   const leave = () => {
@@ -72,15 +74,23 @@ export function AreaPage({ route }: { route: AreaRoute }) {
               testId="area-slider"
               expiresS={60}
               onCancel={clearOutlook}
-              onConfirm={() => void send("area", id, { kind: "change_area", search: judged.search }).then((accepted) => accepted && leave())}
+              onConfirm={() =>
+                void send("area", id, { kind: "change_area", search: judged.search }).then((accepted) => accepted && leave())
+              }
             />
           ) : (
             <div class="start-row">
-              <button data-testid="area-cancel" onClick={leave}>
+              <button type="button" data-testid="area-cancel" onClick={leave}>
                 {t("area.keep")}
               </button>
               {!judged?.found && (
-                <button class="primary" data-testid="outlook-ask" disabled={isAsking || !isReadable} onClick={() => void askOutlook(id, draft.peek()!.spec)}>
+                <button
+                  type="button"
+                  class="primary"
+                  data-testid="outlook-ask"
+                  disabled={isAsking || !isReadable}
+                  onClick={() => void askOutlook(id, draft.peek()!.spec)}
+                >
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>
               )}

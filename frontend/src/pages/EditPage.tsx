@@ -1,22 +1,23 @@
 // A new mission, or a draft edited: map on the left, the specification as a form on the right.
 import { useEffect, useState } from "preact/hooks";
-import { go, missionAddress, type Route } from "../app/route";
 import { asProblem } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { sections, type NumberField } from "../edit/fields";
-import { EditMapArea } from "../edit/EditMapArea";
+import { EMITTER } from "../edit/emitter";
 import { FormField, TextField } from "../edit/FormField";
-import { ProfileRow } from "../edit/ProfileRow";
+import { type NumberField, sections } from "../edit/fields";
 import { PreviewCard } from "../edit/PreviewCard";
+import { ProfileRow } from "../edit/ProfileRow";
+import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
 import { clearPreview } from "../edit/preview";
-import { presetNames, presetOf, withPreset, type PresetName } from "../edit/presets";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { localProblem, RequestFailed } from "../sources/problem";
+import { go, missionAddress, type Route } from "../state/route";
 import type { MissionSpec, Problem } from "../wire";
+import { EditMapArea } from "./EditMapArea";
 
 type EditRoute = Extract<Route, { page: "new" | "edit" }>;
 
@@ -28,7 +29,7 @@ async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested
   return { spec: (await api.defaults()).spec as MissionSpec, suggested: true };
 }
 
-const FREQUENCY: NumberField = { kind: "number", path: "emitter.frequency_hz", label: "edit.frequency", unit: "MHz", scale: 1e6 };
+const FREQUENCY: NumberField = { kind: "number", path: `${EMITTER}.frequency_hz`, label: "edit.frequency", unit: "MHz", scale: 1e6 };
 
 function NameSection({ failed }: { failed: RequestFailed | null }) {
   return (
@@ -55,12 +56,12 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
           ))}
         </select>
       </div>
-      <TextField path="emitter.label" label={t("edit.label")} failed={failed} />
+      <TextField path={`${EMITTER}.label`} label={t("edit.label")} failed={failed} />
       <FormField field={FREQUENCY} failed={failed} />
       <FormField
         field={{
           kind: "choice",
-          path: "emitter.kind",
+          path: `${EMITTER}.kind`,
           label: "edit.kind",
           options: [
             { value: "carrier", label: "edit.kind.carrier" },
@@ -99,12 +100,21 @@ function Motion({ failed }: { failed: RequestFailed | null }) {
       </div>
       <FormField field={{ kind: "number", path: "planner.motion.speed_m_s", label: "edit.speed", unit: "m/s" }} failed={failed} />
       {motion.kind !== "linear" && (
-        <FormField field={{ kind: "number", path: "planner.motion.constant_s", label: "edit.motion.constant", unit: "s" }} failed={failed} />
+        <FormField
+          field={{ kind: "number", path: "planner.motion.constant_s", label: "edit.motion.constant", unit: "s" }}
+          failed={failed}
+        />
       )}
       {motion.kind === "full" && (
         <>
-          <FormField field={{ kind: "number", path: "planner.motion.acceleration_m_s2", label: "edit.motion.acceleration", unit: "m/s²" }} failed={failed} />
-          <FormField field={{ kind: "number", path: "planner.motion.turn_rate_deg_s", label: "edit.turnRate", unit: "°/s" }} failed={failed} />
+          <FormField
+            field={{ kind: "number", path: "planner.motion.acceleration_m_s2", label: "edit.motion.acceleration", unit: "m/s²" }}
+            failed={failed}
+          />
+          <FormField
+            field={{ kind: "number", path: "planner.motion.turn_rate_deg_s", label: "edit.turnRate", unit: "°/s" }}
+            failed={failed}
+          />
         </>
       )}
     </>
@@ -200,10 +210,13 @@ export function EditPage({ route }: { route: EditRoute }) {
   return (
     <div class="edit" data-testid="edit-page">
       <EditMapArea onTold={setTold} />
-      <form class="side" onSubmit={(e) => {
-        e.preventDefault();
-        void save();
-      }}>
+      <form
+        class="side"
+        onSubmit={(e) => {
+          e.preventDefault();
+          void save();
+        }}
+      >
         <div class="panel edit-head">
           <h1>{t(route.page === "edit" ? "edit.title" : "edit.titleNew")}</h1>
           {restored && (

@@ -2,7 +2,6 @@
 import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { mission, source } from "../app/store";
 import { t } from "../i18n";
 import { AlertBanner, bannerPx } from "../panels/AlertsButton";
 import { AntennaCheck } from "../panels/AntennaCheck";
@@ -13,6 +12,8 @@ import { PreflightPanel } from "../panels/PreflightPanel";
 import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
+import { source } from "../state/connection";
+import { mission } from "../state/shown";
 
 const GAP_PX = 8;
 
@@ -22,21 +23,30 @@ const scene = signal(false);
 function MapArea() {
   const [state, setState] = useState<"loading" | "none" | { Map: ComponentType }>("loading");
   useEffect(() => {
-    void import("../map/createMap").then(async ({ hasWebgl }) => {
-      if (!hasWebgl()) setState("none");
-      else {
-        const { FlyMap } = await import("../map/FlyMap");
-        setState({ Map: FlyMap });
-      }
-    }, () => setState("none"));
+    void import("../map/createMap").then(
+      async ({ hasWebgl }) => {
+        if (!hasWebgl()) setState("none");
+        else {
+          const { FlyMap } = await import("../map/FlyMap");
+          setState({ Map: FlyMap });
+        }
+      },
+      () => setState("none"),
+    );
   }, []);
   return (
     <div class="map-area" data-tour="2" style={{ "--banner": bannerPx.value === 0 ? "0px" : `${bannerPx.value + GAP_PX}px` }}>
       {state === "loading" && <p class="center muted">{t("map.loading")}</p>}
       {state === "none" && <p class="center">{t("map.noWebgl")}</p>}
       {typeof state === "object" && (scene.value ? <Scene /> : <state.Map />)}
-      {typeof state === "object" && source.value?.kind === "live" && (
-        <button class="scene-switch" data-testid="scene-switch" aria-pressed={scene.value} onClick={() => (scene.value = !scene.value)}>
+      {typeof state === "object" && source.value?.keptByServer && (
+        <button
+          type="button"
+          class="scene-switch"
+          data-testid="scene-switch"
+          aria-pressed={scene.value}
+          onClick={() => (scene.value = !scene.value)}
+        >
           {t(scene.value ? "scene.map" : "scene.show")}
         </button>
       )}

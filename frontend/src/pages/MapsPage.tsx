@@ -1,7 +1,7 @@
 // Offline maps and overlays on this server: add, choose, check, remove. Nothing comes from outside.
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
-import { t } from "../i18n";
+import { reasonText, t } from "../i18n";
 import { basemap, chooseBasemap } from "../map/basemap";
 import { overlayIds, showOverlay } from "../map/overlays";
 import { ProblemBox } from "../panels/ProblemNote";
@@ -12,7 +12,19 @@ import type { Problem } from "../wire";
 
 type Target = "maps" | "overlays";
 
-function Upload({ target, accept, label, onDone, onProblem }: { target: Target; accept: string; label: string; onDone: () => void; onProblem: (p: Problem | null) => void }) {
+function Upload({
+  target,
+  accept,
+  label,
+  onDone,
+  onProblem,
+}: {
+  target: Target;
+  accept: string;
+  label: string;
+  onDone: () => void;
+  onProblem: (p: Problem | null) => void;
+}) {
   const [progress, setProgress] = useState<{ name: string; percent: number } | null>(null);
   return (
     <>
@@ -29,7 +41,9 @@ function Upload({ target, accept, label, onDone, onProblem }: { target: Target; 
             if (!file) return;
             onProblem(null);
             setProgress({ name: file.name, percent: 0 });
-            upload(`/${target}?filename=${encodeURIComponent(file.name)}`, file, (share) => setProgress({ name: file.name, percent: Math.round(100 * share) }))
+            upload(`/${target}?filename=${encodeURIComponent(file.name)}`, file, (share) =>
+              setProgress({ name: file.name, percent: Math.round(100 * share) }),
+            )
               .then(onDone, (error: unknown) => onProblem(asProblem(error)))
               .finally(() => setProgress(null));
           }}
@@ -60,9 +74,11 @@ function Packages({ list, onChange }: { list: maps.MapList; onChange: () => void
             <strong>{map.name}</strong>
           </label>
           <span class="muted">
-            {t("maps.size", { size: formatNumber(map.size_bytes / 1e6, 1), minimum: map.min_zoom, maximum: map.max_zoom })} {map.attribution}
+            {t("maps.size", { size: formatNumber(map.size_bytes / 1e6, 1), minimum: map.min_zoom, maximum: map.max_zoom })}{" "}
+            {map.attribution}
           </span>
           <button
+            type="button"
             onClick={() => {
               if (basemap.peek() === map.map_id) chooseBasemap(null);
               void maps.deleteMap(map.map_id).then(onChange, onChange);
@@ -82,13 +98,18 @@ function Overlays({ list, onChange }: { list: maps.OverlayList; onChange: () => 
       {list.overlays.map((one) => (
         <li class="card" key={one.overlay_id} data-testid="overlay">
           <label class="check">
-            <input type="checkbox" checked={overlayIds.value.includes(one.overlay_id)} onChange={(e) => showOverlay(one.overlay_id, e.currentTarget.checked)} />
+            <input
+              type="checkbox"
+              checked={overlayIds.value.includes(one.overlay_id)}
+              onChange={(e) => showOverlay(one.overlay_id, e.currentTarget.checked)}
+            />
             <strong>{one.name}</strong>
           </label>
           <span class="muted">
-            {t("maps.features", { count: one.features })} {one.notes.join(" ")}
+            {t("maps.features", { count: one.features })} {one.notes.map(reasonText).join(" ")}
           </span>
           <button
+            type="button"
             onClick={() => {
               showOverlay(one.overlay_id, false);
               void maps.deleteOverlay(one.overlay_id).then(onChange, onChange);
@@ -127,9 +148,9 @@ export function MapsPage() {
       <p>{t("maps.explain")}</p>
       {problem && <ProblemBox problem={problem} />}
       {packages && <Packages list={packages} onChange={read} />}
-      {packages?.unusable.map((line) => (
-        <p class="refused" key={line}>
-          {line}
+      {packages?.unusable.map((reason, i) => (
+        <p class="refused" key={i}>
+          {reasonText(reason)}
         </p>
       ))}
       <div class="page-head">

@@ -1,13 +1,13 @@
 // All missions, newest first: open, edit, use again, take away.
 import { useEffect, useState } from "preact/hooks";
-import { go, missionAddress } from "../app/route";
-import { change, settings } from "../app/settings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
-import { ProblemBox } from "../panels/ProblemNote";
+import { ProblemBox, problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
-import { NotARecording, readRecording, replays } from "../sources/replay";
+import { readRecording, replays } from "../sources/replay";
 import { isOver } from "../state/mission";
+import { go, missionAddress } from "../state/route";
+import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration } from "../units/quantities";
@@ -86,16 +86,14 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
         onChange={(e) => {
           const file = e.currentTarget.files?.[0];
           if (!file) return;
-          void file.text().then((text) => {
-            try {
-              const recording = readRecording(text);
+          const opened = file.text().then((text) => readRecording(text));
+          opened.then(
+            (recording) => {
               replays.set(recording.missionId, recording);
               go(missionAddress(recording.missionId));
-            } catch (error) {
-              const reason = error instanceof NotARecording ? error.message : String(error);
-              onProblem(t("missions.recordingBroken", { name: file.name, reason }));
-            }
-          });
+            },
+            (error: unknown) => onProblem(t("missions.recordingBroken", { name: file.name, reason: problemWords(asProblem(error)) })),
+          );
         }}
       />
     </label>
@@ -125,7 +123,13 @@ export function MissionsPage() {
     <div class="page" data-testid="missions">
       <div class="page-head">
         <h1>{t("missions.title")}</h1>
-        <input type="search" placeholder={t("missions.search")} aria-label={t("missions.search")} value={wanted} onInput={(e) => setWanted(e.currentTarget.value)} />
+        <input
+          type="search"
+          placeholder={t("missions.search")}
+          aria-label={t("missions.search")}
+          value={wanted}
+          onInput={(e) => setWanted(e.currentTarget.value)}
+        />
         <OpenRecording onProblem={setBroken} />
         <a class="button primary" href="#/new" data-testid="new-mission">
           {t("missions.new")}
@@ -134,13 +138,19 @@ export function MissionsPage() {
       {!settings.value.tourSeen && (
         <div class="card page-head" data-testid="tour-offer">
           <span class="grow">{t("tour.offer")}</span>
-          <button onClick={() => change("tourSeen", true)}>{t("tour.later")}</button>
-          <a class="button primary" href="?fixture&tour#/mission/example" data-testid="tour-take">
+          <button type="button" onClick={() => change("tourSeen", true)}>
+            {t("tour.later")}
+          </button>
+          <a class="button primary" href="?tour#/mission/example" data-testid="tour-take">
             {t("tour.take")}
           </a>
         </div>
       )}
-      {broken && <p class="refused" role="alert">{broken}</p>}
+      {broken && (
+        <p class="refused" role="alert">
+          {broken}
+        </p>
+      )}
       {problem && <ProblemBox problem={problem} />}
       {!list && !problem && <p class="muted">{t("missions.loading")}</p>}
       {list?.length === 0 && <p class="card">{t("missions.empty")}</p>}

@@ -1,12 +1,12 @@
 // Sheets over the page: settings, keys, tour.
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { overlay, type Overlay } from "../app/overlay";
-import { change, settings, type Settings } from "../app/settings";
-import { t, type Language, type MessageKey } from "../i18n";
+import { type Language, type MessageKey, t } from "../i18n";
+import { Instruments } from "../panels/Instruments";
+import { type Overlay, overlay } from "../state/overlay";
+import { change, type Settings, settings } from "../state/settings";
 import type { CoordinateFormat } from "../units/coordinates";
 import type { UnitSystem } from "../units/quantities";
-import { Instruments } from "../panels/Instruments";
 import { Tour } from "./Tour";
 
 const close = () => {
@@ -23,11 +23,12 @@ function Sheet({ title, testId, children }: { title: string; testId: string; chi
     };
   }, []);
   return (
-    <div class="sheet-back" onClick={(e) => e.target === e.currentTarget && close()}>
+    // biome-ignore lint/a11y/noStaticElementInteractions: keys close it with Escape, wherever the focus is
+    <div class="sheet-back" role="presentation" onClick={(e) => e.target === e.currentTarget && close()}>
       <div class="sheet" role="dialog" aria-modal="true" aria-label={title} data-testid={testId} ref={box} tabIndex={-1}>
         <div class="sheet-head">
           <h1>{title}</h1>
-          <button class="icon" aria-label={t("menu.close")} onClick={close}>
+          <button type="button" class="icon" aria-label={t("menu.close")} onClick={close}>
             ✕
           </button>
         </div>
@@ -42,12 +43,25 @@ interface Option<T> {
   label: MessageKey;
 }
 
-function Pick<K extends keyof Settings>({ name, label, options }: { name: K; label: MessageKey; options: readonly Option<Settings[K] & string>[] }) {
+function Pick<K extends keyof Settings>({
+  name,
+  label,
+  options,
+}: {
+  name: K;
+  label: MessageKey;
+  options: readonly Option<Settings[K] & string>[];
+}) {
   const id = `setting-${name}`;
   return (
     <div class="field">
       <label for={id}>{t(label)}</label>
-      <select id={id} data-testid={id} value={String(settings.value[name])} onChange={(e) => change(name, e.currentTarget.value as Settings[K])}>
+      <select
+        id={id}
+        data-testid={id}
+        value={String(settings.value[name])}
+        onChange={(e) => change(name, e.currentTarget.value as Settings[K])}
+      >
         {options.map((o) => (
           <option value={o.value} key={o.value}>
             {t(o.label)}
@@ -67,15 +81,24 @@ function Toggle({ name, label }: { name: "tones" | "speech" | "lite"; label: Mes
   );
 }
 
-const THEMES: Option<Settings["theme"]>[] = [{ value: "outdoor", label: "settings.theme.outdoor" }, { value: "indoor", label: "settings.theme.indoor" }]; // prettier-ignore
-const UNITS: Option<UnitSystem>[] = [{ value: "metric", label: "settings.units.metric" }, { value: "imperial", label: "settings.units.imperial" }]; // prettier-ignore
+const THEMES: Option<Settings["theme"]>[] = [
+  { value: "outdoor", label: "settings.theme.outdoor" },
+  { value: "indoor", label: "settings.theme.indoor" },
+];
+const UNITS: Option<UnitSystem>[] = [
+  { value: "metric", label: "settings.units.metric" },
+  { value: "imperial", label: "settings.units.imperial" },
+];
 const FORMATS: Option<CoordinateFormat>[] = [
   { value: "dd", label: "settings.coordinates.dd" },
   { value: "dms", label: "settings.coordinates.dms" },
   { value: "utm", label: "settings.coordinates.utm" },
   { value: "mgrs", label: "settings.coordinates.mgrs" },
 ];
-const LANGUAGES: Option<Language>[] = [{ value: "en", label: "settings.language.en" }, { value: "de", label: "settings.language.de" }]; // prettier-ignore
+const LANGUAGES: Option<Language>[] = [
+  { value: "en", label: "settings.language.en" },
+  { value: "de", label: "settings.language.de" },
+];
 const SCALES = [0.85, 1, 1.15, 1.3];
 
 function SettingsSheet() {

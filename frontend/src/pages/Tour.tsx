@@ -1,8 +1,8 @@
 // One minute through the screen: each step marks a part of it and says what it is for.
 import { useEffect, useState } from "preact/hooks";
-import { overlay } from "../app/overlay";
-import { change } from "../app/settings";
-import { t, type MessageKey } from "../i18n";
+import { type MessageKey, t } from "../i18n";
+import { overlay } from "../state/overlay";
+import { change } from "../state/settings";
 
 const STEPS = [1, 2, 3, 4, 5, 6] as const;
 
@@ -35,26 +35,32 @@ export function Tour() {
   const at = box ? placeCard(box) : { left: innerWidth / 2 - CARD.width / 2, top: innerHeight / 2 - CARD.height / 2 };
   return (
     <>
-      {box && <div class="tour-mark" style={{ left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` }} />}
+      {box && (
+        <div class="tour-mark" style={{ left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` }} />
+      )}
       <div class="tour" role="dialog" aria-label={t("menu.tour")} data-testid="tour" style={{ left: `${at.left}px`, top: `${at.top}px` }}>
         <p>{t(`tour.${step}` satisfies MessageKey)}</p>
         <div class="start-row">
-          <button disabled={index === 0} onClick={() => setIndex(index - 1)}>
+          <button type="button" disabled={index === 0} onClick={() => setIndex(index - 1)}>
             {t("tour.back")}
           </button>
           {index < steps.length - 1 ? (
-            <button class="primary" data-testid="tour-next" onClick={() => setIndex(index + 1)}>
+            <button type="button" class="primary" data-testid="tour-next" onClick={() => setIndex(index + 1)}>
               {t("tour.next")}
             </button>
           ) : (
-            <button class="primary" data-testid="tour-end" onClick={end}>
+            <button type="button" class="primary" data-testid="tour-end" onClick={end}>
               {t("tour.end")}
             </button>
           )}
         </div>
         <div class="start-row">
           <span class="muted">{t("tour.step", { step: index + 1, count: steps.length })}</span>
-          {index < steps.length - 1 && <button onClick={end}>{t("tour.end")}</button>}
+          {index < steps.length - 1 && (
+            <button type="button" onClick={end}>
+              {t("tour.end")}
+            </button>
+          )}
         </div>
       </div>
     </>

@@ -1,13 +1,14 @@
 // Warning, caution, advisory: how many are open, the list, acknowledgement, mute.
 import { computed, signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
-import { overlay, toggle } from "../app/overlay";
-import { change, settings } from "../app/settings";
-import { live, mission, shownTimeMs } from "../app/store";
 import { send } from "../commands/send";
-import { t, told, type MessageKey } from "../i18n";
+import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
 import type { Alert } from "../state/mission";
+import { liveMission } from "../state/moment";
+import { overlay, toggle } from "../state/overlay";
+import { change, settings } from "../state/settings";
+import { mission, shownTimeMs } from "../state/shown";
 import { formatAge } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 
@@ -16,18 +17,20 @@ const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
 
 function AlertRow({ alert }: { alert: Alert }) {
   const age = Math.max(0, (shownTimeMs.value - Date.parse(alert.raisedAt)) / 1000);
-  const id = live.value.mission.missionId;
+  const id = liveMission.value.missionId;
+  const remedy = reasonRemedy(alert.reason);
   return (
     <li class={`alert-row ${isOpen(alert) ? alert.level : "past"}`} data-testid="alert-row" data-level={alert.level}>
       <div>
         <strong>{t(`alerts.${alert.level}` satisfies MessageKey)}</strong> <span class="muted">{formatAge(age)}</span>
-        <div>{told(alert.text)}</div>
-        {alert.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: told(alert.remedy) })}</div>}
+        <div>{reasonText(alert.reason)}</div>
+        {remedy && <div class="problem-remedy">{t("problem.remedy", { remedy })}</div>}
         {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: alert.acknowledgedBy })}</div>}
         {alert.cleared && <div class="muted">{t("alerts.cleared")}</div>}
       </div>
       {isOpen(alert) && id && (
         <button
+          type="button"
           data-testid="acknowledge"
           onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: alert.id })}
         >
@@ -44,7 +47,12 @@ function AlertsSheet() {
     <div class="popover" role="dialog" aria-label={t("alerts.title")} data-testid="alerts-panel">
       <div class="popover-head">
         <h2>{t("alerts.title")}</h2>
-        <button data-testid="mute" aria-pressed={!settings.value.tones} onClick={() => change("tones", !settings.value.tones)}>
+        <button
+          type="button"
+          data-testid="mute"
+          aria-pressed={!settings.value.tones}
+          onClick={() => change("tones", !settings.value.tones)}
+        >
           {t(settings.value.tones ? "alerts.mute" : "alerts.unmute")}
         </button>
       </div>
@@ -67,6 +75,7 @@ export function AlertsButton() {
   return (
     <div class="anchor">
       <button
+        type="button"
         class={`alerts ${worst.value ?? ""}`}
         data-testid="alerts"
         data-count={count}
@@ -82,8 +91,6 @@ export function AlertsButton() {
     </div>
   );
 }
-
-const sentence = (text: string) => (/[.!?]$/.test(text) ? text : `${text}.`);
 
 /** Pixels that the banner takes from the map's top; 0 without one. The map's tools and its frame keep clear of it. */
 export const bannerPx = signal(0);
@@ -105,15 +112,16 @@ export function AlertBanner() {
     };
   }, [shown]);
   if (!shown) return null;
-  const id = live.value.mission.missionId;
+  const id = liveMission.value.missionId;
+  const remedy = reasonRemedy(first.reason);
   return (
     <div class={`banner ${first.level}`} role="alert" data-testid="alert-banner" ref={box}>
       <span>
-        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {sentence(told(first.text))}{" "}
-        {first.remedy && t("problem.remedy", { remedy: told(first.remedy) })}
+        <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {reasonText(first.reason)}{" "}
+        {remedy && t("problem.remedy", { remedy })}
       </span>
       {id && (
-        <button onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>
+        <button type="button" onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>
           {t("alerts.acknowledge")}
         </button>
       )}

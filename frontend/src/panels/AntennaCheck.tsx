@@ -1,10 +1,10 @@
 // Before the start: the antenna turned by hand before a known emitter. The result stands in the checklist.
 import { signal } from "@preact/signals";
-import { source } from "../app/store";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
+import { source } from "../state/connection";
 import { parsePlace } from "../units/coordinates";
 import type { Place, Problem } from "../wire";
 import { runPreflight } from "./PreflightPanel";
@@ -42,7 +42,7 @@ async function listen(missionId: string, text: string): Promise<void> {
 }
 
 export function AntennaCheck({ missionId }: { missionId: string }) {
-  if (source.value?.kind !== "live") return null;
+  if (!source.value?.keptByServer) return null;
   return (
     <section class="panel" data-testid="antenna" aria-label={t("antenna.title")}>
       <details>
@@ -59,7 +59,7 @@ export function AntennaCheck({ missionId }: { missionId: string }) {
             {t("antenna.emitter")}
             <input name="emitter" placeholder="120" data-testid="antenna-emitter" />
           </label>
-          <button class="primary" disabled={listening.value} data-testid="antenna-listen">
+          <button type="submit" class="primary" disabled={listening.value} data-testid="antenna-listen">
             {t(listening.value ? "antenna.listening" : "antenna.listen")}
           </button>
         </form>

@@ -15,7 +15,12 @@ describe("spread", () => {
 
 describe("ticks", () => {
   it("are two to five round values within the span", () => {
-    for (const [low, high] of [[-85, -75], [-1, 41], [0, 10], [99.2, 1203]] as const) {
+    for (const [low, high] of [
+      [-85, -75],
+      [-1, 41],
+      [0, 10],
+      [99.2, 1203],
+    ] as const) {
       const at = ticks([low, high]);
       expect(at.length).toBeGreaterThanOrEqual(2);
       expect(at.length).toBeLessThanOrEqual(5);

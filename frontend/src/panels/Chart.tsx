@@ -43,14 +43,19 @@ const EDGE = 6;
 export function Chart({ t, values, label }: { t: readonly number[]; values: readonly (number | null)[]; label: string }) {
   const over: Span = [t[0] ?? 0, t.at(-1) ?? 0];
   const span = spread(values);
-  const minutes = t.filter((at, i) => i > 0 && Math.floor(at / MINUTE_S) > Math.floor(t[i - 1]! / MINUTE_S)).map((at) => Math.floor(at / MINUTE_S) * MINUTE_S);
+  const minutes = t
+    .filter((at, i) => i > 0 && Math.floor(at / MINUTE_S) > Math.floor(t[i - 1]! / MINUTE_S))
+    .map((at) => Math.floor(at / MINUTE_S) * MINUTE_S);
   const heights = ticks(span).map((value) => ({ value, top: 100 - share(value, span) }));
   return (
     <figure class="chart">
       <figcaption>{label}</figcaption>
       <div class="chart-box">
         <svg viewBox="0 0 100 100" preserveAspectRatio="none" role="img" aria-label={label}>
-          <path class="chart-grid" d={heights.map(({ top }) => `M0 ${top}H100`).join("") + minutes.map((at) => `M${share(at, over)} 0V100`).join("")} />
+          <path
+            class="chart-grid"
+            d={heights.map(({ top }) => `M0 ${top}H100`).join("") + minutes.map((at) => `M${share(at, over)} 0V100`).join("")}
+          />
           <path class="chart-line" d={linePath(t, values, over, span)} />
         </svg>
         {heights.map(({ value, top }) => (

@@ -1,16 +1,22 @@
 // Where the emitter probably is, how wrong that may be, and how long until it may be said.
 import { computed } from "@preact/signals";
 import { useState } from "preact/hooks";
-import { copyText } from "../app/clipboard";
-import { change, settings } from "../app/settings";
-import { live, mission, reviewTimeMs, shownBelief, shownTimeMs, supposedHere, vehicle } from "../app/store";
-import { t, told, toldReason, type MessageKey } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
+import { shownBelief } from "../state/belief";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
 import { distanceM, lonLat } from "../state/geometry";
+import { craftStatus, telemetry } from "../state/heard";
+import { reviewTimeMs } from "../state/moment";
 import { shareWithin } from "../state/nearness";
+import { change, settings } from "../state/settings";
+import { mission, shownTimeMs } from "../state/shown";
+import { supposedHere } from "../state/supposed";
 import { remainingTime } from "../state/timeLeft";
-import { formatPlace, type CoordinateFormat } from "../units/coordinates";
+import { vehicle } from "../state/vehicle";
+import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
+import type { MissionEnded } from "../wire";
+import { copyText } from "./clipboard";
 
 const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
 
@@ -41,6 +47,7 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
         ))}
       </select>
       <button
+        type="button"
         class="icon"
         data-testid="copy"
         aria-label={t(copied ? "estimate.copied" : "estimate.copy")}
@@ -66,9 +73,7 @@ function TimeLeft() {
       <dt>{t("estimate.localizedIn")}</dt>
       <dd>
         {left.meanS > 0 ? t("estimate.about", { time: formatDuration(left.meanS) }) : t("estimate.overdue")}
-        {left.worstS !== null && left.worstS > 0 && (
-          <small>{t("estimate.in90", { time: formatDuration(left.worstS) })}</small>
-        )}
+        {left.worstS !== null && left.worstS > 0 && <small>{t("estimate.in90", { time: formatDuration(left.worstS) })}</small>}
       </dd>
     </div>
   );
@@ -76,10 +81,9 @@ function TimeLeft() {
 
 /** The charge when it will be localized, against the way home and the reserve. Only of now: a review has no battery. */
 function BatteryThen() {
-  const { telemetry, status } = live.value;
   const { spec, home } = mission.value;
-  const battery = telemetry?.value.battery_percent ?? null;
-  const toReturn = status?.value.battery_to_return_percent ?? null;
+  const battery = telemetry.value?.value.battery_percent ?? null;
+  const toReturn = craftStatus.value?.value.battery_to_return_percent ?? null;
   const at = vehicle.value.at;
   const left = remainingTime(mission.value, shownTimeMs.value);
   if (battery === null || toReturn === null || !spec || !home || !at || !left || reviewTimeMs.value !== null) return null;
@@ -119,6 +123,10 @@ function Goal({ length }: { length: string }) {
   );
 }
 
+/** Every reason but that of a failure names the outcome itself. */
+const endWords = ({ outcome, reason }: MissionEnded): string =>
+  outcome === "failed" ? `${t("outcome.failed")}: ${reasonText(reason)}` : reasonText(reason);
+
 export function EstimatePanel() {
   const { belief, spec, ended } = mission.value;
   const units = settings.value.units;
@@ -139,9 +147,7 @@ export function EstimatePanel() {
       {!fact && <p class="muted">{t("estimate.none")}</p>}
       {fact && !estimate && <p data-testid="inconsistent">{t("estimate.inconsistent")}</p>}
       {fact && estimate && fact.contradicting.length > 0 && (
-        <p data-testid="against">
-          {t("estimate.against", { against: fact.contradicting.length, bearings: fact.bearings })}
-        </p>
+        <p data-testid="against">{t("estimate.against", { against: fact.contradicting.length, bearings: fact.bearings })}</p>
       )}
       {estimate && (
         <>
@@ -181,14 +187,14 @@ export function EstimatePanel() {
       )}
       {fact && !localized && fact.not_yet.length > 0 && (
         <ul class="reasons" data-testid="not-yet">
-          {fact.not_yet.map((reason) => (
-            <li key={reason}>{toldReason(reason)}</li>
+          {fact.not_yet.map((reason, i) => (
+            <li key={i}>{reasonText(reason)}</li>
           ))}
         </ul>
       )}
       {ended && (
         <p class="outcome" data-testid="outcome" data-outcome={ended.fact.outcome}>
-          {t(`outcome.${ended.fact.outcome}` satisfies MessageKey)}: {told(ended.fact.reason)}
+          {endWords(ended.fact)}
         </p>
       )}
     </section>

@@ -10,7 +10,15 @@ function typed(fields: Record<string, string>, names = ["turn.csv"]): FormData {
 
 describe("recordingForm", () => {
   it("carries files, and what they do not tell in the server's units", () => {
-    const all = { place: "50.6 7.2", at: "2026-05-01T10:00:30", tag: " lynx 4 ", offset_deg: "-3,5", frequency_hz: "148.5", pulse_width_s: "20", pulse_period_s: "1.3" };
+    const all = {
+      place: "50.6 7.2",
+      at: "2026-05-01T10:00:30",
+      tag: " lynx 4 ",
+      offset_deg: "-3,5",
+      frequency_hz: "148.5",
+      pulse_width_s: "20",
+      pulse_period_s: "1.3",
+    };
     const form = recordingForm(typed(all));
     expect(form).toBeInstanceOf(FormData);
     expect(Object.fromEntries((form as FormData).entries())).toMatchObject({

@@ -1,11 +1,12 @@
 // Recorded sweeps into a mission that does not fly: files, where and when when they do not tell, and what came of it.
 import { signal } from "@preact/signals";
-import { mission, source } from "../app/store";
 import { asProblem } from "../commands/send";
-import { t, told, type MessageKey } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
+import { source } from "../state/connection";
 import { inFlight } from "../state/mission";
+import { mission } from "../state/shown";
 import { parsePlace } from "../units/coordinates";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { Problem, RecordingImport } from "../wire";
@@ -71,10 +72,11 @@ function Found({ found }: { found: RecordingImport }) {
         {found.sweeps.map((sweep) => (
           <li key={sweep.sweep_id}>
             <strong>{t("sweep.place", { number: sweep.place_number })}</strong>{" "}
-            {sweep.bearing_deg !== null && sweep.sigma_deg !== null
-              ? t("sweep.bearing", { bearing: formatBearing(sweep.bearing_deg), sigma: formatNumber(sweep.sigma_deg, 1) })
-              : t("sweep.rejected", { reason: told(sweep.reason) })}
-            , {t("sweep.quality", { quality: formatNumber(sweep.quality, 2) })}
+            {sweep.bearing_deg !== null &&
+              sweep.sigma_deg !== null &&
+              `${t("sweep.bearing", { bearing: formatBearing(sweep.bearing_deg), sigma: formatNumber(sweep.sigma_deg, 1) })}, `}
+            {t("sweep.quality", { quality: formatNumber(sweep.quality, 2) })}
+            {sweep.reason && `. ${t("sweep.rejected", { reason: reasonText(sweep.reason) })}`}
           </li>
         ))}
       </ul>
@@ -82,8 +84,8 @@ function Found({ found }: { found: RecordingImport }) {
         <>
           <p>{t("recording.remarks", { count: found.remarks.length })}</p>
           <ul class="remarks" data-testid="recording-remarks">
-            {found.remarks.map((remark) => (
-              <li key={remark}>{told(remark)}</li>
+            {found.remarks.map((remark, i) => (
+              <li key={i}>{reasonText(remark)}</li>
             ))}
           </ul>
         </>
@@ -94,7 +96,7 @@ function Found({ found }: { found: RecordingImport }) {
 
 export function ImportRecording() {
   const { missionId, phase } = mission.value;
-  if (!missionId || inFlight(phase) || source.value?.kind !== "live") return null;
+  if (!missionId || inFlight(phase) || !source.value?.keptByServer) return null;
   const now = outcome.value?.missionId === missionId ? outcome.value : null;
   const busy = now !== null && "busy" in now;
   return (
@@ -134,7 +136,7 @@ export function ImportRecording() {
               </label>
             ))}
           </details>
-          <button class="primary" disabled={busy} data-testid="recording-send">
+          <button type="submit" class="primary" disabled={busy} data-testid="recording-send">
             {t(busy ? "recording.busy" : "recording.send")}
           </button>
         </form>

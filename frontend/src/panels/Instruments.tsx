@@ -1,13 +1,15 @@
 // Vehicle and receiver in full: every value with its age, and the last five minutes as lines.
 import { signal } from "@preact/signals";
-import { settings } from "../app/settings";
-import { live, nowMs, serverNowMs } from "../app/store";
-import { t, type MessageKey } from "../i18n";
+import { type MessageKey, t } from "../i18n";
+import { ageS, freshness } from "../state/age";
+import { nowMs } from "../state/clock";
+import { live, serverNowMs } from "../state/connection";
+import { craftStatus, telemetry } from "../state/heard";
+import { emptySeries, extend, type Series } from "../state/series";
+import { settings } from "../state/settings";
+import { formatAge, formatBearing, formatLength, formatNumber, formatSpeed } from "../units/quantities";
 import { Chart } from "./Chart";
 import { Payloads } from "./Payloads";
-import { ageS, freshness } from "../state/age";
-import { emptySeries, extend, type Series } from "../state/series";
-import { formatAge, formatBearing, formatLength, formatSpeed, formatNumber } from "../units/quantities";
 
 const series = signal<Series>(emptySeries);
 
@@ -20,26 +22,47 @@ interface Row {
 function Values() {
   const now = nowMs.value;
   const units = settings.value.units;
-  const { telemetry, status } = live.value;
-  const value = telemetry?.value;
-  const at = telemetry?.atMs ?? null;
+  const { status } = live.value;
+  const value = telemetry.value?.value;
+  const at = telemetry.value?.atMs ?? null;
+  const craft = craftStatus.value;
   const length = (metres: number | null | undefined) => (metres == null ? null : formatLength(metres, units));
   const position = ageS(value?.position_age_s, at, now);
-  const heard = ageS(status?.value.receiver_age_s, status?.atMs ?? null, now);
+  const heard = ageS(craft?.value.receiver_age_s, craft?.atMs ?? null, now);
   const rows: Row[] = [
     { label: "instruments.autopilot", value: value?.autopilot ?? null, age: ageS(0, at, now) },
     { label: "instruments.mode", value: value?.mode ?? null, age: ageS(value?.mode_age_s, at, now) },
-    { label: "instruments.armed", value: value?.armed == null ? null : t(value.armed ? "instruments.yes" : "instruments.no"), age: ageS(value?.mode_age_s, at, now) },
+    {
+      label: "instruments.armed",
+      value: value?.armed == null ? null : t(value.armed ? "instruments.yes" : "instruments.no"),
+      age: ageS(value?.mode_age_s, at, now),
+    },
     { label: "instruments.altitude", value: length(value?.altitude_relative_m), age: position },
     { label: "instruments.amsl", value: length(value?.altitude_amsl_m), age: position },
-    { label: "instruments.speed", value: value?.ground_speed_m_s == null ? null : formatSpeed(value.ground_speed_m_s, units), age: position },
+    {
+      label: "instruments.speed",
+      value: value?.ground_speed_m_s == null ? null : formatSpeed(value.ground_speed_m_s, units),
+      age: position,
+    },
     { label: "instruments.climb", value: value?.climb_m_s == null ? null : formatSpeed(value.climb_m_s, units), age: position },
-    { label: "instruments.heading", value: value?.heading_deg == null ? null : formatBearing(value.heading_deg), age: ageS(value?.heading_age_s, at, now) },
-    { label: "instruments.power", value: status?.value.receiver_power_db == null ? null : `${formatNumber(status.value.receiver_power_db, 1)} dB`, age: heard },
+    {
+      label: "instruments.heading",
+      value: value?.heading_deg == null ? null : formatBearing(value.heading_deg),
+      age: ageS(value?.heading_age_s, at, now),
+    },
+    {
+      label: "instruments.power",
+      value: craft?.value.receiver_power_db == null ? null : `${formatNumber(craft.value.receiver_power_db, 1)} dB`,
+      age: heard,
+    },
     { label: "instruments.viewers", value: status ? String(status.value.viewers) : null, age: ageS(0, status?.atMs ?? null, now) },
-    { label: "instruments.database", value: status ? t(`instruments.database.${status.value.database}`) : null, age: ageS(0, status?.atMs ?? null, now) },
+    {
+      label: "instruments.database",
+      value: status ? t(`instruments.database.${status.value.database}`) : null,
+      age: ageS(0, status?.atMs ?? null, now),
+    },
     { label: "instruments.dropped", value: value ? String(value.dropped) : null, age: ageS(0, at, now) },
-  ]; // prettier-ignore
+  ];
   return (
     <table class="keys">
       <tbody>
@@ -59,12 +82,12 @@ function Values() {
 
 /** Called once the chunk is there: the lines begin with the first look. */
 export function collect(): void {
-  const { telemetry, status } = live.peek();
+  const heard = telemetry.peek()?.value;
   series.value = extend(series.peek(), {
     t: serverNowMs.peek() / 1000,
-    powerDb: status?.value.receiver_power_db ?? null,
-    altitudeM: telemetry?.value.altitude_relative_m ?? null,
-    batteryPercent: telemetry?.value.battery_percent ?? null,
+    powerDb: craftStatus.peek()?.value.receiver_power_db ?? null,
+    altitudeM: heard?.altitude_relative_m ?? null,
+    batteryPercent: heard?.battery_percent ?? null,
   });
 }
 setInterval(collect, 1000);

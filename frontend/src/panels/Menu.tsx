@@ -1,7 +1,7 @@
-import { overlay, toggle, type Overlay } from "../app/overlay";
-import { route } from "../app/route";
-import { flying } from "../app/store";
 import { t } from "../i18n";
+import { flying } from "../state/flying";
+import { type Overlay, overlay, toggle } from "../state/overlay";
+import { route } from "../state/route";
 
 const show = (which: Overlay) => () => {
   overlay.value = which;
@@ -13,14 +13,21 @@ const close = () => {
 /** On a page without the parts it explains the tour is of the example, unless something flies: then nobody is led away. */
 function showTour(): void {
   if (route.peek().page === "mission" || flying.peek()) overlay.value = "tour";
-  else location.href = "?fixture&tour#/mission/example";
+  else location.href = "?tour#/mission/example";
 }
 
 export function Menu() {
   const isOpen = overlay.value === "menu";
   return (
     <nav class="anchor" aria-label={t("bar.menu")}>
-      <button class="icon" data-testid="menu" aria-label={t("bar.menu")} aria-expanded={isOpen} onClick={() => toggle("menu")}>
+      <button
+        type="button"
+        class="icon"
+        data-testid="menu"
+        aria-label={t("bar.menu")}
+        aria-expanded={isOpen}
+        onClick={() => toggle("menu")}
+      >
         ☰
       </button>
       {isOpen && (
@@ -41,17 +48,17 @@ export function Menu() {
             </a>
           </li>
           <li>
-            <button onClick={show("settings")} data-testid="menu-settings">
+            <button type="button" onClick={show("settings")} data-testid="menu-settings">
               {t("menu.settings")}
             </button>
           </li>
           <li>
-            <button onClick={show("keys")} data-testid="menu-keys">
+            <button type="button" onClick={show("keys")} data-testid="menu-keys">
               {t("menu.keys")} <kbd>?</kbd>
             </button>
           </li>
           <li>
-            <button onClick={showTour} data-testid="menu-tour">
+            <button type="button" onClick={showTour} data-testid="menu-tour">
               {t("menu.tour")}
             </button>
           </li>

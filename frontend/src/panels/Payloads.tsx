@@ -1,8 +1,8 @@
 // The companion computers that listen: link, radio, clock, temperature, clipping, and what is still on its way.
 import { useEffect, useState } from "preact/hooks";
-import { source } from "../app/store";
-import { t, told, type MessageKey } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
+import { source } from "../state/connection";
 import { formatAge, formatNumber } from "../units/quantities";
 import type { PayloadList } from "../wire";
 
@@ -19,8 +19,12 @@ interface Row {
 export function rowsOf(payload: Payload): Row[] {
   const { clock_offset_s: offset, round_trip_s: trip, temperature_c: temperature } = payload;
   return [
-    { label: "payload.link", value: payload.connected ? t("payload.connected") : t("payload.gone", { age: formatAge(payload.age_s) }), bad: !payload.connected },
-    { label: "payload.radio", value: told(payload.receiver) || "–", bad: !payload.receiver_ok },
+    {
+      label: "payload.link",
+      value: payload.connected ? t("payload.connected") : t("payload.gone", { age: formatAge(payload.age_s) }),
+      bad: !payload.connected,
+    },
+    { label: "payload.radio", value: payload.receiver ? reasonText(payload.receiver) : "–", bad: !payload.receiver_ok },
     { label: "payload.clock", value: offset === null ? t("payload.clockUnknown") : `${formatNumber(1000 * offset, 0)} ms` },
     { label: "payload.trip", value: trip === null ? "–" : `${formatNumber(1000 * trip, 0)} ms` },
     { label: "payload.temperature", value: temperature === null ? "–" : `${formatNumber(temperature, 0)} °C` },
@@ -32,14 +36,14 @@ export function rowsOf(payload: Payload): Row[] {
 
 export function Payloads() {
   const [list, setList] = useState<PayloadList | null>(null);
-  const live = source.value?.kind === "live";
+  const expected = source.value?.keptByServer;
   useEffect(() => {
-    if (!live) return;
+    if (!expected) return;
     const ask = () => void api.payloads().then(setList, () => setList(null));
     ask();
     const timer = setInterval(ask, ASK_MS);
     return () => clearInterval(timer);
-  }, [live]);
+  }, [expected]);
   if (!list?.expected) return null;
   if (list.payloads.length === 0) return <p class="muted">{t("payload.none")}</p>;
   return (

@@ -1,21 +1,25 @@
 // Where to go next, what else was considered, why this one; accept, veto, or another place by slide.
 import { useEffect, useRef } from "preact/hooks";
-import { areaAddress } from "../app/route";
-import { settings } from "../app/settings";
-import { cursor, live, mission, source, supposedHere, vehicle } from "../app/store";
-import { send } from "../commands/send";
+import { cancelProposal, confirmProposal, type Proposal, proposal, propose } from "../commands/proposal";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { locale, t, told } from "../i18n";
-import { cancelProposal, confirmProposal, propose, proposal, type Proposal } from "../commands/proposal";
+import { send } from "../commands/send";
+import { locale, reasonText, t } from "../i18n";
 import { rankCandidates, roundShade } from "../state/candidates";
+import { source } from "../state/connection";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
+import { highlighted } from "../state/highlight";
 import { isHomeward } from "../state/mission";
-import { highlighted } from "../app/highlight";
+import { cursor, liveMission } from "../state/moment";
+import { areaAddress } from "../state/route";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
+import { supposedHere } from "../state/supposed";
+import { vehicle } from "../state/vehicle";
 import { formatPlace } from "../units/coordinates";
 import { formatBearing, formatDuration, formatLength, formatNumber } from "../units/quantities";
 import type { CandidateFact, Place, PlanChosen } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
-import { ProblemNote, ProblemBox } from "./ProblemNote";
+import { ProblemBox, ProblemNote } from "./ProblemNote";
 import { WhatIfPanel } from "./WhatIfPanel";
 
 const SHOWN = 12;
@@ -26,13 +30,14 @@ const HERE_M = 2;
 function wayWords(here: LonLat, place: Place): string {
   const length = distanceM(here, lonLat(place));
   if (length < HERE_M) return t("plan.here");
-  return t("plan.distance", { length: formatLength(length, settings.value.units), bearing: formatBearing(bearingDeg(here, lonLat(place))) });
+  return t("plan.distance", {
+    length: formatLength(length, settings.value.units),
+    bearing: formatBearing(bearingDeg(here, lonLat(place))),
+  });
 }
 
 function roundWords(candidate: CandidateFact): string {
-  return candidate.dropped_in_round === null
-    ? t("plan.kept")
-    : t("plan.roundNumber", { round: candidate.dropped_in_round });
+  return candidate.dropped_in_round === null ? t("plan.kept") : t("plan.roundNumber", { round: candidate.dropped_in_round });
 }
 
 function CandidateTable({ plan }: { plan: PlanChosen }) {
@@ -66,6 +71,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
           >
             <td>
               <button
+                type="button"
                 class="candidate-name"
                 disabled={!canPropose || chosen}
                 title={t("plan.flyHere")}
@@ -118,9 +124,9 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
       </div>
       {!result && !problem && <p class="muted">{t("proposal.asking")}</p>}
       {problem && <ProblemBox problem={problem} />}
-      {result && !result.allowed && (
+      {result?.reason && !result.allowed && (
         <p class="refused" role="alert">
-          {t("proposal.notAllowed", { reason: told(result.reason) })}
+          {t("proposal.notAllowed", { reason: reasonText(result.reason) })}
         </p>
       )}
       {result?.expected_time_s != null && (
@@ -145,7 +151,9 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
           expiresS={30}
         />
       ) : (
-        <button onClick={cancelProposal}>{t("proposal.cancel")}</button>
+        <button type="button" onClick={cancelProposal}>
+          {t("proposal.cancel")}
+        </button>
       )}
     </div>
   );
@@ -157,6 +165,7 @@ function Decision({ id }: { id: string }) {
   return (
     <div class="decision">
       <button
+        type="button"
         class={waiting ? "primary" : ""}
         data-testid="accept"
         disabled={!waiting}
@@ -164,10 +173,16 @@ function Decision({ id }: { id: string }) {
       >
         {t("plan.accept")}
       </button>
-      <button data-testid="veto" disabled={!waiting && phase !== "flying"} onClick={() => void send("plan", id, { kind: "veto" })}>
+      <button
+        type="button"
+        data-testid="veto"
+        disabled={!waiting && phase !== "flying"}
+        onClick={() => void send("plan", id, { kind: "veto" })}
+      >
         {t("plan.veto")}
       </button>
       <button
+        type="button"
         class="switch"
         role="switch"
         aria-checked={automatic}
@@ -195,27 +210,27 @@ export function PlanPanel() {
     <section class="panel plan" data-testid="plan" data-tour="5" aria-label={t("plan.title")}>
       <h2>
         {t("plan.title")}
-        {supposedHere.value && <span class="supposed" data-testid="supposed">{t("whatIf.mark")}</span>}
-        {fact && here && !isHomeward(mission.value) && (
-          <span class="muted">
-            {wayWords(here, fact.place)}
+        {supposedHere.value && (
+          <span class="supposed" data-testid="supposed">
+            {t("whatIf.mark")}
           </span>
         )}
+        {fact && here && !isHomeward(mission.value) && <span class="muted">{wayWords(here, fact.place)}</span>}
       </h2>
       <ProblemNote desk="plan" />
       {proposed && isLive && <ProposalCard proposed={proposed} />}
-      {missionId && isLive && startedAt && live.value.mission.missionId === missionId && <Decision id={missionId} />}
-      {missionId && isLive && source.value?.kind === "live" && phase === "hold" && (
+      {missionId && isLive && startedAt && liveMission.value.missionId === missionId && <Decision id={missionId} />}
+      {missionId && isLive && source.value?.keptByServer && phase === "hold" && (
         <a class="button" data-testid="change-area" href={areaAddress(missionId)}>
           {t("area.change")}
         </a>
       )}
-      {cursor.value !== null && source.value?.kind === "live" && <WhatIfPanel />}
+      {cursor.value !== null && source.value?.keptByServer && <WhatIfPanel />}
       {!fact && <p class="muted">{t("plan.none")}</p>}
       {fact && (
         <>
           <p class="why" data-testid="why">
-            <strong>{t("plan.why")}</strong> {told(fact.reason)}{" "}
+            <strong>{t("plan.why")}</strong> {reasonText(fact.reason)}{" "}
             <span class="muted">
               {fact.source === "planner"
                 ? t("plan.effort", {

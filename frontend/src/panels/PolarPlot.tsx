@@ -1,6 +1,6 @@
 // The sweep by hand: power against heading, the pattern's fit, the bearing with its sigma, other peaks.
 import { t } from "../i18n";
-import { binnedPath, polarPoint, polarScale, radius, type PolarScale } from "../state/polar";
+import { binnedPath, type PolarScale, polarPoint, polarScale, radius } from "../state/polar";
 import { formatBearing, formatNumber } from "../units/quantities";
 
 export interface PolarData {
@@ -58,9 +58,7 @@ export function PolarPlot({ data }: { data: PolarData }) {
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
       <Rings scale={scale} labelsDeg={labelsAt(data.bearing?.deg)} />
       {data.bearing && <path class="polar-wedge" d={wedgePath(data.bearing.deg, data.bearing.sigmaDeg)} />}
-      {scale && data.fittedDb.length > 0 && (
-        <path class="polar-fit" d={binnedPath(data.fittedDb, scale)} data-testid="polar-fit" />
-      )}
+      {scale && data.fittedDb.length > 0 && <path class="polar-fit" d={binnedPath(data.fittedDb, scale)} data-testid="polar-fit" />}
       {scale && data.binnedDb.length > 0 && (
         <path
           class={`polar-power ${data.rejected ? "polar-rejected" : ""}`}
@@ -68,7 +66,9 @@ export function PolarPlot({ data }: { data: PolarData }) {
           data-testid="polar-power"
         />
       )}
-      {scale && <path class="polar-samples" d={data.samples.map((s) => `M${polarPoint(s.headingDeg, radius(s.db, scale)).join(" ")}h0`).join("")} />}
+      {scale && (
+        <path class="polar-samples" d={data.samples.map((s) => `M${polarPoint(s.headingDeg, radius(s.db, scale)).join(" ")}h0`).join("")} />
+      )}
       {data.peaks.map((peak) => {
         const [x, y] = polarPoint(peak.deg, 0.35 + 0.65 * Math.min(1, peak.weight));
         return <line class="polar-peak" x1="0" y1="0" x2={x} y2={y} key={peak.deg} />;

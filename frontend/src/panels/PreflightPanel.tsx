@@ -1,12 +1,11 @@
 // Before the start: the checklist that refuses, with remedies, and the slide that starts.
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { mission, source } from "../app/store";
-import { asProblem, report, send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { t, told, toldName } from "../i18n";
-import { formatPlace, parsePlace } from "../units/coordinates";
+import { asProblem, report, send } from "../commands/send";
+import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
+import { source } from "../state/connection";
+import { mission } from "../state/shown";
 import { ProblemNote } from "./ProblemNote";
 
 const checking = signal(false);
@@ -25,12 +24,6 @@ export async function runPreflight(missionId: string): Promise<void> {
   }
 }
 
-/** What a check found; a place in the operator's notation. */
-function detailWords(detail: string): string {
-  const place = /^-?\d+\.\d+, -?\d+\.\d+$/.test(detail) ? parsePlace(detail) : null;
-  return place ? formatPlace(place, settings.value.coordinates) : told(detail);
-}
-
 export function PreflightPanel({ missionId }: { missionId: string }) {
   const { checks, preflightPassed, spec } = mission.value;
   const [sliding, setSliding] = useState(false);
@@ -42,7 +35,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
     <section class="panel preflight" data-testid="preflight" data-passed={preflightPassed ?? ""} aria-label={t("preflight.title")}>
       <h2>
         {t("preflight.title")}
-        <button data-testid="preflight-run" disabled={checking.value} onClick={() => void runPreflight(missionId)}>
+        <button type="button" data-testid="preflight-run" disabled={checking.value} onClick={() => void runPreflight(missionId)}>
           {t(checking.value ? "preflight.running" : checks ? "preflight.again" : "preflight.run")}
         </button>
       </h2>
@@ -54,20 +47,23 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
             <strong>{preflightPassed ? t("preflight.passed") : t("preflight.failed", { count: refusing })}</strong>
           </p>
           <ul class="checks">
-            {checks.toSorted((a, b) => Number(a.ok) - Number(b.ok)).map((check) => {
-              const verdict = check.ok ? "ok" : check.blocking ? "notOk" : "warning";
-              return (
-                <li class={`check-${verdict}`} key={check.name} data-testid="check" data-ok={check.ok}>
-                  <span class="check-mark" aria-label={t(`preflight.${verdict}`)}>
-                    {check.ok ? "✓" : check.blocking ? "✕" : "!"}
-                  </span>
-                  <span>
-                    <strong>{toldName(check.name)}</strong> {detailWords(check.detail)}
-                    {!check.ok && check.remedy && <em class="problem-remedy">{t("problem.remedy", { remedy: told(check.remedy) })}</em>}
-                  </span>
-                </li>
-              );
-            })}
+            {checks
+              .toSorted((a, b) => Number(a.ok) - Number(b.ok))
+              .map((check, i) => {
+                const remedy = reasonRemedy(check.reason);
+                const verdict = check.ok ? "ok" : check.blocking ? "notOk" : "warning";
+                return (
+                  <li class={`check-${verdict}`} key={i} data-testid="check" data-ok={check.ok}>
+                    <span class="check-mark" role="img" aria-label={t(`preflight.${verdict}`)}>
+                      {check.ok ? "✓" : check.blocking ? "✕" : "!"}
+                    </span>
+                    <span>
+                      <strong>{t(`check.${check.name}` satisfies MessageKey)}</strong> {reasonText(check.reason)}
+                      {!check.ok && remedy && <em class="problem-remedy">{t("problem.remedy", { remedy })}</em>}
+                    </span>
+                  </li>
+                );
+              })}
           </ul>
         </>
       )}
@@ -84,7 +80,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
             <a class="button" href={`#/mission/${encodeURIComponent(missionId)}/edit`} data-testid="edit">
               {t("preflight.edit")}
             </a>
-            <button class="primary" data-testid="start" disabled={!preflightPassed} onClick={() => setSliding(true)}>
+            <button type="button" class="primary" data-testid="start" disabled={!preflightPassed} onClick={() => setSliding(true)}>
               {t("preflight.start")}
             </button>
           </div>

@@ -1,19 +1,43 @@
-// The server's no, in its words: what is wrong, what to do.
-import { t, told } from "../i18n";
-import { problems, report, type Desk } from "../commands/send";
+// A no: what is wrong, in which field, what to do.
+
+import { type Desk, problems, report } from "../commands/send";
+import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import type { Problem } from "../wire";
 
+/** The server's title for each status, in the page's language. */
+const TITLES: Readonly<Record<number, MessageKey>> = {
+  403: "problem.403",
+  404: "problem.404",
+  405: "problem.405",
+  409: "problem.409",
+  413: "problem.413",
+  421: "problem.421",
+  422: "problem.422",
+  500: "problem.500",
+  503: "problem.503",
+  507: "problem.507",
+};
+
+/** A problem that the page found by itself has no reason: its words are the page's already. */
+const detailOf = ({ reason, detail }: Problem): string => (reason ? reasonText(reason) : detail);
+const remedyOf = ({ reason, remedy }: Problem): string => (reason ? reasonRemedy(reason) : remedy);
+
+/** What is wrong and what to do, within a sentence that names what it is about. */
+export const problemWords = (problem: Problem): string => `${detailOf(problem)} ${remedyOf(problem)}`.trim();
+
 export function ProblemText({ problem }: { problem: Problem }) {
+  const title = problem.reason && TITLES[problem.status];
+  const remedy = remedyOf(problem);
+  const isAllInFields = problem.reason?.code === "request_invalid" && problem.errors.length > 0;
   return (
     <>
-      <strong>{told(problem.title)}.</strong> {told(problem.detail)}
+      <strong>{title ? t(title) : problem.title}.</strong> {!isAllInFields && detailOf(problem)}
       {problem.errors.map((e) => (
         <div class="problem-field" key={e.field}>
-          {e.field}: {told(e.message)}
+          {e.field}: {reasonText(e.reason)}
         </div>
       ))}
-      {problem.remedy && <div class="problem-remedy">{t("problem.remedy", { remedy: told(problem.remedy) })}</div>}
-      {problem.incident && <div class="muted">{t("problem.incident", { id: problem.incident })}</div>}
+      {remedy && <div class="problem-remedy">{t("problem.remedy", { remedy })}</div>}
     </>
   );
 }
@@ -31,7 +55,7 @@ export function ProblemBox({ problem, testId, onDismiss }: Boxed) {
         <ProblemText problem={problem} />
       </div>
       {onDismiss && (
-        <button class="icon" aria-label={t("problem.dismiss")} onClick={onDismiss}>
+        <button type="button" class="icon" aria-label={t("problem.dismiss")} onClick={onDismiss}>
           ✕
         </button>
       )}

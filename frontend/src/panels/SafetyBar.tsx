@@ -1,15 +1,21 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
 import { useState } from "preact/hooks";
-import { cursor, events, flying, live, mission, nowMs, shownTimeMs, source, vehicle } from "../app/store";
-import { toggle } from "../app/overlay";
-import { missionAddress } from "../app/route";
-import { send } from "../commands/send";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { sendUrgent, urgent, type Urgent } from "../commands/urgent";
-import { t, type MessageKey } from "../i18n";
-import { ageS, freshness, OLD_AFTER_S, type Freshness } from "../state/age";
+import { send } from "../commands/send";
+import { sendUrgent, type Urgent, urgent } from "../commands/urgent";
+import { type MessageKey, t } from "../i18n";
+import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
+import { nowMs } from "../state/clock";
+import { live } from "../state/connection";
+import { flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
+import { craftStatus, telemetry } from "../state/heard";
+import { cursor, events } from "../state/moment";
+import { toggle } from "../state/overlay";
+import { missionAddress } from "../state/route";
+import { mission, shownTimeMs } from "../state/shown";
 import { toneOfPhase } from "../state/tone";
+import { vehicle } from "../state/vehicle";
 import { reviewWords, stateWords, waitsWords } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
@@ -17,12 +23,10 @@ import { Menu } from "./Menu";
 import { ProblemNote } from "./ProblemNote";
 
 function UrgentButton({ kind }: { kind: Urgent }) {
-  const target = flying.value;
-  const heard = live.value.telemetry?.value;
-  const shown = source.value?.kind === "replay" ? null : live.value.mission.missionId;
-  const id = target?.id ?? (heard?.in_air || !heard ? shown : null);
+  const id = flying.value?.id;
   return (
     <button
+      type="button"
       class={`urgent urgent-${kind}`}
       data-testid={kind}
       disabled={!id}
@@ -41,7 +45,7 @@ function Resume() {
   if (!target || !canResume) return null;
   if (!armed) {
     return (
-      <button class="resume" data-testid="resume" onClick={() => setArmed(true)}>
+      <button type="button" class="resume" data-testid="resume" onClick={() => setArmed(true)}>
         {t("bar.resume")}
       </button>
     );
@@ -85,24 +89,25 @@ function Indicator({ label, testId, value, age, state, alert, more }: Reading) {
 
 function Indicators() {
   const now = nowMs.value;
-  const { telemetry, status, link, lastMessageMs, unreadable } = live.value;
-  const heard = telemetry?.value;
-  const at = telemetry?.atMs ?? null;
+  const { link, lastMessageMs, unreadable } = live.value;
+  const heard = telemetry.value?.value;
+  const at = telemetry.value?.atMs ?? null;
+  const craft = craftStatus.value;
   const silence = ageS(0, lastMessageMs ?? link.sinceMs, now) ?? 0;
   const linkAlert = link.state === "closed" || silence > 2 * OLD_AFTER_S ? "warning" : null;
   const batteryAge = ageS(heard?.battery_age_s, at, now);
   const gpsAge = ageS(heard?.position_age_s, at, now);
   const connectedAge = ageS(0, at, now);
-  const receiverAge = ageS(status ? 0 : null, status?.atMs ?? null, now);
-  const needed = status?.value.battery_to_return_percent ?? null;
+  const receiverAge = ageS(craft ? 0 : null, craft?.atMs ?? null, now);
+  const needed = craft?.value.battery_to_return_percent ?? null;
   const battery = heard?.battery_percent ?? null;
-  const receiver = status?.value.receiver ?? "off";
-  const power = status?.value.receiver_power_db ?? null;
+  const receiver = craft?.value.receiver ?? "off";
+  const power = craft?.value.receiver_power_db ?? null;
   const reserve = live.value.mission.spec?.flight.reserve_battery_percent ?? 25;
   const vehicleState = heard === undefined ? "bar.vehicle.never" : heard.connected ? "bar.vehicle.ok" : "bar.vehicle.lost";
   const poorFix = heard?.gps_fix != null && /no|2d|none/i.test(heard.gps_fix);
   return (
-    <button class="indicators" data-testid="indicators" title={t("instruments.title")} onClick={() => toggle("instruments")}>
+    <button type="button" class="indicators" data-testid="indicators" title={t("instruments.title")} onClick={() => toggle("instruments")}>
       <Indicator
         label={t("bar.link")}
         testId="link"
@@ -155,14 +160,24 @@ function Indicators() {
   );
 }
 
+/** Who flies: in the review by the mission's own word, else as the server says it now. */
 function controlWords(): string {
-  const pilot = mission.value.pilot;
-  if (pilot) return t("control.pilot", { mode: pilot.mode });
-  const heard = live.value.telemetry?.value;
-  if (!heard) return t("control.unknown");
-  // the vehicle only says that it was not us; that it was the pilot is the mission's word
-  if (heard.controller === "pilot") return t("control.other", { mode: heard.mode ?? "?" });
-  return t(heard.controller === "crossfix" ? "control.crossfix" : "control.nobody");
+  const { authority, craftId, pilot } = mission.value;
+  const heard = telemetry.value?.value;
+  const who = pilot ? "pilot" : cursor.value !== null && craftId !== null ? authority.who : (heard?.who ?? null);
+  const mode = pilot?.mode ?? heard?.mode ?? "?";
+  switch (who) {
+    case "pilot":
+      return t(authority.perhaps_failsafe ? "control.perhapsFailsafe" : "control.pilot", { mode });
+    case "failsafe":
+      return t("control.failsafe", { mode });
+    case "ours":
+      return t("control.crossfix");
+    case "nobody":
+      return t("control.nobody");
+    case null:
+      return t("control.unknown");
+  }
 }
 
 /** Seconds until the place that is flown to is reached, as the crow flies. */
@@ -175,11 +190,9 @@ function etaS(): number | null {
 
 function Words() {
   const now = nowMs.value;
-  const { status, link, lastMessageMs, hello } = live.value;
+  const { link, lastMessageMs, hello } = live.value;
   const silence = ageS(0, lastMessageMs ?? link.sinceMs, now) ?? 0;
   const shown = mission.value;
-  const fresh = freshness(ageS(status ? 0 : null, status?.atMs ?? null, now)) === "fresh";
-  const aboutThis = status?.value.mission_id === shown.missionId;
   const reviewed = cursor.value === null ? null : events.value.findLast((e) => e.seq <= cursor.value!);
 
   const doing = shown.missionId ? stateWords(shown, etaS()) : t(flying.value ? "state.otherFlies" : "state.none");
@@ -187,10 +200,15 @@ function Words() {
   const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
 
   const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;
-  const waits = waitsWords(shown) ?? (cursor.value === null && fresh && aboutThis ? status?.value.waits_for : null);
+  const waits = waitsWords(shown);
   return (
     <div class="words">
-      <div class={`state-words ${lost ? "stale" : `tone-${toneOfPhase(shown.phase)}`}`} data-testid="state-words" data-phase={shown.phase} role="status">
+      <div
+        class={`state-words ${lost ? "stale" : `tone-${toneOfPhase(shown.phase)}`}`}
+        data-testid="state-words"
+        data-phase={shown.phase}
+        role="status"
+      >
         <span data-testid="phase" hidden>
           {shown.phase}
         </span>
@@ -232,8 +250,9 @@ function UrgentNote() {
 
 export function SafetyBar() {
   return (
-    <header class="safety" data-tour="1" aria-label={t("bar.label")}>
+    <header class="safety" data-tour="1">
       <div class="safety-row">
+        {/* biome-ignore lint/a11y/useSemanticElements: a fieldset groups the fields of a form, these are commands */}
         <div class="urgents" role="group" aria-label={t("bar.label")}>
           <UrgentButton kind="abort" />
           <UrgentButton kind="hold" />

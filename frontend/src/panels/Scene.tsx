@@ -1,10 +1,11 @@
 // The 3D scene in the place of the map: the server draws it, it follows the live mission and the review.
 import { useEffect, useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { cursor, mission } from "../app/store";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { showScene } from "../sources/sceneApi";
+import { cursor } from "../state/moment";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
 import type { Problem } from "../wire";
 import { ProblemBox } from "./ProblemNote";
 
@@ -15,24 +16,23 @@ const VIEW_ID = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.
 const REST_MS = 60;
 
 export function Scene() {
-  const [shown, setShown] = useState<{ url: string; language: string } | null>(null);
+  const [shown, setShown] = useState<string | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const id = mission.value.missionId;
   const seq = cursor.value;
   const theme = settings.value.theme === "indoor" ? "dark" : "light";
-  const language = settings.value.language;
   useEffect(() => {
     const timer = setTimeout(() => {
-      showScene(VIEW_ID, { mission_id: id, seq, theme, hidden: [], belief_height_m: null, language }).then(
+      showScene(VIEW_ID, { mission_id: id, seq, theme, hidden: [], belief_height_m: null }).then(
         (view) => {
-          setShown({ url: view.url, language });
+          setShown(view.url);
           setProblem(null);
         },
         (error: unknown) => setProblem(asProblem(error)),
       );
     }, REST_MS);
     return () => clearTimeout(timer);
-  }, [id, seq, theme, language]);
+  }, [id, seq, theme]);
   if (problem) {
     return (
       <div class="center">
@@ -41,6 +41,5 @@ export function Scene() {
     );
   }
   if (!shown) return <p class="center muted">{t("scene.loading")}</p>;
-  // a window's panel speaks the language it was opened in: another language opens it anew, once the server knows it
-  return <iframe key={shown.language} class="scene" src={shown.url} title={t("scene.title")} data-testid="scene" />;
+  return <iframe class="scene" src={shown} title={t("scene.title")} data-testid="scene" />;
 }

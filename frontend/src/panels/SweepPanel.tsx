@@ -1,18 +1,21 @@
 // The newest sweep, or the one picked: plot, bearing, quality, why it was refused, leave it out.
 import { useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { cursor, live, mission, supposedHere } from "../app/store";
 import { send } from "../commands/send";
-import { t, told } from "../i18n";
-import type { MissionState } from "../state/mission";
+import { reasonText, t } from "../i18n";
+import { sweep as sweepHeard } from "../state/heard";
+import { cursor } from "../state/moment";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
+import { supposedHere } from "../state/supposed";
+import type { MissionView } from "../state/view";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, SweepProgress, SweepRejected } from "../wire";
-import { PolarPlot, type PolarData } from "./PolarPlot";
+import { type PolarData, PolarPlot } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
 
 type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; excluded: boolean };
 
-function sweepsOf(mission: MissionState): Sweep[] {
+function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] {
   return [
     ...mission.bearings.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
     ...mission.rejected.map(({ seq, fact }) => ({ seq, fact, excluded: false })),
@@ -59,7 +62,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <strong>{t("sweep.place", { number: fact.place_number })}</strong>
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
-        <div class="refused">{t("sweep.rejected", { reason: told(fact.reason) })}</div>
+        <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
       </div>
     );
   }
@@ -86,6 +89,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
       )}
       {!excluded && cursor.value === null && !mission.value.ended && id && (
         <button
+          type="button"
           class="small"
           data-testid="exclude"
           onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.bearing_id, reason: "" })}
@@ -101,9 +105,10 @@ export function SweepPanel() {
   const [picked, setPicked] = useState<number | null>(null);
   const state = mission.value;
   const sweeps = sweepsOf(state);
-  const running = cursor.value === null && state.phase === "measuring" ? live.value.sweep?.value : undefined;
+  const running = cursor.value === null && state.phase === "measuring" ? sweepHeard.value?.value : undefined;
   const sweep = sweeps.find((s) => s.seq === picked) ?? sweeps[0];
-  const showRunning = running && running.mission_id === state.missionId && picked === null;
+  const isOfThis = running?.mission_id === state.missionId && running?.emitter_id === state.emitterId;
+  const showRunning = running && isOfThis && picked === null;
   return (
     <section class="panel sweep" data-testid="sweep" data-tour="4" aria-label={t("sweep.title")}>
       <h2>

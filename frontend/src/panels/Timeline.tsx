@@ -1,11 +1,12 @@
 // Everything that happened: a strip of time with a handle, and the events in words. Live and review are one screen.
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { cursor, events, live, look, mission } from "../app/store";
-import { t, type MessageKey } from "../i18n";
+import { type MessageKey, t } from "../i18n";
+import { eventWords, isMain, toneOf } from "../state/eventWords";
 import { isOver } from "../state/mission";
-import { eventWords, isMain, toneOf } from "../state/words";
+import { cursor, events, liveMission, look } from "../state/moment";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
 import { formatClock, formatLength } from "../units/quantities";
 import type { Recorded } from "../wire";
 
@@ -122,10 +123,12 @@ function Log({ all }: { all: readonly Recorded[] }) {
   }, [shown.length, current, all.length === 0]);
   if (all.length === 0) return <p class="muted log-empty">{t("timeline.empty")}</p>;
   return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a list that scrolls must be within reach of the keyboard
     <ol class="log" ref={list} data-testid="event-log" aria-label={t("timeline.events")} tabIndex={0}>
       {shown.map((recorded) => (
         <li key={recorded.seq} aria-current={recorded.seq === current ? "true" : undefined}>
           <button
+            type="button"
             class={`log-row log-${toneOf(recorded.event)}`}
             data-testid="event-row"
             data-kind={recorded.event.kind}
@@ -142,7 +145,7 @@ function Log({ all }: { all: readonly Recorded[] }) {
 }
 
 function liveLabel(reviewing: boolean): MessageKey {
-  const over = isOver(live.value.mission.phase);
+  const over = isOver(liveMission.value.phase);
   if (reviewing) return over ? "timeline.toEnd" : "timeline.goLive";
   return over ? "timeline.review" : "timeline.live";
 }
@@ -155,6 +158,7 @@ export function Timeline() {
     <section class="timeline" aria-label={t("timeline.label")} data-testid="timeline" data-tour="6">
       <div class="timeline-controls">
         <button
+          type="button"
           class={reviewing ? "primary" : "is-live"}
           data-testid="go-live"
           data-live={!reviewing}
@@ -165,13 +169,28 @@ export function Timeline() {
         >
           {t(liveLabel(reviewing))}
         </button>
-        <button class="icon" aria-label={t("timeline.previous")} data-testid="step-back" disabled={all.length === 0} onClick={() => stepEvent(-1)}>
+        <button
+          type="button"
+          class="icon"
+          aria-label={t("timeline.previous")}
+          data-testid="step-back"
+          disabled={all.length === 0}
+          onClick={() => stepEvent(-1)}
+        >
           ◂
         </button>
-        <button class="icon" aria-label={t("timeline.next")} data-testid="step-on" disabled={!reviewing} onClick={() => stepEvent(1)}>
+        <button
+          type="button"
+          class="icon"
+          aria-label={t("timeline.next")}
+          data-testid="step-on"
+          disabled={!reviewing}
+          onClick={() => stepEvent(1)}
+        >
           ▸
         </button>
         <button
+          type="button"
           data-testid="play"
           disabled={all.length === 0}
           onClick={() => {

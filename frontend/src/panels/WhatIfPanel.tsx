@@ -1,14 +1,15 @@
 // The review's question: what would have been believed and chosen here with another sensor or planner?
 import { signal } from "@preact/signals";
 import { useState } from "preact/hooks";
-import { settings } from "../app/settings";
-import { flownBearings, mission, supposed, supposedHere } from "../app/store";
 import { asProblem } from "../commands/send";
-import { t, told, type MessageKey } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
+import { settings } from "../state/settings";
+import { mission } from "../state/shown";
+import { flownBearings, supposed, supposedHere } from "../state/supposed";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
-import { decodeBeliefFrame } from "../wire/beliefFrame";
+import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
 
 const PLANNERS = {
@@ -30,12 +31,10 @@ const planner = signal<PlannerName>("flown");
 /** A typed number, null for an empty field; NaN for what is none. */
 const typed = (text: string): number | null => (text.trim() === "" ? null : Number(text.replace(",", ".")));
 
-const bytesOf = (base64: string): ArrayBuffer => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
-
 /** What a sweep tells: its bearing, or that it tells nothing; null when it would not have been taken. */
 function sweepWords(fact: BearingMeasured | WhatIf["sweeps"][number] | undefined): { text: string; why?: string } | null {
   if (!fact) return null;
-  if (fact.kind === "sweep_rejected") return { text: t("whatIf.rejected"), why: told(fact.reason) };
+  if (fact.kind === "sweep_rejected") return { text: t("whatIf.rejected"), why: reasonText(fact.reason) };
   return { text: t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) }) };
 }
 
@@ -81,7 +80,13 @@ function Antenna() {
     <>
       <label>
         {t("whatIf.mounting")}
-        <input data-testid="what-if-mounting" inputMode="decimal" placeholder={t("whatIf.asItIs")} value={mounting.value} onInput={(e) => (mounting.value = e.currentTarget.value)} />
+        <input
+          data-testid="what-if-mounting"
+          inputMode="decimal"
+          placeholder={t("whatIf.asItIs")}
+          value={mounting.value}
+          onInput={(e) => (mounting.value = e.currentTarget.value)}
+        />
       </label>
       <div class="what-if-pattern">
         <label class="button">
@@ -98,7 +103,7 @@ function Antenna() {
           />
         </label>
         {pattern.value && (
-          <button class="icon" aria-label={t("whatIf.pattern.remove")} onClick={() => (pattern.value = null)}>
+          <button type="button" class="icon" aria-label={t("whatIf.pattern.remove")} onClick={() => (pattern.value = null)}>
             ✕
           </button>
         )}
@@ -145,20 +150,36 @@ export function WhatIfPanel() {
           {t("whatIf.antenna", { name: shown.answer.antenna.name, offset: formatNumber(shown.answer.antenna.offset_to_nose_deg, 0) })}
         </p>
       )}
-      {shown?.answer.plan === null && <p class="muted">{t("whatIf.noPlan", { reason: shown.answer.no_plan })}</p>}
+      {shown?.answer.no_plan && <p class="muted">{t("whatIf.noPlan", { reason: reasonText(shown.answer.no_plan) })}</p>}
       <div class="what-if-fields">
         <label>
           {t("whatIf.sigma")}
-          <input data-testid="what-if-sigma" inputMode="decimal" placeholder={String(spec.sensor.sigma_deg)} value={sigma.value} onInput={(e) => (sigma.value = e.currentTarget.value)} />
+          <input
+            data-testid="what-if-sigma"
+            inputMode="decimal"
+            placeholder={String(spec.sensor.sigma_deg)}
+            value={sigma.value}
+            onInput={(e) => (sigma.value = e.currentTarget.value)}
+          />
         </label>
         <label>
           {t("whatIf.outliers")}
-          <input data-testid="what-if-outliers" inputMode="decimal" placeholder={String(100 * spec.sensor.outlier_probability)} value={outliers.value} onInput={(e) => (outliers.value = e.currentTarget.value)} />
+          <input
+            data-testid="what-if-outliers"
+            inputMode="decimal"
+            placeholder={String(100 * spec.sensor.outlier_probability)}
+            value={outliers.value}
+            onInput={(e) => (outliers.value = e.currentTarget.value)}
+          />
         </label>
         <Antenna />
         <label>
           {t("whatIf.planner")}
-          <select data-testid="what-if-planner" value={planner.value} onChange={(e) => (planner.value = e.currentTarget.value as PlannerName)}>
+          <select
+            data-testid="what-if-planner"
+            value={planner.value}
+            onChange={(e) => (planner.value = e.currentTarget.value as PlannerName)}
+          >
             {(Object.keys(PLANNERS) as PlannerName[]).map((name) => (
               <option value={name} key={name}>
                 {t(`whatIf.planner.${name}` satisfies MessageKey)}
@@ -168,11 +189,11 @@ export function WhatIfPanel() {
         </label>
       </div>
       <div class="decision">
-        <button class="primary" data-testid="what-if-ask" disabled={asking || unreadable} onClick={() => void ask()}>
+        <button type="button" class="primary" data-testid="what-if-ask" disabled={asking || unreadable} onClick={() => void ask()}>
           {t(asking ? "whatIf.asking" : "whatIf.ask", { count: counted })}
         </button>
         {shown && (
-          <button data-testid="what-if-back" onClick={() => (supposed.value = null)}>
+          <button type="button" data-testid="what-if-back" onClick={() => (supposed.value = null)}>
             {t("whatIf.back")}
           </button>
         )}

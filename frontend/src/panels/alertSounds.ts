@@ -1,9 +1,10 @@
 // Tones and speech for alerts that are new: a triple for a warning, a double for a caution, none for an advisory.
 import { effect } from "@preact/signals";
-import { settings } from "../app/settings";
-import { cursor, live } from "../app/store";
-import { t, told } from "../i18n";
+import { reasonText, t } from "../i18n";
 import { isOpen } from "../state/alerts";
+import { live } from "../state/connection";
+import { cursor } from "../state/moment";
+import { settings } from "../state/settings";
 import type { AlertLevel } from "../wire";
 
 const TONES: Record<AlertLevel, { hertz: number; times: number }> = {
@@ -55,7 +56,7 @@ export function watchAlerts(): void {
     if (cursor.peek() !== null) return;
     for (const alert of fresh) {
       if (settings.peek().tones) beep(alert.level);
-      if (settings.peek().speech) say(`${t(`alerts.${alert.level}`)}. ${told(alert.text)}`);
+      if (settings.peek().speech) say(`${t(`alerts.${alert.level}`)}. ${reasonText(alert.reason)}`);
     }
   });
 }

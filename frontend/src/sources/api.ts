@@ -1,4 +1,5 @@
-// REST, one function an endpoint. Every failure becomes a RequestFailed with a sentence to show.
+// REST, one function an endpoint. Every failure becomes a RequestFailed with a problem to show.
+import { t } from "../i18n";
 import type {
   AreaImport,
   AreaOutlook,
@@ -9,7 +10,7 @@ import type {
   Defaults,
   EventPage,
   ExpectedTime,
-  Health,
+  ExportedMission,
   Mission,
   MissionList,
   MissionSpec,
@@ -25,11 +26,13 @@ import type {
   WhatIf,
   WhatIfRequest,
 } from "../wire";
-import { decodeBeliefFrame, type BeliefFrame } from "../wire/beliefFrame";
-import { RequestFailed, unreachable } from "./problem";
+import { type BeliefFrame, decodeBeliefFrame } from "../wire/beliefFrame";
+import { localProblem, RequestFailed, unreachable } from "./problem";
 
 const TIMEOUT_MS = 20_000;
 const ANTENNA_S = 60;
+/** A file of many megabytes may cross a thin link. */
+const LONG_MS = 120_000;
 
 /** A random UUID also where the page is served without TLS (crypto.randomUUID needs a secure context). */
 export function newCommandId(): string {
@@ -41,15 +44,8 @@ export function newCommandId(): string {
 }
 
 export async function problemOf(response: Response): Promise<RequestFailed> {
-  const fallback: Problem = {
-    type: "about:blank",
-    title: `The server refused (${response.status})`,
-    status: response.status,
-    detail: response.statusText || "It gave no reason.",
-    remedy: "",
-    errors: [],
-    incident: null,
-  };
+  const { status, statusText } = response;
+  const fallback = localProblem(t("problem.status", { status }), statusText || t("problem.noReason"), status);
   const isJson = response.headers.get("content-type")?.includes("json") ?? false;
   const body = isJson ? ((await response.json()) as Partial<Problem>) : {};
   return new RequestFailed({ ...fallback, ...body, errors: Array.isArray(body.errors) ? body.errors : [] });
@@ -63,7 +59,7 @@ async function request(path: string, init: RequestInit = {}, timeoutMs = TIMEOUT
     response = await fetch(`/api${path}`, { ...init, signal });
   } catch (error) {
     if (init.signal?.aborted) throw error;
-    throw unreachable(timeout.aborted ? `No answer within ${timeoutMs / 1000} seconds.` : "The connection failed.");
+    throw unreachable(timeout.aborted ? t("problem.timeout", { seconds: timeoutMs / 1000 }) : t("problem.connection"));
   }
   if (!response.ok) throw await problemOf(response);
   return response;
@@ -88,7 +84,6 @@ export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" |
 
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 
-export const health = () => json<Health>("/health");
 export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
 export const missions = () => json<MissionList>("/missions");
@@ -97,7 +92,7 @@ export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", wi
 export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));
 export const preflight = (id: string) => json<PreflightReply>(`${missionPath(id)}/preflight`, { method: "POST" });
 export const preview = (spec: MissionSpec, signal?: AbortSignal) => json<Preview>("/preview", withBody("POST", spec, signal));
-export const track = (id: string) => json<Track>(`${missionPath(id)}/track`);
+export const track = (id: string, craftId: string) => json<Track>(`${missionPath(id)}/track?craft=${encodeURIComponent(craftId)}`);
 
 /** Where a file of the mission can be fetched from. */
 export const exportAddress = (id: string, format: ExportFormat) => `/api${missionPath(id)}/export/${format}`;
@@ -120,10 +115,13 @@ export const checkAntenna = (id: string, emitter: { place: Place } | { bearing_d
 export const importRecording = (id: string, form: FormData) =>
   json<RecordingImport>(`${missionPath(id)}/recordings`, { method: "POST", body: form });
 
+/** The text of an exported journal, of any age, in today's form. */
+export const readExported = (text: string) =>
+  json<ExportedMission>("/recordings/read", { method: "POST", headers: { "content-type": "application/json" }, body: text }, LONG_MS);
+
 export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
-export const importArea = (text: string, filename: string) =>
-  json<AreaImport>("/areas", withBody("POST", { text, filename }));
+export const importArea = (text: string, filename: string) => json<AreaImport>("/areas", withBody("POST", { text, filename }));
 
 export async function events(id: string): Promise<Recorded[]> {
   const all: Recorded[] = [];
@@ -135,9 +133,9 @@ export async function events(id: string): Promise<Recorded[]> {
   }
 }
 
-export async function belief(id: string, bearings: number, seq: number): Promise<BeliefFrame | null> {
+export async function belief(id: string, emitterId: string, seq: number): Promise<BeliefFrame | null> {
   try {
-    const response = await request(`${missionPath(id)}/beliefs/${bearings}?seq=${seq}`);
+    const response = await request(`${missionPath(id)}/beliefs?emitter=${encodeURIComponent(emitterId)}&seq=${seq}`);
     return decodeBeliefFrame(await response.arrayBuffer());
   } catch (error) {
     if (error instanceof RequestFailed && error.problem.status === 404) return null;

@@ -1,6 +1,6 @@
 // @vitest-environment happy-dom
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
-import { record, someBearing } from "../state/examples";
+import { record, someBearing } from "../wire/examples";
 import { LiveSource, retryDelayMs } from "./live";
 import type { SourceMessage } from "./source";
 
@@ -56,7 +56,7 @@ describe("the live source", () => {
     expect(heard.filter((m) => m.type === "event")).toHaveLength(1);
   });
 
-  it("takes a silent socket for dead and connects anew", async () => {
+  it("takes a silent socket for dead and connects again", async () => {
     start();
     await vi.advanceTimersByTimeAsync(7_000);
     expect(FakeSocket.made[0]!.close).toHaveBeenCalled();

@@ -17,7 +17,9 @@ export function retryDelayMs(attempt: number, random: number): number {
 }
 
 export class LiveSource implements Source {
-  readonly kind = "live";
+  readonly happensNow = true;
+  readonly takesCommands = true;
+  readonly keptByServer = true;
   private socket: WebSocket | null = null;
   private listener: (message: SourceMessage) => void = () => undefined;
   private lastSeq = 0;

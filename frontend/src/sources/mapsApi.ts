@@ -1,6 +1,7 @@
 // Offline map packages and overlays on this server.
-import type { components } from "../wire/generated";
+
 import type { Area } from "../wire";
+import type { components } from "../wire/generated";
 import { json, requestEmpty, withBody } from "./api";
 
 type Schemas = components["schemas"];

@@ -1,6 +1,7 @@
-import type { Problem } from "../wire";
+import { reasonText, t } from "../i18n";
+import type { Problem, Reason } from "../wire";
 
-/** The server said no, or could not be reached: a sentence, what to do, and where in the request it belongs. */
+/** The server said no, or could not be reached: why, what to do, and where in the request it belongs. */
 export class RequestFailed extends Error {
   constructor(readonly problem: Problem) {
     super(problem.detail || problem.title);
@@ -8,7 +9,7 @@ export class RequestFailed extends Error {
   /** The message that belongs to one field, by its path ("spec.sensor.sigma_deg" or its tail). */
   fieldMessage(path: string): string | null {
     const found = this.problem.errors.find((e) => e.field === path || e.field.endsWith(`.${path}`));
-    return found?.message ?? null;
+    return found ? reasonText(found.reason) : null;
   }
 }
 
@@ -19,11 +20,13 @@ export const localProblem = (title: string, detail: string, status = 0): Problem
   status,
   detail,
   remedy: "",
+  reason: null,
   errors: [],
-  incident: null,
 });
 
+/** A wish that the server took in and said no to. */
+export const refusal = (reason: Reason | null): Problem => ({ ...localProblem(t("problem.refused"), "", 200), reason });
+
 export function unreachable(detail: string): RequestFailed {
-  const remedy = "Check that the server runs and that this device is in its network; nothing you typed is lost.";
-  return new RequestFailed({ ...localProblem("The server does not answer", detail), remedy });
+  return new RequestFailed({ ...localProblem(t("problem.unreachable"), detail), remedy: t("problem.unreachable.remedy") });
 }

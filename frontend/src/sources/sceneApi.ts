@@ -6,5 +6,4 @@ type Schemas = components["schemas"];
 export type SceneRequest = Schemas["SceneRequest"];
 export type SceneView = Schemas["SceneView"];
 
-export const showScene = (viewId: string, request: SceneRequest) =>
-  json<SceneView>(`/scene/views/${viewId}`, withBody("PUT", request));
+export const showScene = (viewId: string, request: SceneRequest) => json<SceneView>(`/scene/views/${viewId}`, withBody("PUT", request));

@@ -22,15 +22,20 @@ export interface UnreadableMessage {
 export type SourceMessage = LiveMessage | BeliefMessage | LinkMessage | UnreadableMessage;
 
 export interface Source {
-  readonly kind: "live" | "replay" | "fixture";
   readonly missionId: string | null;
+  /** What the vehicle tells belongs to the mission shown. */
+  readonly happensNow: boolean;
+  /** The mission shown has a vehicle that abort, hold and return reach. */
+  readonly takesCommands: boolean;
+  /** The server keeps the mission shown: recordings, antenna check, another area, what-if and the 3D scene are to be had. */
+  readonly keptByServer: boolean;
   start(listener: (message: SourceMessage) => void): void;
   stop(): void;
   /** `commandId` given again means the same command again: it is carried out once. */
   send(missionId: string, command: Command, commandId?: string): Promise<CommandReply>;
-  /** The last belief of so many bearings up to the event `seq`. */
-  belief(missionId: string, bearings: number, seq: number): Promise<BeliefFrame | null>;
-  track(missionId: string): Promise<Track>;
+  /** The belief about an emitter that stood at the event `seq`; null when it is not to be had. */
+  belief(missionId: string, emitterId: string, seq: number): Promise<BeliefFrame | null>;
+  track(missionId: string, craftId: string): Promise<Track>;
   preflight(missionId: string): Promise<PreflightReply>;
   expectedTime(missionId: string, place: Place, signal?: AbortSignal): Promise<ExpectedTime>;
   importArea(text: string, filename: string): Promise<AreaImport>;

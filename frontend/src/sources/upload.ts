@@ -1,4 +1,5 @@
 // A file as the body of a POST, with progress (fetch cannot tell it).
+import { t } from "../i18n";
 import { problemOf } from "./api";
 import { unreachable } from "./problem";
 
@@ -10,7 +11,7 @@ export function upload(path: string, file: File, onProgress: (share: number) => 
     request.upload.onprogress = (event) => {
       if (event.lengthComputable) onProgress(event.loaded / event.total);
     };
-    request.onerror = () => reject(unreachable("The upload broke off."));
+    request.onerror = () => reject(unreachable(t("problem.upload")));
     request.onload = () => {
       if (request.status < 300) resolve();
       else {

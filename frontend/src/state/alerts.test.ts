@@ -1,10 +1,20 @@
 import { expect, it } from "vitest";
+import { someReason } from "../wire/examples";
 import { isOpen, sortAlerts } from "./alerts";
 import type { Alert } from "./mission";
 
 const alert = (id: string, level: Alert["level"], raisedAt: string, changes: Partial<Alert> = {}): Alert => ({
-  id, level, text: id, remedy: "", raisedAt, acknowledgedBy: null, cleared: false, ...changes,
-}); // prettier-ignore
+  id,
+  level,
+  topic: "vehicle",
+  reason: someReason,
+  craftId: null,
+  emitterId: null,
+  raisedAt,
+  acknowledgedBy: null,
+  cleared: false,
+  ...changes,
+});
 
 it("open before past, warning before caution before advisory, newest first", () => {
   const sorted = sortAlerts([

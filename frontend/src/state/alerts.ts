@@ -10,9 +10,6 @@ export const isOpen = (alert: Alert): boolean => !alert.cleared && alert.acknowl
 
 export function sortAlerts(alerts: readonly Alert[]): Alert[] {
   return alerts.toSorted(
-    (a, b) =>
-      Number(isOpen(b)) - Number(isOpen(a)) ||
-      RANK[a.level] - RANK[b.level] ||
-      b.raisedAt.localeCompare(a.raisedAt),
+    (a, b) => Number(isOpen(b)) - Number(isOpen(a)) || RANK[a.level] - RANK[b.level] || b.raisedAt.localeCompare(a.raisedAt),
   );
 }

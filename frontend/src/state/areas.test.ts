@@ -1,7 +1,18 @@
 import { describe, expect, it } from "vitest";
-import { areaM2, areaOf, closeRing, cornerCount, cornersFromText, marginOutline, polygonsOf, ringsApart, ringsTogether, type Rings } from "./areas";
-import { circle, destination, distanceM } from "./geometry";
 import type { LonLat } from "../wire/beliefFrame";
+import {
+  areaM2,
+  areaOf,
+  closeRing,
+  cornerCount,
+  cornersFromText,
+  marginOutline,
+  polygonsOf,
+  type Rings,
+  ringsApart,
+  ringsTogether,
+} from "./areas";
+import { circle, destination, distanceM } from "./geometry";
 
 const square = (at: LonLat, side: number): LonLat[] => {
   const east = destination(at, 90, side);
@@ -47,7 +58,12 @@ describe("the margin around an area", () => {
 describe("corners that were typed", () => {
   it("become a closed ring, in any notation", () => {
     const found = cornersFromText("50.0 N 7.0 E\n\n50.0, 7.01\n50°00′36.0″ N 7°00′36.0″ E\n");
-    expect("ring" in found && found.ring).toEqual([[7, 50], [7.01, 50], [expect.closeTo(7.01), expect.closeTo(50.01)], [7, 50]]); // prettier-ignore
+    expect("ring" in found && found.ring).toEqual([
+      [7, 50],
+      [7.01, 50],
+      [expect.closeTo(7.01), expect.closeTo(50.01)],
+      [7, 50],
+    ]);
   });
 
   it("name the line that is no place", () => {

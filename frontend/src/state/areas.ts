@@ -7,8 +7,7 @@ import { lonLat, metresPerDegree, ringAreaM2 } from "./geometry";
 /** Rings of one polygon: outline first, then holes; each closed. */
 export type Rings = LonLat[][];
 
-export const polygonsOf = (area: Area): Rings[] =>
-  area.type === "Polygon" ? [area.coordinates as Rings] : (area.coordinates as Rings[]);
+export const polygonsOf = (area: Area): Rings[] => (area.type === "Polygon" ? [area.coordinates as Rings] : (area.coordinates as Rings[]));
 
 export function areaOf(polygons: readonly Rings[]): Area | null {
   const [first] = polygons;
@@ -97,15 +96,19 @@ export function marginOutline(area: Area, marginM: number): LonLat[][] {
     const [nx, ny] = [((by - ay) / length) * marginM, (-(bx - ax) / length) * marginM];
     const steps = Math.max(8, Math.ceil(length / 5));
     for (const side of [1, -1]) {
-      keep(Array.from({ length: steps + 1 }, (_, i) => {
-        const s = i / steps;
-        return [ax + s * (bx - ax) + side * nx, ay + s * (by - ay) + side * ny];
-      }));
+      keep(
+        Array.from({ length: steps + 1 }, (_, i) => {
+          const s = i / steps;
+          return [ax + s * (bx - ax) + side * nx, ay + s * (by - ay) + side * ny];
+        }),
+      );
     }
-    keep(Array.from({ length: 91 }, (_, i) => {
-      const angle = (i / 90) * 2 * Math.PI;
-      return [ax + marginM * Math.cos(angle), ay + marginM * Math.sin(angle)];
-    }));
+    keep(
+      Array.from({ length: 91 }, (_, i) => {
+        const angle = (i / 90) * 2 * Math.PI;
+        return [ax + marginM * Math.cos(angle), ay + marginM * Math.sin(angle)];
+      }),
+    );
   }
   return lines;
 }

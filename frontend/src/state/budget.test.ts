@@ -1,12 +1,18 @@
 import { describe, expect, it } from "vitest";
-import { exampleSpec } from "../sources/fixture";
+import type { MissionSpec } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
+import { someSpec } from "../wire/examples";
 import { chargeAfter, coveredShare, flightBudget, lasts, plannedBudget } from "./budget";
 import { destination } from "./geometry";
-import type { LonLat } from "../wire/beliefFrame";
 
 const home: LonLat = [7.1, 50.73];
 const corner = destination(home, 0, 420);
-const spec = exampleSpec([home, destination(home, 90, 100), corner, home]);
+const example = someSpec();
+const spec: MissionSpec = {
+  ...example,
+  area: { type: "Polygon", coordinates: [[home, destination(home, 90, 100), corner, home]] },
+  flight: { ...example.flight, speed_m_s: 7, reserve_battery_percent: 25 },
+};
 
 describe("the battery's budget", () => {
   it("takes the drain from what the server says the way home costs", () => {

@@ -23,7 +23,11 @@ export function flightBudget(chargePercent: number, toReturnPercent: number, dis
 
 /** Before take-off: from the charge now to the way home from the area's farthest corner. */
 export function plannedBudget(chargePercent: number, home: LonLat, spec: MissionSpec): Budget {
-  const farthestM = Math.max(...polygonsOf(spec.area).flat(2).map((corner) => distanceM(home, corner)));
+  const farthestM = Math.max(
+    ...polygonsOf(spec.area)
+      .flat(2)
+      .map((corner) => distanceM(home, corner)),
+  );
   const homeS = farthestM / spec.flight.speed_m_s + LANDING_S;
   const drainPercentS = NOMINAL_DRAIN_PERCENT_S;
   return { chargePercent, drainPercentS, keptPercent: drainPercentS * homeS + spec.flight.reserve_battery_percent };

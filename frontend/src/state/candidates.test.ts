@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
+import { somePlan } from "../wire/examples";
 import { rankCandidates, roundShade, SHADES } from "./candidates";
-import { somePlan } from "./examples";
 
 it("the chosen one comes first, then who stayed longest, then the quickest", () => {
   expect(rankCandidates(somePlan()).map((r) => r.index)).toEqual([1, 2, 0]);

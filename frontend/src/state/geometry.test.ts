@@ -1,8 +1,13 @@
 import { describe, expect, it } from "vitest";
-import { bearingDeg, circle, destination, distanceM, metresPerDegree, ringAreaM2, wedge } from "./geometry";
 import type { LonLat } from "../wire/beliefFrame";
+import { bearingDeg, circle, destination, distanceM, metresPerDegree, ringAreaM2, wedge } from "./geometry";
 
-const places: LonLat[] = [[7.2, 50.62], [-70.3, -33.4], [0, 0], [25.7, 66.5]]; // prettier-ignore
+const places: LonLat[] = [
+  [7.2, 50.62],
+  [-70.3, -33.4],
+  [0, 0],
+  [25.7, 66.5],
+];
 
 describe.each(places)("around %f, %f", (lon, lat) => {
   const from: LonLat = [lon, lat];

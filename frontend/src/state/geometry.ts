@@ -1,6 +1,7 @@
 // Small distances on the WGS84 ellipsoid's tangent plane; good to centimetres within the few kilometres of a search.
-import type { LonLat } from "../wire/beliefFrame";
+
 import type { Place } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
 
 const A = 6378137.0;
 const E2 = 6.69437999014e-3;
@@ -44,9 +45,7 @@ export function circle(centre: LonLat, radiusM: number, corners = 72): LonLat[] 
 /** A wedge of +-halfWidth around a bearing as a closed ring: apex, arc, apex. */
 export function wedge(apex: LonLat, bearing: number, halfWidthDeg: number, lengthM: number): LonLat[] {
   const steps = Math.max(2, Math.ceil(halfWidthDeg));
-  const arc = Array.from({ length: 2 * steps + 1 }, (_, i) =>
-    destination(apex, bearing + halfWidthDeg * (i / steps - 1), lengthM),
-  );
+  const arc = Array.from({ length: 2 * steps + 1 }, (_, i) => destination(apex, bearing + halfWidthDeg * (i / steps - 1), lengthM));
   return [apex, ...arc, apex];
 }
 

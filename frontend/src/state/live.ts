@@ -3,7 +3,7 @@ import type { SourceMessage } from "../sources/source";
 import type { Hello, Recorded, StatusMessage, SweepProgress, TelemetryMessage } from "../wire";
 import type { BeliefFrame, LonLat } from "../wire/beliefFrame";
 import { distanceM } from "./geometry";
-import { emptyMission, foldMission, inFlight, type MissionState } from "./mission";
+import { emptyMission, foldMission, type MissionState } from "./mission";
 
 /** A value and when this page received it (ms of the page's monotonic clock), so that it can visibly age. */
 export interface Received<T> {
@@ -17,13 +17,13 @@ export interface LiveState {
   lastMessageMs: number | null;
   events: readonly Recorded[];
   mission: MissionState;
-  telemetry: Received<TelemetryMessage> | null;
+  /** By craft, as are the running sweeps and the paths. */
+  telemetry: ReadonlyMap<string, Received<TelemetryMessage>>;
   status: Received<StatusMessage> | null;
-  sweep: Received<SweepProgress> | null;
-  path: readonly LonLat[];
-  belief: BeliefFrame | null;
-  /** The event that the frame belongs to; null when another one came in between. */
-  beliefSeq: number | null;
+  sweeps: ReadonlyMap<string, Received<SweepProgress>>;
+  paths: ReadonlyMap<string, readonly LonLat[]>;
+  /** The newest frame of each emitter. */
+  beliefs: ReadonlyMap<string, BeliefFrame>;
   /** Messages of other kinds that could not be read. */
   unreadable: number;
 }
@@ -34,32 +34,44 @@ export const emptyLive: LiveState = {
   lastMessageMs: null,
   events: [],
   mission: emptyMission,
-  telemetry: null,
+  telemetry: new Map(),
   status: null,
-  sweep: null,
-  path: [],
-  belief: null,
-  beliefSeq: null,
+  sweeps: new Map(),
+  paths: new Map(),
+  beliefs: new Map(),
   unreadable: 0,
 };
 
 /** About what the vehicle covers on the map; each step draws the whole map again. */
 const PATH_STEP_M = 5.0;
 
+const withEntry = <T>(map: ReadonlyMap<string, T>, id: string, value: T): ReadonlyMap<string, T> => new Map(map).set(id, value);
+
+const NO_PATH: readonly LonLat[] = [];
+
 /** Of the mission shown: the vehicle may be on the way home from another one. */
-function extendPath({ path, mission }: LiveState, telemetry: TelemetryMessage): readonly LonLat[] {
-  if (telemetry.lon === null || telemetry.lat === null || telemetry.in_air === false || !inFlight(mission.phase)) return path;
+function extendPaths({ paths, mission }: LiveState, { craft_id: id, ...telemetry }: TelemetryMessage): LiveState["paths"] {
+  const flies = mission.crafts.get(id)?.engaged ?? false;
+  if (telemetry.lon === null || telemetry.lat === null || telemetry.in_air === false || !flies) return paths;
+  const path = paths.get(id) ?? NO_PATH;
   const here: LonLat = [telemetry.lon, telemetry.lat];
   const last = path.at(-1);
-  return last && distanceM(last, here) < PATH_STEP_M ? path : [...path, here];
+  return last && distanceM(last, here) < PATH_STEP_M ? paths : withEntry(paths, id, [...path, here]);
+}
+
+/** The craft whose running sweep is over with this event. */
+function swept({ event }: Recorded): string | null {
+  if (event.kind === "sweep_started") return event.craft_id;
+  if (event.kind !== "bearing_measured" && event.kind !== "sweep_rejected") return null;
+  return event.source.kind === "craft" ? event.source.craft_id : null;
 }
 
 function foldRecorded(state: LiveState, recorded: Recorded): LiveState {
   const mission = foldMission(state.mission, recorded);
   if (mission === state.mission) return state;
-  const kind = recorded.event.kind;
-  const sweepOver = kind === "bearing_measured" || kind === "sweep_rejected" || kind === "sweep_started";
-  return { ...state, mission, events: [...state.events, recorded], sweep: sweepOver ? null : state.sweep };
+  const over = swept(recorded);
+  const sweeps = over !== null && state.sweeps.has(over) ? new Map([...state.sweeps].filter(([id]) => id !== over)) : state.sweeps;
+  return { ...state, mission, events: [...state.events, recorded], sweeps };
 }
 
 export function reduceLive(state: LiveState, message: SourceMessage, nowMs: number): LiveState {
@@ -73,15 +85,17 @@ export function reduceLive(state: LiveState, message: SourceMessage, nowMs: numb
     case "event":
       return foldRecorded(heard, message.recorded);
     case "telemetry":
-      return { ...heard, telemetry: { value: message, atMs: nowMs }, path: extendPath(heard, message) };
+      return {
+        ...heard,
+        telemetry: withEntry(heard.telemetry, message.craft_id, { value: message, atMs: nowMs }),
+        paths: extendPaths(heard, message),
+      };
     case "sweep_progress":
-      return { ...heard, sweep: { value: message, atMs: nowMs } };
+      return { ...heard, sweeps: withEntry(heard.sweeps, message.craft_id, { value: message, atMs: nowMs }) };
     case "status":
       return { ...heard, status: { value: message, atMs: nowMs } };
-    case "belief": {
-      const told = state.mission.belief;
-      return { ...heard, belief: message.frame, beliefSeq: told?.fact.bearings === message.frame.bearings ? told.seq : null };
-    }
+    case "belief":
+      return { ...heard, beliefs: withEntry(heard.beliefs, message.frame.emitterId, message.frame) };
     case "unreadable":
       return { ...heard, unreadable: heard.unreadable + 1 };
   }

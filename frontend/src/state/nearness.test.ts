@@ -15,9 +15,21 @@ const centre: LonLat = [(se[0] + sw[0]) / 2, (nw[1] + sw[1]) / 2];
 
 it("is the circle's share of the area when nothing is known", () => {
   for (const radius of [5, 20, 45]) {
-    expect(shareWithin(square(() => 1), centre, radius)).toBeCloseTo((Math.PI * radius ** 2) / 100 ** 2, 2);
+    expect(
+      shareWithin(
+        square(() => 1),
+        centre,
+        radius,
+      ),
+    ).toBeCloseTo((Math.PI * radius ** 2) / 100 ** 2, 2);
   }
-  expect(shareWithin(square(() => 1), centre, 75)).toBe(1);
+  expect(
+    shareWithin(
+      square(() => 1),
+      centre,
+      75,
+    ),
+  ).toBe(1);
 });
 
 it("is all of what stands in one cell, or nothing of it", () => {
@@ -27,5 +39,11 @@ it("is all of what stands in one cell, or nothing of it", () => {
 });
 
 it("is nothing of no belief", () => {
-  expect(shareWithin(square(() => 0), centre, 50)).toBe(0);
+  expect(
+    shareWithin(
+      square(() => 0),
+      centre,
+      50,
+    ),
+  ).toBe(0);
 });

@@ -1,11 +1,15 @@
 import { expect, it } from "vitest";
-import { phase, record, somePlan } from "./examples";
+import type { MissionEvent } from "../wire";
+import { ended, phase, record, somePlan } from "../wire/examples";
 import { missionAt } from "./mission";
 import { remainingTime } from "./timeLeft";
+import { viewOf } from "./view";
+
+const seen = (...events: MissionEvent[]) => viewOf(missionAt(record(...events), Infinity));
 
 /** Seconds after the plan, which is the first event. */
 const after = (seconds: number) => Date.UTC(2026, 0, 1, 12, 0, 0) + 1000 * seconds;
-const planned = missionAt(record(somePlan()), Infinity);
+const planned = seen(somePlan());
 
 it("counts down from the plan and stops at nothing", () => {
   expect(remainingTime(planned, after(0))).toEqual({ meanS: 120, worstS: 200 });
@@ -15,21 +19,20 @@ it("counts down from the plan and stops at nothing", () => {
 
 it("stands still in hold, under the pilot and while it waits for the operator", () => {
   for (const still of ["hold", "manual", "waiting"] as const) {
-    const held = missionAt(record(somePlan(), phase("flying"), phase(still)), Infinity);
+    const held = seen(somePlan(), phase("flying"), phase(still));
     expect(remainingTime(held, after(2))?.meanS).toBe(118);
     expect(remainingTime(held, after(90))?.meanS).toBe(118);
-    const resumed = missionAt(record(somePlan(), phase("flying"), phase(still), phase("hold"), phase("flying")), Infinity);
+    const resumed = seen(somePlan(), phase("flying"), phase(still), phase("hold"), phase("flying"));
     expect(remainingTime(resumed, after(10))?.meanS).toBe(112);
   }
 });
 
 it("counts from a place that was chosen in hold", () => {
-  const chosen = missionAt(record(phase("hold"), somePlan()), Infinity);
+  const chosen = seen(phase("hold"), somePlan());
   expect(remainingTime(chosen, after(60))?.meanS).toBe(120);
 });
 
 it("is unknown when the planner gave no time, and over with the mission", () => {
-  expect(remainingTime(missionAt(record(somePlan({ expected_time_s: null })), Infinity), after(0))).toBeNull();
-  const ended = record(somePlan(), { kind: "mission_ended", outcome: "aborted", reason: "", mission_time_s: 1 });
-  expect(remainingTime(missionAt(ended, Infinity), after(5))).toBeNull();
+  expect(remainingTime(seen(somePlan({ expected_time_s: null })), after(0))).toBeNull();
+  expect(remainingTime(seen(somePlan(), ended("aborted")), after(5))).toBeNull();
 });

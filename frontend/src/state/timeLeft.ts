@@ -1,5 +1,7 @@
 // "Localized in about ...": the plan's expectation, counted down while the search goes on.
-import { isHomeward, pausedMs, type MissionState } from "./mission";
+import { pausedMs } from "./craft";
+import { isHomeward } from "./mission";
+import type { MissionView } from "./view";
 
 export interface TimeLeft {
   meanS: number;
@@ -8,7 +10,7 @@ export interface TimeLeft {
 }
 
 /** Null without a plan, once it goes home, and when the planner gave no time. */
-export function remainingTime(mission: MissionState, timeMs: number): TimeLeft | null {
+export function remainingTime(mission: MissionView, timeMs: number): TimeLeft | null {
   const { plan, belief } = mission;
   if (!plan || belief?.fact.localized || isHomeward(mission)) return null;
   const { expected_time_s: mean, time_90_s: worst } = plan.fact;

@@ -1,9 +1,26 @@
 import { expect, it } from "vitest";
+import type { MissionPhase } from "../wire";
 import { inFlight } from "./mission";
 import { toneOfMission, toneOfPhase } from "./tone";
-import type { Phase } from "../wire";
 
-const PHASES: readonly Phase[] = ["draft", "ready", "taking_off", "planning", "waiting", "flying", "measuring", "hold", "manual", "returning", "landing", "done", "aborted", "failed"]; // prettier-ignore
+const PHASES: readonly MissionPhase[] = [
+  "draft",
+  "ready",
+  "ground",
+  "searching",
+  "taking_off",
+  "planning",
+  "waiting",
+  "flying",
+  "measuring",
+  "hold",
+  "manual",
+  "returning",
+  "landing",
+  "done",
+  "aborted",
+  "failed",
+];
 
 it("exactly what is in flight works or waits for a person", () => {
   const busy = PHASES.filter((phase) => ["working", "waiting"].includes(toneOfPhase(phase)));

@@ -1,13 +1,15 @@
 // What a state asks of whoever looks: the same colours in the bar and in the list of missions.
-import type { Phase } from "../wire";
+import type { MissionPhase } from "../wire";
 
 /** working: it goes on by itself; waiting: for a person; found: what it was flown for; broken: ended before. */
 export type Tone = "idle" | "working" | "waiting" | "found" | "broken";
 
-export function toneOfPhase(phase: Phase): Tone {
+export function toneOfPhase(phase: MissionPhase): Tone {
   switch (phase) {
     case "draft":
     case "ready":
+    case "ground":
+    case "searching":
     case "done":
       return "idle";
     case "taking_off":
@@ -28,7 +30,7 @@ export function toneOfPhase(phase: Phase): Tone {
 }
 
 /** Of a mission in the list, by its outcome once it has one. */
-export function toneOfMission(phase: Phase, outcome: string | null): Tone {
+export function toneOfMission(phase: MissionPhase, outcome: string | null): Tone {
   if (outcome === "localized") return "found";
   return toneOfPhase(phase);
 }

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { formatPlace, parsePlace, type CoordinateFormat } from "./coordinates";
+import { type CoordinateFormat, formatPlace, parsePlace } from "./coordinates";
 
 const tower = { lat: 48.8582, lon: 2.2945 };
 
@@ -25,7 +25,12 @@ describe("formatPlace", () => {
 describe("parsePlace", () => {
   it("reads back what it wrote, in every notation, on all four quarters of the globe", () => {
     for (const place of [tower, { lat: -33.4567, lon: -70.6483 }, { lat: 40.7, lon: -74.01 }, { lat: -6.2, lon: 106.8 }]) {
-      for (const [format, tolerance] of [["dd", 1e-5], ["dms", 3e-5], ["utm", 2e-5], ["mgrs", 3e-5]] as [CoordinateFormat, number][]) { // prettier-ignore
+      for (const [format, tolerance] of [
+        ["dd", 1e-5],
+        ["dms", 3e-5],
+        ["utm", 2e-5],
+        ["mgrs", 3e-5],
+      ] as [CoordinateFormat, number][]) {
         const read = parsePlace(formatPlace(place, format));
         expect(Math.abs(read!.lat - place.lat), `${format} ${formatPlace(place, format)}`).toBeLessThan(tolerance);
         expect(Math.abs(read!.lon - place.lon), format).toBeLessThan(tolerance);

@@ -1,6 +1,7 @@
 // Latitude and longitude in the four notations of the field.
-import Utm, { LatLon as UtmLatLon } from "geodesy/utm.js";
+
 import Mgrs, { LatLon as MgrsLatLon } from "geodesy/mgrs.js";
+import Utm, { LatLon as UtmLatLon } from "geodesy/utm.js";
 import type { Place } from "../wire";
 
 export type CoordinateFormat = "dd" | "dms" | "utm" | "mgrs";

@@ -1,6 +1,6 @@
 // Lengths, areas, speeds and times for people. Input is always SI.
 
-import { locale } from "../i18n/locale";
+import { locale } from "./locale";
 
 export type UnitSystem = "metric" | "imperial";
 
@@ -44,9 +44,7 @@ export function formatArea(squareMetres: number, units: UnitSystem): string {
 }
 
 export function formatSpeed(metresPerSecond: number, units: UnitSystem): string {
-  return units === "imperial"
-    ? `${grouped(metresPerSecond / 0.44704, 1)} mph`
-    : `${grouped(metresPerSecond, 1)} m/s`;
+  return units === "imperial" ? `${grouped(metresPerSecond / 0.44704, 1)} mph` : `${grouped(metresPerSecond, 1)} m/s`;
 }
 
 /** 130 -> "2:10", 3725 -> "1:02:05". */
@@ -59,11 +57,9 @@ export function formatDuration(seconds: number): string {
 }
 
 /** Compass degrees as three digits: 7.4 -> "007°". */
-export const formatBearing = (degrees: number): string =>
-  `${String(Math.round(((degrees % 360) + 360) % 360) % 360).padStart(3, "0")}°`;
+export const formatBearing = (degrees: number): string => `${String(Math.round(((degrees % 360) + 360) % 360) % 360).padStart(3, "0")}°`;
 
 /** How old a value is, short: "4 s", "3 min". */
-export const formatAge = (seconds: number): string =>
-  seconds < 100 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`;
+export const formatAge = (seconds: number): string => (seconds < 100 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 
 export const formatClock = (iso: string): string => new Date(iso).toISOString().slice(11, 19);

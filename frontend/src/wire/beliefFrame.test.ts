@@ -14,9 +14,14 @@ function shuffle(values: Float32Array): Uint8Array {
 }
 
 async function frame(encoding: string, nx: number, ny: number, body: Uint8Array): Promise<ArrayBuffer> {
-  const bounds = [[7, 50], [7.1, 50], [7.1, 50.1], [7, 50.1]]; // prettier-ignore
+  const bounds = [
+    [7, 50],
+    [7.1, 50],
+    [7.1, 50.1],
+    [7, 50.1],
+  ];
   const header = new TextEncoder().encode(
-    JSON.stringify({ type: "belief", mission_id: "m", bearings: 2, nx, ny, bounds, encoding, peak: 0.25 }),
+    JSON.stringify({ type: "belief", mission_id: "m", emitter_id: "e", seq: 9, bearings: 2, nx, ny, bounds, encoding, peak: 0.25 }),
   );
   const packed = await deflate(body);
   const out = new Uint8Array(4 + header.length + packed.length);
@@ -31,7 +36,7 @@ describe("decodeBeliefFrame", () => {
     const cells = Float32Array.from({ length: 6 }, (_, i) => i / 5);
     const decoded = decodeBeliefFrame(await frame("f32-shuffle-zlib", 3, 2, shuffle(cells)));
     expect([...decoded.cells]).toEqual([...cells]);
-    expect(decoded).toMatchObject({ missionId: "m", bearings: 2, nx: 3, ny: 2, peak: 0.25 });
+    expect(decoded).toMatchObject({ missionId: "m", emitterId: "e", seq: 9, bearings: 2, nx: 3, ny: 2, peak: 0.25 });
     expect(decoded.bounds[2]).toEqual([7.1, 50.1]);
   });
 
@@ -39,7 +44,7 @@ describe("decodeBeliefFrame", () => {
     const wanted = [1, 0.5, 0.01, 1e-5];
     const bytes = Uint8Array.from([...wanted.map((p) => Math.round(255 * (1 + Math.log10(p) / 6))), 0, 0]);
     const decoded = decodeBeliefFrame(await frame("u8-log-zlib", 3, 2, bytes));
-    wanted.forEach((p, i) => expect(Math.abs(Math.log10(decoded.cells[i]! / p))).toBeLessThan(6 / 255 / 2 + 1e-6));
+    for (const [i, p] of wanted.entries()) expect(Math.abs(Math.log10(decoded.cells[i]! / p))).toBeLessThan(6 / 255 / 2 + 1e-6);
     expect([...decoded.cells.slice(4)]).toEqual([0, 0]);
   });
 

@@ -6,6 +6,9 @@ export type LonLat = [number, number];
 
 export interface BeliefFrame {
   missionId: string;
+  emitterId: string;
+  /** Of the event that told of it; 0: a prior, or a belief that is only supposed. */
+  seq: number;
   bearings: number;
   nx: number;
   ny: number;
@@ -20,6 +23,8 @@ export interface BeliefFrame {
 interface Header {
   type: string;
   mission_id: string;
+  emitter_id: string;
+  seq: number;
   bearings: number;
   nx: number;
   ny: number;
@@ -49,6 +54,9 @@ function unshuffle(bytes: Uint8Array, count: number): Float32Array {
 /** p = 10^(6 (u/255 - 1)), 0 stays 0: the inverse of u = round(255 (1 + log10(p) / 6)). */
 const LOG_LEVELS = Float32Array.from({ length: 256 }, (_, u) => (u === 0 ? 0 : 10 ** (6 * (u / 255 - 1))));
 
+/** Of a frame that travels inside JSON. */
+export const bytesOf = (base64: string): ArrayBuffer => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)).buffer;
+
 export function decodeBeliefFrame(buffer: ArrayBuffer): BeliefFrame {
   if (buffer.byteLength < 4) throw new BrokenFrame("The belief frame is shorter than its own header length.");
   const headerLength = new DataView(buffer).getUint32(0, true);
@@ -61,10 +69,11 @@ export function decodeBeliefFrame(buffer: ArrayBuffer): BeliefFrame {
   if (body.length !== expected) {
     throw new BrokenFrame(`The belief frame holds ${body.length} bytes, ${header.nx} x ${header.ny} cells need ${expected}.`);
   }
-  const cells =
-    header.encoding === "f32-shuffle-zlib" ? unshuffle(body, count) : Float32Array.from(body, (u) => LOG_LEVELS[u]!);
+  const cells = header.encoding === "f32-shuffle-zlib" ? unshuffle(body, count) : Float32Array.from(body, (u) => LOG_LEVELS[u]!);
   return {
     missionId: header.mission_id,
+    emitterId: header.emitter_id,
+    seq: header.seq,
     bearings: header.bearings,
     nx: header.nx,
     ny: header.ny,

@@ -73,7 +73,7 @@ export interface paths {
         };
         /**
          * Vehicle
-         * @description The vehicle as last heard, each value with its age.
+         * @description A craft's vehicle as last heard, each value with its age.
          */
         get: operations["vehicle"];
         put?: never;
@@ -220,7 +220,7 @@ export interface paths {
         put?: never;
         /**
          * Import Recording
-         * @description Import recorded sweeps into a draft or an ended mission, as if they had been flown there.
+         * @description Import recorded sweeps of an emitter into a mission, as if they had been flown there; in flight, too.
          *
          *     One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
          *     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
@@ -252,7 +252,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/missions/{mission_id}/beliefs/{bearings}": {
+    "/api/missions/{mission_id}/beliefs": {
         parameters: {
             query?: never;
             header?: never;
@@ -261,9 +261,8 @@ export interface paths {
         };
         /**
          * Get Belief
-         * @description The last belief of so many bearings, as the binary frame the websocket sends; `lite`: 8-bit logarithm.
-         *
-         *     `seq`: up to that event only, when a bearing was left out or the search area changed later.
+         * @description The belief about an emitter (None: the first) that stood at the event `seq` (None: now), as the binary frame the
+         *     websocket sends; before the first bearing the prior. `lite`: 8-bit logarithm.
          */
         get: operations["get_belief"];
         put?: never;
@@ -323,7 +322,7 @@ export interface paths {
         };
         /**
          * Get Track
-         * @description The flown path.
+         * @description The flown path of a craft.
          */
         get: operations["get_track"];
         put?: never;
@@ -349,6 +348,26 @@ export interface paths {
         get: operations["export_mission"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/recordings/read": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Read Exported Mission
+         * @description The events and the flown paths of an exported mission, whichever Crossfix exported it.
+         */
+        post: operations["read_exported_mission"];
         delete?: never;
         options?: never;
         head?: never;
@@ -621,6 +640,16 @@ export interface components {
     schemas: {
         /** @description End the automatic mission at once: the vehicle holds, then returns home by its autopilot. */
         Abort: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "abort";
+        };
+        /** @description End the automatic mission at once: the vehicle holds, then returns home by its autopilot. */
+        AbortInput: {
+            craft_id?: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -633,10 +662,19 @@ export interface components {
              * @enum {string}
              */
             kind: "abort_ordered";
+            craft_id: string;
             by: string;
-            reason: string;
         };
         Accept: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "accept";
+        };
+        AcceptInput: {
+            craft_id?: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -668,6 +706,7 @@ export interface components {
             kind: "alert_cleared";
             alert_id: string;
         };
+        /** @description craft_id, emitter_id: whom it concerns; None of both: the whole mission. */
         AlertRaised: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -676,9 +715,85 @@ export interface components {
             kind: "alert_raised";
             alert_id: string;
             /** @enum {string} */
+            topic: "vehicle" | "receiver" | "console" | "payload" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "storage";
+            /** @enum {string} */
             level: "warning" | "caution" | "advisory";
-            text: string;
-            remedy: string;
+            reason: components["schemas"]["Reason"];
+            craft_id: string | null;
+            emitter_id: string | null;
+        };
+        AlreadyInAir: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "already_in_air";
+        };
+        AlreadyStarted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "already_started";
+        };
+        /** @description All relative to home. */
+        AltitudeOutside: {
+            altitude_relative_m: number;
+            lowest_relative_m: number;
+            highest_relative_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "altitude_outside";
+        };
+        /** @description angle_deg: clockwise from the antenna's front. */
+        AngleTwice: {
+            name: string;
+            angle_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "angle_twice";
+        };
+        AnotherMissionFlies: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "another_mission_flies";
+        };
+        AnotherServer: {
+            path: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "another_server";
+        };
+        /** @description Bearings in degrees clockwise from true north. */
+        AntennaAgrees: {
+            measured_deg: number;
+            true_deg: number;
+            quality: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "antenna_agrees";
+        };
+        /** @description Bearings in degrees clockwise from true north. offset_deg: of the antenna's front to the nose, were it right. */
+        AntennaAskew: {
+            true_deg: number;
+            measured_deg: number;
+            offset_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "antenna_askew";
         };
         /**
          * @description A known emitter, by its place or by its bearing (degrees clockwise from true north). `wait_s`: at most so long
@@ -701,6 +816,15 @@ export interface components {
             emitter: components["schemas"]["Place"];
             by: string;
         };
+        AntennaDead: {
+            heard_db: number;
+            pattern_db: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "antenna_dead";
+        };
         /**
          * @description relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
          *     front points so far clockwise of the nose.
@@ -711,6 +835,26 @@ export interface components {
             gain_db: number[];
             offset_to_nose_deg: number;
             frequency_hz: number | null;
+        };
+        AntennaUnlikePattern: {
+            because: components["schemas"]["NothingHeardInTurn"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "antenna_unlike_pattern";
+        };
+        /** @description cut_off: the file ends before the part does, or the part lies outside of it. */
+        ArchiveDamaged: {
+            /** @enum {string} */
+            part: "header" | "metadata" | "directories" | "tiles" | "first_tile";
+            /** @enum {string} */
+            fault: "cut_off" | "unreadable" | "senseless" | "too_large" | "missing" | "endless" | "not_as_stated";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "archive_damaged";
         };
         Area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         /** @description In hold, in flight: from here on this is searched. The bearings taken before count on. */
@@ -723,32 +867,153 @@ export interface components {
             search: components["schemas"]["SearchArea"];
             by: string;
         };
-        /** @description `notes`: what was changed or left out while reading, one sentence each. */
+        /** @description x_m, y_m: near the crossing, ENU. */
+        AreaCrossesItself: {
+            x_m: number;
+            y_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_crosses_itself";
+        };
+        AreaEmpty: {
+            /** @enum {string} */
+            what: "area" | "fence" | "no_fly" | "confidence_region";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_empty";
+        };
+        /** @description `notes`: what was changed or left out while reading. */
         AreaImport: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
             /** @enum {string} */
             format: "geojson" | "kml";
             area_m2: number;
             vertices: number;
-            notes: string[];
+            notes: components["schemas"]["Reason"][];
+        };
+        /** @description How much of an area the maps show finely enough to fly by. */
+        AreaOnMaps: {
+            /** @enum {string} */
+            shown: "whole" | "partly" | "not_finely" | "no_map";
+            shown_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_on_maps";
+        };
+        AreaOnlyInHold: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_only_in_hold";
         };
         /**
          * @description Another search area in flight: what the bearings so far would say there, and the next place (None: `no_plan` says
-         *     why). allowed False: it cannot be searched from where the vehicle is, `reason` and `remedy` say why.
+         *     why). allowed False: it cannot be searched from where the vehicle is, `reason` says why.
          */
         AreaOutlook: {
             allowed: boolean;
-            reason: string;
-            remedy: string;
+            reason: components["schemas"]["Reason"] | null;
             belief: components["schemas"]["BeliefUpdated"];
             plan: components["schemas"]["PlanChosen"] | null;
-            no_plan: string;
+            no_plan: components["schemas"]["Reason"] | null;
+        };
+        AreaTooFar: {
+            distance_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_too_far";
+        };
+        AreaTooSmall: {
+            area_m2: number;
+            least_m2: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_too_small";
+        };
+        AreaTooWide: {
+            width_m: number;
+            most_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "area_too_wide";
         };
         /** @description The text of a GeoJSON or KML file that holds one or more polygons. */
         AreaUpload: {
             text: string;
             /** @default  */
             filename: string;
+        };
+        /** @description state: of the autopilot's own checks; not every autopilot reports them. */
+        ArmingChecked: {
+            /** @enum {string} */
+            state: "ready" | "not_ready" | "in_the_air" | "not_reported";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "arming_checked";
+        };
+        /**
+         * @description Who flies, and what is needed to judge the next mode.
+         *
+         *     taken_by: how somebody else took control; not None: no command passes until an operator takes control. It outlasts
+         *     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
+         *     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
+         *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+         *
+         *     commanded: tokens of the modes that follow from our last command; empty: nothing is commanded. tolerated: tokens of
+         *     modes that may still show because of what was before that command. shown_before: the mode when the command was sent;
+         *     until the acknowledgement it proves nothing. heard, kind, armed: of the last mode. restarted: none was heard since
+         *     the server came back.
+         */
+        Authority: {
+            /**
+             * @default nobody
+             * @enum {string}
+             */
+            who: "ours" | "pilot" | "failsafe" | "nobody";
+            taken_by: ("mode" | "sticks") | null;
+            taken_at_s: number | null;
+            mode: string | null;
+            /** @default false */
+            given_back: boolean;
+            /** @default false */
+            perhaps_failsafe: boolean;
+            /** @default [] */
+            commanded: number[];
+            /** @default [] */
+            tolerated: number[];
+            shown_before: number | null;
+            heard: number | null;
+            kind: ("waiting" | "return" | "land" | "other") | null;
+            /** @default false */
+            armed: boolean;
+            /** @default false */
+            restarted: boolean;
+        };
+        /** @description Who flies the craft from now on. by: the operator whose deed it was, None when the vehicle showed it. */
+        AuthorityChanged: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "authority_changed";
+            craft_id: string;
+            authority: components["schemas"]["Authority"];
+            by: string | null;
         };
         /** @description "Accept the next location automatically" was armed or disarmed. */
         AutomaticChanged: {
@@ -757,8 +1022,83 @@ export interface components {
              * @enum {string}
              */
             kind: "automatic_changed";
+            craft_id: string;
             automatic: boolean;
             by: string;
+        };
+        AutopilotRefused: {
+            /** @enum {string} */
+            command: "take_off_mode" | "arming" | "take_off" | "place" | "speed" | "spot" | "turn" | "hold" | "return" | "landing";
+            /** @enum {string} */
+            result: "accepted" | "temporarily_rejected" | "denied" | "unsupported" | "failed" | "in_progress" | "cancelled" | "unknown";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "autopilot_refused";
+        };
+        AutopilotRestarted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "autopilot_restarted";
+        };
+        BackAfterRestart: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "back_after_restart";
+        };
+        /**
+         * @description refused_hz: the channels that do not fit beside the ones asked for before them; needed_hz: the sample rate that
+         *     takes them all.
+         */
+        BandTooNarrow: {
+            sample_rate_hz: number;
+            needed_hz: number;
+            refused_hz: number[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "band_too_narrow";
+        };
+        BatteryCharge: {
+            charge_percent: number;
+            wanted_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "battery_charge";
+        };
+        /** @description left_percent: after what is planned; needed_percent: for the way home; reserve_percent: of the mission. */
+        BatteryShort: {
+            charge_percent: number;
+            left_percent: number;
+            needed_percent: number;
+            reserve_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "battery_short";
+        };
+        BatterySilent: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "battery_silent";
+        };
+        BatteryUnknown: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "battery_unknown";
         };
         BearingExcluded: {
             /**
@@ -766,12 +1106,21 @@ export interface components {
              * @enum {string}
              */
             kind: "bearing_excluded";
+            emitter_id: string;
             bearing_id: string;
             by: string;
             reason: string;
         };
+        BearingExcludedAlready: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearing_excluded_already";
+        };
         /**
-         * @description binned_db, fitted_db: 180 bins of 2 degrees of antenna heading (true), None where nothing was heard.
+         * @description sweep_id None, binned_db and fitted_db empty: no sweep was kept (a person's bearing). binned_db, fitted_db: 180
+         *     bins of 2 degrees of antenna heading (true), None where nothing was heard.
          *
          *     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
          *     heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
@@ -782,8 +1131,10 @@ export interface components {
              * @enum {string}
              */
             kind: "bearing_measured";
+            emitter_id: string;
+            source: components["schemas"]["CraftSource"] | components["schemas"]["ImportSource"] | components["schemas"]["PersonSource"];
             bearing_id: string;
-            sweep_id: string;
+            sweep_id: string | null;
             place_number: number;
             place: components["schemas"]["Place"];
             altitude_amsl_m: number;
@@ -799,9 +1150,36 @@ export interface components {
             /** @default 0 */
             heading_sigma_deg: number;
         };
+        /** @description A single wedge of +-4 sigma has no point inside the area. */
+        BearingMissesArea: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearing_misses_area";
+        };
+        /** @description The wedges of +-4 sigma have no common point inside the area. */
+        BearingsDisagree: {
+            bearings: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearings_disagree";
+        };
+        /** @description folded: bearings in the belief. given: bearings given beside it. */
+        BeliefOutOfStep: {
+            folded: number;
+            given: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "belief_out_of_step";
+        };
         /**
-         * @description The belief after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt belief can be
-         *     compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
+         * @description The belief about one emitter after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt
+         *     belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
          *     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
          *     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
          *     significant: then nothing is claimed.
@@ -812,15 +1190,51 @@ export interface components {
              * @enum {string}
              */
             kind: "belief_updated";
+            emitter_id: string;
             bearings: number;
             estimate: components["schemas"]["EstimateFact"] | null;
             consistent: boolean;
             localized: boolean;
-            not_yet: string[];
+            not_yet: components["schemas"]["Reason"][];
             contradicting: string[];
             heading_offset_deg: number | null;
             heading_offset_std_error_deg: number | null;
             digest: string;
+        };
+        /** @description Perpendicular to the major axis of the covariance ellipse; `distance` tells the two rules for how far off. */
+        BesideEllipse: {
+            /** @enum {string} */
+            distance: "tabulated" | "just_outside";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "beside_ellipse";
+        };
+        BeyondWebMaps: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "beyond_web_maps";
+        };
+        BodyTooLarge: {
+            most_bytes: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "body_too_large";
+        };
+        /** @description rollouts: the budget. needed_rollouts: the least that the search can work with. */
+        BudgetTooSmall: {
+            rollouts: number;
+            needed_rollouts: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "budget_too_small";
         };
         /** @description One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none. */
         CandidateFact: {
@@ -830,6 +1244,29 @@ export interface components {
             std_error_s: number | null;
             rollouts: number;
             dropped_in_round: number | null;
+        };
+        /** @description frequency_hz: of the tag that sends pulses. */
+        CarriersOnly: {
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "carriers_only";
+        };
+        /** @description A row that was left out. line, column: from 1. cell: as it stands there, empty when it does not. */
+        CellUnusable: {
+            file: string;
+            line: number;
+            column: number;
+            cell: string;
+            /** @enum {string} */
+            quantity: "latitude" | "longitude" | "bearing" | "sigma" | "time" | "heading" | "power" | "frequency" | "snr" | "attitude" | "noise_psd" | "kind_of_row";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "cell_unusable";
         };
         /** @description In hold: search here from now on. The bearings that were taken count on. */
         ChangeArea: {
@@ -849,14 +1286,46 @@ export interface components {
             kind: "change_area";
             search: components["schemas"]["SearchAreaInput"];
         };
+        /** @description One line of the checklist. blocking: refuses the start unless it is ok. */
         CheckFact: {
-            name: string;
+            /** @enum {string} */
+            name: "vehicle_link" | "gps" | "position" | "heading" | "battery" | "home" | "ready_to_arm" | "control" | "failsafe" | "receiver" | "antenna" | "pattern" | "area" | "safety";
             ok: boolean;
-            detail: string;
-            remedy: string;
+            reason: components["schemas"]["Reason"];
             blocking: boolean;
         };
-        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["ChangeArea"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
+        /** @description reached_m, wanted_m: above home. */
+        ClimbTooLow: {
+            reached_m: number;
+            wanted_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "climb_too_low";
+        };
+        /** @description apart_s: from the one's last to the other's first. */
+        ClocksApart: {
+            apart_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "clocks_apart";
+        };
+        /** @description line: the header's, or the first one's. expected: names of columns. */
+        ColumnsUnknown: {
+            file: string;
+            line: number;
+            columns: number;
+            expected: string[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "columns_unknown";
+        };
+        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
         /** @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. */
         CommandAccepted: {
             /**
@@ -877,63 +1346,176 @@ export interface components {
             command_id: string;
             command: string;
             by: string;
-            reason: string;
-            /** @default  */
-            remedy: string;
+            reason: components["schemas"]["Reason"];
         };
-        /** @description accepted False: `reason` says why, `remedy` what to do. seq: the journal's last number after the command. */
+        /** @description reason: why it was refused, None when it was accepted. seq: the journal's last number after the command. */
         CommandReply: {
             /** Format: uuid */
             command_id: string;
             accepted: boolean;
-            reason: string;
-            remedy: string;
+            reason: components["schemas"]["Reason"] | null;
             seq: number;
         };
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
-            command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
+            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["AbortInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
         };
-        ControlReleased: {
+        /** @description attempts: how often it was sent. */
+        CommandUnanswered: {
+            /** @enum {string} */
+            command: "take_off_mode" | "arming" | "take_off" | "place" | "speed" | "spot" | "turn" | "hold" | "return" | "landing";
+            attempts: number;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
-            kind: "control_released";
-            by: string;
+            code: "command_unanswered";
         };
-        ControlTaken: {
+        /** @description compression: as the PMTiles specification names it. */
+        CompressionNotRead: {
+            compression: string;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
-            kind: "control_taken";
-            mode: string;
+            code: "compression_not_read";
+        };
+        /** @description option: what gives it on the command line. */
+        ConfigurationEntryMissing: {
+            entry: string;
+            option: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "configuration_entry_missing";
+        };
+        /** @description problem: what the validation says. */
+        ConfigurationEntryWrong: {
+            entry: string;
+            problem: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "configuration_entry_wrong";
+        };
+        ConfigurationUnreadable: {
+            path: string;
             detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "configuration_unreadable";
+        };
+        /** @description A fault of ours; the log has the traceback. */
+        ConnectingBroke: {
+            address: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "connecting_broke";
+        };
+        ConstantPower: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "constant_power";
+        };
+        /** @description who: has control; nobody: nobody else intervenes. */
+        ControlChecked: {
+            /** @enum {string} */
+            who: "pilot" | "failsafe" | "nobody";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_checked";
         };
         /**
          * @description `covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
-         *     `missing`: what no map covers so; `summary`: one sentence to show.
+         *     `missing`: what no map covers so.
          */
         Coverage: {
             covered: boolean;
             fraction: number;
             missing: components["schemas"]["MultiPolygon"] | null;
-            summary: string;
+            summary: components["schemas"]["Reason"];
             maps: components["schemas"]["MapCoverage"][];
         };
         CoverageRequest: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
-        /** @description `spooled`: events kept on disk until the database is back. */
+        /** @description A craft's own sweep. */
+        CraftSource: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "craft";
+            craft_id: string;
+        };
+        /** @description mission_id None: it flies for none. */
+        CraftStatusMessage: {
+            craft_id: string;
+            mission_id: string | null;
+            /** @enum {string} */
+            phase: "ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing";
+            /** @enum {string} */
+            receiver: "ok" | "silent" | "off" | "lost";
+            receiver_power_db: number | null;
+            receiver_age_s: number | null;
+            battery_to_return_percent: number | null;
+        };
+        /** @description crossing_deg: the best crossing angle of two bearing lines at the estimate. */
+        CrossingAngleTooSmall: {
+            crossing_deg: number;
+            needed_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "crossing_angle_too_small";
+        };
+        /** @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. */
         DatabaseHealth: {
             /** @enum {string} */
             state: "ok" | "slow" | "lost";
             /** @enum {string} */
             kind: "sqlite" | "postgresql";
-            detail: string;
+            reason: components["schemas"]["Reason"] | null;
             spooled: number;
+        };
+        /** @description detail: what its driver says. */
+        DatabaseSilent: {
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "database_silent";
+        };
+        DatabaseSlow: {
+            answer_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "database_slow";
+        };
+        /** @description The server cannot start on it. */
+        DatabaseUnfit: {
+            database: string;
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "database_unfit";
         };
         /**
          * @description A mission to start from. `home`: the vehicle's, None when it was never heard; the area is then around the
@@ -943,26 +1525,48 @@ export interface components {
             spec: components["schemas"]["MissionSpec"];
             home: components["schemas"]["Place"] | null;
         };
-        /** @description What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only. */
-        EmitterSpec: {
-            /** @default 868300000 */
-            frequency_hz: number;
+        DirectionInGap: {
+            gap_deg: number;
             /**
-             * @default carrier
+             * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
-            kind: "carrier" | "pulsed";
-            /** @default emitter */
-            label: string;
-            /** @default 0.02 */
-            pulse_width_s: number;
-            /** @default 1.3 */
-            pulse_period_s: number;
-            /** @default 0.03 */
-            pulse_jitter_s: number;
+            code: "direction_in_gap";
         };
-        /** @description What is looked for. The pulses (width, period, how far one strays from it) count for kind "pulsed" only. */
-        EmitterSpecInput: {
+        DiskLow: {
+            free_bytes: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "disk_low";
+        };
+        DoesNotHold: {
+            because: components["schemas"]["AutopilotRefused"] | components["schemas"]["HoldIgnored"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "does_not_hold";
+        };
+        /**
+         * @description What is known of one emitter. `estimate`: of the last belief, None before the first bearing or when the bearings
+         *     are inconsistent. `not_yet`: why "localized" is not said.
+         */
+        EmitterFound: {
+            emitter_id: string;
+            bearings: number;
+            estimate: components["schemas"]["EstimateFact"] | null;
+            localized: boolean;
+            not_yet: components["schemas"]["Reason"][];
+        };
+        /**
+         * @description What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
+         *     "pulsed" only.
+         */
+        EmitterSpec: {
+            /** @default emitter-1 */
+            emitter_id: string;
             /** @default 868300000 */
             frequency_hz: number;
             /**
@@ -978,6 +1582,50 @@ export interface components {
             pulse_period_s: number;
             /** @default 0.03 */
             pulse_jitter_s: number;
+            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
+        };
+        /**
+         * @description What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
+         *     "pulsed" only.
+         */
+        EmitterSpecInput: {
+            /** @default emitter-1 */
+            emitter_id: string;
+            /** @default 868300000 */
+            frequency_hz: number;
+            /**
+             * @default carrier
+             * @enum {string}
+             */
+            kind: "carrier" | "pulsed";
+            /** @default emitter */
+            label: string;
+            /** @default 0.02 */
+            pulse_width_s: number;
+            /** @default 1.3 */
+            pulse_period_s: number;
+            /** @default 0.03 */
+            pulse_jitter_s: number;
+            prior?: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
+        };
+        EmitterTooNear: {
+            distance_m: number;
+            least_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "emitter_too_near";
+        };
+        /** @description contradicting: bearings, of all, that do not point at the estimate. */
+        EstimateContradicted: {
+            contradicting: number;
+            bearings: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "estimate_contradicted";
         };
         /** @description Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180). */
         EstimateFact: {
@@ -990,7 +1638,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         EventMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1004,6 +1652,14 @@ export interface components {
             events: components["schemas"]["Recorded"][];
             last_seq: number;
             more: boolean;
+        };
+        /** @description By the operator, one after the other. */
+        EveryPlaceRefused: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "every_place_refused";
         };
         ExcludeBearing: {
             /**
@@ -1025,6 +1681,16 @@ export interface components {
             /** @default  */
             reason: string;
         };
+        /** @description expected_error_m: mean distance of the emitter from the estimate, mu (3.58). */
+        ExpectedErrorTooLarge: {
+            expected_error_m: number;
+            threshold_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "expected_error_too_large";
+        };
         /**
          * @description allowed False: the vehicle may not go there, `reason` says why (the times may still be known).
          *
@@ -1033,7 +1699,7 @@ export interface components {
         ExpectedTime: {
             place: components["schemas"]["Place"];
             allowed: boolean;
-            reason: string;
+            reason: components["schemas"]["Reason"] | null;
             expected_time_s: number | null;
             std_error_s: number | null;
             time_90_s: number | null;
@@ -1043,10 +1709,191 @@ export interface components {
         ExpectedTimeRequest: {
             place: components["schemas"]["Place"];
         };
+        /** @description What was sent cannot be read as an exported mission. later: a later Crossfix exported it. */
+        ExportUnreadable: {
+            /** @enum {string} */
+            fault: "not_json" | "not_exported" | "later";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "export_unreadable";
+        };
+        /** @description What an exported journal holds. Of the paths it keeps time, place, altitude and heading. */
+        ExportedMission: {
+            mission_id: string;
+            events: components["schemas"]["Recorded"][];
+            tracks: components["schemas"]["Track"][];
+        };
+        /** @description by: whose rule it breaks. */
+        FactUnfit: {
+            /** @enum {string} */
+            by: "journal" | "database";
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "fact_unfit";
+        };
+        FailsafeActs: {
+            mode: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_acts";
+        };
+        /** @description The autopilot is on its own way home or down, and why. */
+        FailsafeFlies: {
+            /** @enum {string} */
+            because: "silence" | "link_lost" | "server_away" | "ordered_before";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_flies";
+        };
+        /** @description value: as the autopilot has it; wanted: one that makes it act. */
+        FailsafeParameter: {
+            /** @enum {string} */
+            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard";
+            parameter: string;
+            value: number;
+            wanted: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_parameter";
+        };
+        /** @description Nothing is sent: it might be a pilot. */
+        FailsafeStopped: {
+            mode: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_stopped";
+        };
+        FailsafeUnread: {
+            /** @enum {string} */
+            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard";
+            parameter: string;
+            wanted: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_unread";
+        };
+        /** @description message: of the validator, in English. */
+        FieldInvalid: {
+            message: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_invalid";
+        };
+        FieldMissing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_missing";
+        };
+        /** @description expected: the values there are, as pydantic lists them. */
+        FieldNotOneOf: {
+            expected: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_not_one_of";
+        };
+        /** @description bound: what it is compared with. */
+        FieldOutOfRange: {
+            /** @enum {string} */
+            relation: "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal";
+            bound: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_out_of_range";
+        };
         /** @description `field`: path into the request, dots between names and indices ("spec.sensor.sigma_deg", "after"). */
         FieldProblem: {
             field: string;
-            message: string;
+            reason: components["schemas"]["Reason"];
+        };
+        FieldUnknown: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_unknown";
+        };
+        /** @description Of a text (characters) or a list (items). */
+        FieldWrongLength: {
+            /** @enum {string} */
+            relation: "least" | "most";
+            length: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "field_wrong_length";
+        };
+        /** @description A further file in a KMZ archive. */
+        FileLeftOut: {
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "file_left_out";
+        };
+        /** @description detail: the operating system's or the format library's own words. */
+        FileUnreadable: {
+            file: string;
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "file_unreadable";
+        };
+        FileUnusable: {
+            file: string;
+            /** @enum {string} */
+            why: "not_text" | "empty" | "no_pulse" | "one_heading";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "file_unusable";
+        };
+        /** @description The first of several places that are planned together. */
+        FirstOfRoute: {
+            places: number;
+            /** @enum {string} */
+            planner: "sopt" | "tokekar_subset" | "tokekar_tree" | "lookahead";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "first_of_route";
+        };
+        /** @description paths: how many deterministic sampling has; the selection asks for more, or for new ones every time. */
+        FixedSamplePaths: {
+            paths: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "fixed_sample_paths";
         };
         /** @description How and where the vehicle may fly. `fence` None: the target area with `fence_margin_m` around it. */
         FlightSpec: {
@@ -1096,9 +1943,50 @@ export interface components {
              * @enum {string}
              */
             kind: "flight_started";
+            craft_id: string;
             place_number: number;
             place: components["schemas"]["Place"];
             altitude_amsl_m: number;
+        };
+        ForeignOrigin: {
+            origin: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "foreign_origin";
+        };
+        ForeignSpool: {
+            path: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "foreign_spool";
+        };
+        FrequencyNotAskedFor: {
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "frequency_not_asked_for";
+        };
+        FrequencyOutOfRange: {
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "frequency_out_of_range";
+        };
+        FrequencyTwice: {
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "frequency_twice";
         };
         FullMotionSpec: {
             /**
@@ -1130,6 +2018,16 @@ export interface components {
             /** @default 3 */
             constant_s: number;
         };
+        /** @description why: it belongs to a recording, or a sweep is running whose powers would no longer compare. */
+        GainFixed: {
+            /** @enum {string} */
+            why: "recording" | "sweep";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "gain_fixed";
+        };
         /** @description A Gaussian around `centre`; `major_axis_deg` is the compass bearing of the first axis. */
         GaussianPriorSpec: {
             /**
@@ -1156,6 +2054,77 @@ export interface components {
             /** @default 0 */
             major_axis_deg: number;
         };
+        GpsChecked: {
+            /** @enum {string} */
+            fix: "no GPS" | "no fix" | "2D" | "3D" | "DGPS" | "RTK float" | "RTK fixed" | "static" | "PPP";
+            satellites: number;
+            wanted_satellites: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "gps_checked";
+        };
+        /** @description Two fields that go together, of which one is missing. */
+        HalfGiven: {
+            /** @enum {string} */
+            pair: "place" | "pulses";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "half_given";
+        };
+        /** @description from_s, to_s: first and last heading, from the recording's beginning. samples_s: its length. */
+        HeadingsApart: {
+            file: string;
+            from_s: number;
+            to_s: number;
+            samples_s: number;
+            sample_rate_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "headings_apart";
+        };
+        /** @description All bearings of a source disagree with the others by about one angle, clockwise; nothing is claimed. */
+        HeadingsAskew: {
+            offset_deg: number;
+            std_error_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "headings_askew";
+        };
+        /** @description longest_s: headings further apart are not bridged. */
+        HeadingsInterrupted: {
+            longest_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "headings_interrupted";
+        };
+        HeadingsNotNumbers: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "headings_not_numbers";
+        };
+        HeadingsOfOtherLength: {
+            file: string;
+            headings_s: number;
+            samples_s: number;
+            sample_rate_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "headings_of_other_length";
+        };
         /** @description ok: everything answers; degraded: the server works, a part it needs does not. */
         Health: {
             /** @enum {string} */
@@ -1163,10 +2132,18 @@ export interface components {
             version: string;
             uptime_s: number;
             database: components["schemas"]["DatabaseHealth"];
-            vehicle: components["schemas"]["VehicleHealth"];
+            vehicles: components["schemas"]["VehicleHealth"][];
             viewers: number;
             simulated: boolean;
             time_factor: number;
+        };
+        HeartbeatStopped: {
+            url: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "heartbeat_stopped";
         };
         Hello: {
             /**
@@ -1180,6 +2157,22 @@ export interface components {
             time_factor: number;
         };
         Hold: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "hold";
+        };
+        HoldIgnored: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "hold_ignored";
+        };
+        HoldInput: {
+            craft_id?: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1192,8 +2185,67 @@ export interface components {
              * @enum {string}
              */
             kind: "hold_ordered";
-            by: string;
-            reason: string;
+            craft_id: string;
+            by: string | null;
+            reason: components["schemas"]["Reason"] | null;
+        };
+        HomeNotKnown: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "home_not_known";
+        };
+        /** @description WGS84 degrees. */
+        HomeSet: {
+            lat: number;
+            lon: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "home_set";
+        };
+        /** @description phrase: the status in words, in English. */
+        HttpRefused: {
+            status: number;
+            phrase: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "http_refused";
+        };
+        ImplausibleGains: {
+            name: string;
+            /** @enum {string} */
+            spread: "small" | "large";
+            limit_db: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "implausible_gains";
+        };
+        /** @description What was changed about a recorded sweep when it was imported. */
+        ImportRemark: {
+            file: string;
+            /** @enum {string} */
+            about: "place_replaced" | "altitude_unknown";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "import_remark";
+        };
+        /** @description A sweep out of a recording. */
+        ImportSource: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "import";
+            recording_id: string;
         };
         /** @description One sweep of a recording. `bearing_deg`, `sigma_deg`: None when it was rejected; `reason` says why. */
         ImportedSweep: {
@@ -1204,7 +2256,80 @@ export interface components {
             bearing_deg: number | null;
             sigma_deg: number | null;
             quality: number;
-            reason: string;
+            reason: components["schemas"]["Reason"] | null;
+        };
+        ImpossiblePulses: {
+            width_s: number;
+            period_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "impossible_pulses";
+        };
+        InsideNoFly: {
+            /** @enum {string} */
+            what: "vehicle_stands" | "vehicle" | "home" | "place";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "inside_no_fly";
+        };
+        Interrupted: {
+            /** @enum {string} */
+            because: "later_mission" | "unreadable";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "interrupted";
+        };
+        IqOptionsUnused: {
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "iq_options_unused";
+        };
+        /** @description What KML can hold and the map cannot draw. kind: KML's name of the element. */
+        KindLeftOut: {
+            /** @enum {string} */
+            kind: "NetworkLink" | "GroundOverlay" | "ScreenOverlay" | "PhotoOverlay" | "Model" | "Tour";
+            count: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "kind_left_out";
+        };
+        /** @description The vehicle came down, and what the mission did then. */
+        Landed: {
+            /** @enum {string} */
+            during: "hold" | "automatic" | "manual" | "localized";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "landed";
+        };
+        LandingAlready: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "landing_already";
+        };
+        /** @description entropy_nat: Shannon entropy of the belief expected after the next bearing. */
+        LeastEntropy: {
+            entropy_nat: number;
+            places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "least_entropy";
         };
         LinearConstantMotionSpec: {
             /**
@@ -1246,15 +2371,25 @@ export interface components {
             /** @default 7 */
             speed_m_s: number;
         };
+        LinkChecked: {
+            /** @enum {string} */
+            autopilot: "px4" | "ardupilot" | "unknown";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "link_checked";
+        };
         LinkLost: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "link_lost";
+            craft_id: string;
             /** @enum {string} */
             link: "vehicle" | "receiver" | "console" | "payload";
-            detail: string;
+            reason: components["schemas"]["Reason"];
         };
         LinkRestored: {
             /**
@@ -1262,6 +2397,7 @@ export interface components {
              * @enum {string}
              */
             kind: "link_restored";
+            craft_id: string;
             /** @enum {string} */
             link: "vehicle" | "receiver" | "console" | "payload";
             outage_s: number;
@@ -1293,6 +2429,44 @@ export interface components {
             /** @default 20 */
             maximum_bearings: number;
         };
+        Localized: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "localized";
+        };
+        /** @description against: bearings that do not point at the place claimed; the claim stands against them (decision 12). */
+        LocalizedAgainst: {
+            against: number;
+            bearings: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "localized_against";
+        };
+        /** @description Other places came out as quick, or quicker on fewer simulated flights. */
+        LongestLead: {
+            expected_time_s: number;
+            places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "longest_lead";
+        };
+        ManoeuvreReplaced: {
+            /** @enum {string} */
+            manoeuvre: "take_off" | "flight" | "turn" | "hold" | "return" | "landing";
+            /** @enum {string} */
+            by: "take_off" | "flight" | "turn" | "hold" | "return" | "landing";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "manoeuvre_replaced";
+        };
         /**
          * @description `full_to_zoom`: the finest zoom at which the whole area is there, None when there is none.
          *     `missing`: the part of the area without tiles at the finest zoom looked at; None when nothing is missing.
@@ -1305,12 +2479,29 @@ export interface components {
             metres_per_pixel: number | null;
             missing: components["schemas"]["MultiPolygon"] | null;
         };
+        /** @description Nobody knows what the layers of a vector map mean. */
+        MapDrawnPlainly: {
+            /** @enum {string} */
+            because: "layers_not_named" | "schema_unknown";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "map_drawn_plainly";
+        };
+        MapLabelDamaged: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "map_label_damaged";
+        };
         /**
          * @description What the page adds to its style to show one map: one source named `source_id`, and layers from bottom to top.
          *
          *     source: a MapLibre source of type raster or vector whose url is "pmtiles:///api/maps/{map_id}/tiles.pmtiles" (the
          *     page puts its origin in). Labels need no glyph server: MapLibre draws them from local fonts when its style has no
-         *     `glyphs`. `notes`: what cannot be drawn, one sentence each.
+         *     `glyphs`. `notes`: what cannot be drawn as it should be.
          */
         MapLayers: {
             source_id: string;
@@ -1320,16 +2511,16 @@ export interface components {
             layers: {
                 [key: string]: unknown;
             }[];
-            notes: string[];
+            notes: components["schemas"]["Reason"][];
         };
         /**
          * @description By name. `room_bytes`: how large an upload may be, from the free disk less the journal's reserve.
-         *     `unusable`: files in the map folder that cannot be read any more, one sentence each.
+         *     `unusable`: files in the map folder that are no maps.
          */
         MapList: {
             maps: components["schemas"]["MapPackage"][];
             room_bytes: number;
-            unusable: string[];
+            unusable: components["schemas"]["Reason"][];
         };
         /**
          * @description One PMTiles archive. `map_id` is made from its content: the same file uploaded twice is one map.
@@ -1363,16 +2554,51 @@ export interface components {
             /** Format: date-time */
             added_at_utc: string;
         };
-        /**
-         * @description `estimate`: of the last belief, None before the first bearing or when the bearings are inconsistent.
-         *     `not_yet`: why "localized" is not said. `editable`: the specification may still be replaced.
-         */
+        /** @description A file in the map folder. */
+        MapUnusable: {
+            file: string;
+            because: components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["FileUnreadable"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "map_unusable";
+        };
+        /** @description Of a Gaussian belief. */
+        MeanAtSensor: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mean_at_sensor";
+        };
+        /** @description place: path of the field. problem: what the validation says. */
+        MessageNotUnderstood: {
+            place: string;
+            problem: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "message_not_understood";
+        };
+        MessageOutOfTurn: {
+            /** @enum {string} */
+            wrong: "no_hello" | "second_hello" | "no_welcome";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "message_out_of_turn";
+        };
+        /** @description `editable`: the specification may still be replaced. `found`: in the order of the specification's emitters. */
         Mission: {
             mission_id: string;
             name: string;
-            /** @enum {string} */
-            phase: "draft" | "ready" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing" | "done" | "aborted" | "failed";
+            phase: ("draft" | "ready" | "searching" | "done" | "aborted" | "failed") | ("ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing");
+            flying: boolean;
             outcome: ("localized" | "not_localized" | "aborted" | "failed") | null;
+            emitters: number;
             /** Format: date-time */
             drafted_at_utc: string;
             started_at_utc: string | null;
@@ -1384,10 +2610,16 @@ export interface components {
             spec: components["schemas"]["MissionSpec"];
             editable: boolean;
             home: components["schemas"]["Place"] | null;
-            estimate: components["schemas"]["EstimateFact"] | null;
             localized: boolean;
-            not_yet: string[];
-            outcome_reason: string | null;
+            found: components["schemas"]["EmitterFound"][];
+            outcome_reason: components["schemas"]["Reason"] | null;
+        };
+        MissionDoesNotFly: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mission_does_not_fly";
         };
         MissionDrafted: {
             /**
@@ -1405,6 +2637,7 @@ export interface components {
             kind: "mission_edited";
             spec: components["schemas"]["MissionSpec"];
         };
+        /** @description The search is over; a craft of it may still be on its way home. */
         MissionEnded: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1413,57 +2646,78 @@ export interface components {
             kind: "mission_ended";
             /** @enum {string} */
             outcome: "localized" | "not_localized" | "aborted" | "failed";
-            reason: string;
+            reason: components["schemas"]["Reason"];
             mission_time_s: number;
+        };
+        /** @description The antenna is checked on the ground only. */
+        MissionFlies: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mission_flies";
         };
         /** @description Newest first. */
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
         };
-        /** @description Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold). */
+        MissionOver: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mission_over";
+        };
+        /** @description Everything needed to search; frozen when the mission starts, but for the search area (in hold). */
         MissionSpec: {
             name: string;
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
-            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
-            emitter: components["schemas"]["EmitterSpec"];
+            emitters: components["schemas"]["EmitterSpec"][];
             sensor: components["schemas"]["SensorSpec"];
             planner: components["schemas"]["PlannerSpec"];
             localization: components["schemas"]["LocalizationSpec"];
             flight: components["schemas"]["FlightSpec"];
             timers: components["schemas"]["TimerSpec"];
         };
-        /** @description Everything needed to fly one search; frozen when the mission starts, but for the search area (in hold). */
+        /** @description Everything needed to search; frozen when the mission starts, but for the search area (in hold). */
         MissionSpecInput: {
             name: string;
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
-            prior?: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
-            emitter?: components["schemas"]["EmitterSpecInput"];
+            emitters?: components["schemas"]["EmitterSpecInput"][];
             sensor?: components["schemas"]["SensorSpecInput"];
             planner?: components["schemas"]["PlannerSpecInput"];
             localization?: components["schemas"]["LocalizationSpecInput"];
             flight?: components["schemas"]["FlightSpecInput"];
             timers?: components["schemas"]["TimerSpecInput"];
         };
-        /** @description The vehicle's home at the start is the origin of the mission's local frame. antenna None: nobody kept it. */
+        /**
+         * @description A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
+         *     None: nobody kept it.
+         */
         MissionStarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "mission_started";
+            craft_id: string;
             by: string;
             home: components["schemas"]["Place"];
             home_amsl_m: number;
             software: string;
             antenna: components["schemas"]["AntennaFact"] | null;
         };
-        /** @description One line of the list. `started_at_utc`, `ended_at_utc`, `outcome`: None until it happened. */
+        /**
+         * @description One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
+         *     `ended_at_utc`, `outcome`: None until it happened.
+         */
         MissionSummary: {
             mission_id: string;
             name: string;
-            /** @enum {string} */
-            phase: "draft" | "ready" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing" | "done" | "aborted" | "failed";
+            phase: ("draft" | "ready" | "searching" | "done" | "aborted" | "failed") | ("ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing");
+            flying: boolean;
             outcome: ("localized" | "not_localized" | "aborted" | "failed") | null;
+            emitters: number;
             /** Format: date-time */
             drafted_at_utc: string;
             started_at_utc: string | null;
@@ -1472,6 +2726,59 @@ export interface components {
             bearings: number;
             rejected_sweeps: number;
             last_seq: number;
+        };
+        /** @description mode: as the autopilot names it. */
+        ModeChanged: {
+            mode: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mode_changed";
+        };
+        /** @description mode: as the autopilot names it. who flies since; nobody: it has landed. */
+        ModeNotCommanded: {
+            /** @enum {string} */
+            manoeuvre: "take_off" | "flight" | "turn" | "hold" | "return" | "landing";
+            mode: string;
+            /** @enum {string} */
+            who: "pilot" | "failsafe" | "nobody";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mode_not_commanded";
+        };
+        /** @description attempts: how often the autopilot acknowledged it. */
+        ModeNotShown: {
+            /** @enum {string} */
+            command: "take_off_mode" | "arming" | "take_off" | "place" | "speed" | "spot" | "turn" | "hold" | "return" | "landing";
+            attempts: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "mode_not_shown";
+        };
+        /** @description Besides those that are named one by one. */
+        MoreLeftOut: {
+            parts: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "more_left_out";
+        };
+        /** @description about: where the emitter is taken to be; at the estimate, or the worst place in the ellipse around it. */
+        MostInformation: {
+            places: number;
+            /** @enum {string} */
+            about: "estimate" | "worst_case";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "most_information";
         };
         /** @description GeoJSON MultiPolygon. */
         MultiPolygon: {
@@ -1484,6 +2791,649 @@ export interface components {
                 number,
                 number
             ][][][];
+        };
+        NearNoFly: {
+            near_m: number;
+            least_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "near_no_fly";
+        };
+        NeverReported: {
+            /** @enum {string} */
+            what: "gps" | "position" | "heading" | "battery" | "home";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "never_reported";
+        };
+        NoAutopilotAnswers: {
+            url: string;
+            waited_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_autopilot_answers";
+        };
+        /** @description Nothing has been measured, so nothing is claimed. */
+        NoBearingYet: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_bearing_yet";
+        };
+        NoChannel: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_channel";
+        };
+        NoConsole: {
+            /** @enum {string} */
+            stage: "hold" | "return";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_console";
+        };
+        NoDirection: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_direction";
+        };
+        NoHeadingHeard: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_heading_heard";
+        };
+        NoHome: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_home";
+        };
+        NoLink: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_link";
+        };
+        NoLongerLocalized: {
+            /** @default [] */
+            not_yet: components["schemas"]["Reason"][];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_longer_localized";
+        };
+        NoMagneticModel: {
+            year: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_magnetic_model";
+        };
+        NoMission: {
+            mission_id: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_mission";
+        };
+        NoPayloadConnected: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_payload_connected";
+        };
+        NoPayloadExpected: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_payload_expected";
+        };
+        /** @description There are actions, but no way to any of them. */
+        NoPlaceInReach: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_place_in_reach";
+        };
+        /** @description Of an entropy planner: the expected bearing leaves no mass, wherever it is taken. */
+        NoPlaceSeesBelief: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_place_sees_belief";
+        };
+        /** @description Fence and no-fly areas alone leave the action space empty. */
+        NoPlaceToFly: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_place_to_fly";
+        };
+        /** @description lines: it holds other geometries. */
+        NoPolygon: {
+            lines: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_polygon";
+        };
+        NoPosition: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_position";
+        };
+        NoPositionHeard: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_position_heard";
+        };
+        /** @description For `waited_s` the vehicle came no nearer to its place. */
+        NoProgress: {
+            waited_s: number;
+            distance_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_progress";
+        };
+        NoProposedPlace: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_proposed_place";
+        };
+        NoPulseAt: {
+            file: string;
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_pulse_at";
+        };
+        NoPulseHeard: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_pulse_heard";
+        };
+        NoReceiveChannel: {
+            device: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_receive_channel";
+        };
+        /** @description reserve_bytes: stay free for the journal. */
+        NoRoomForMap: {
+            needed_bytes: number;
+            room_bytes: number;
+            reserve_bytes: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_room_for_map";
+        };
+        NoSamples: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_samples";
+        };
+        NoSignalFound: {
+            file: string;
+            needed_db: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_signal_found";
+        };
+        NoSuchAlert: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_such_alert";
+        };
+        NoSuchBearing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_such_bearing";
+        };
+        NoSuchCraft: {
+            craft_id: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_such_craft";
+        };
+        NoSuchEmitter: {
+            emitter_id: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_such_emitter";
+        };
+        NoTakeOff: {
+            waited_s: number;
+            because: components["schemas"]["AutopilotRefused"] | components["schemas"]["TakeOffIgnored"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_take_off";
+        };
+        /** @description After the last attempt at this place, or before the next one. */
+        NoUsableBearing: {
+            because: components["schemas"]["Reason"];
+            again: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_usable_bearing";
+        };
+        /** @description address: where it is looked for. */
+        NoVehicleYet: {
+            address: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_vehicle_yet";
+        };
+        /** @description distance_m: to the place, in a straight line. */
+        NoWay: {
+            distance_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_way";
+        };
+        /** @description value: the power as the receiver gave it, dB; a text, because it need not be a number. */
+        NonsensicalPower: {
+            value: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nonsensical_power";
+        };
+        /** @description why: a key that is missing, or what is wrong with what stands there. */
+        NotAPattern: {
+            file: string;
+            /** @enum {string} */
+            why: "json" | "format" | "relative_bearing_deg" | "gain" | "unit" | "rows" | "numbers" | "counts" | "positive";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_a_pattern";
+        };
+        /** @description looks_like: what the file's first bytes are, None when they are like nothing known. */
+        NotAnArchive: {
+            looks_like: ("empty" | "sqlite" | "zip" | "gzip" | "tiff" | "png" | "jpeg" | "json" | "xml") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_an_archive";
+        };
+        /** @description In a file that is read for an area. */
+        NotAreas: {
+            count: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_areas";
+        };
+        /** @description distance_m: still to go over ground; climb_m: up or down. */
+        NotArrived: {
+            distance_m: number;
+            climb_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_arrived";
+        };
+        NotEditable: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_editable";
+        };
+        /** @description mode: the pilot's, in which the vehicle still is. */
+        NotGivenBack: {
+            mode: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_given_back";
+        };
+        NotHeld: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_held";
+        };
+        NotInTheAir: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_in_the_air";
+        };
+        /** @description given: what only IQ can use. */
+        NotIq: {
+            file: string;
+            /** @enum {string} */
+            given: "headings" | "signal";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_iq";
+        };
+        /** @description How the search ended without a claim. not_yet: what was missing, of every emitter. */
+        NotLocalized: {
+            because: components["schemas"]["Reason"];
+            /** @default [] */
+            not_yet: components["schemas"]["Reason"][];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_localized";
+        };
+        /** @description format None: what it is to be is not known, none of the formats fits. */
+        NotReadableAs: {
+            format: ("geojson" | "kml" | "kmz") | null;
+            /** @enum {string} */
+            fault: "empty" | "other_format" | "not_json" | "no_type" | "no_features" | "not_xml" | "document_type" | "other_xml" | "not_unpacked" | "no_kml_inside" | "too_large";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_readable_as";
+        };
+        NotRtlTcp: {
+            address: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_rtl_tcp";
+        };
+        NotStarted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_started";
+        };
+        NotStored: {
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_stored";
+        };
+        NothingAboveNoise: {
+            needed_db: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_above_noise";
+        };
+        NothingHeardInTurn: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_heard_in_turn";
+        };
+        /** @description database, spool: what keeps each from storing. */
+        NothingStores: {
+            database: string;
+            spool: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_stores";
+        };
+        NothingThere: {
+            /** @enum {string} */
+            what: "mission" | "page" | "belief" | "sweep" | "map" | "overlay" | "file" | "recording" | "craft" | "scene";
+            which: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_there";
+        };
+        NothingToDraw: {
+            /** @default [] */
+            left_out: (components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"])[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_to_draw";
+        };
+        /** @description because: what was wrong first. */
+        NothingUsable: {
+            file: string;
+            /** @enum {string} */
+            wanted: "bearing" | "power" | "pulse";
+            because: components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_usable";
+        };
+        OldArchive: {
+            version: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "old_archive";
+        };
+        OnTheGround: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "on_the_ground";
+        };
+        OnTheWayHome: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "on_the_way_home";
+        };
+        /** @description asked: how many channels were asked for. */
+        OneChannelOnly: {
+            asked: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "one_channel_only";
+        };
+        /** @description among: whether no other place was allowed, or the budget reached for no other. */
+        OnlyPlace: {
+            expected_time_s: number;
+            /** @enum {string} */
+            among: "allowed" | "tried";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "only_place";
+        };
+        OperatorInControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "operator_in_control";
+        };
+        /** @description Somebody ordered it. by: who. */
+        Ordered: {
+            /** @enum {string} */
+            order: "start" | "resume" | "hold" | "return" | "abort" | "override" | "accept" | "veto" | "automatic" | "exclude";
+            by: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "ordered";
+        };
+        /** @description A step failed over a lost link. */
+        OrderedAgainLater: {
+            because: components["schemas"]["Reason"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "ordered_again_later";
+        };
+        /** @description system: as the file names it. */
+        OtherCoordinates: {
+            system: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "other_coordinates";
+        };
+        OtherFrequency: {
+            file: string;
+            recorded_hz: number;
+            wanted_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "other_frequency";
+        };
+        /** @description theirs, ours: the versions that payload and server speak. older: who of the two is behind. */
+        OtherProtocol: {
+            theirs: number;
+            ours: number;
+            /** @enum {string} */
+            older: "payload" | "server";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "other_protocol";
+        };
+        OtherTagsLeftOut: {
+            file: string;
+            line: number;
+            tag: string;
+            pulses: number;
+            others: string[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "other_tags_left_out";
+        };
+        OutlineUnusable: {
+            /** @enum {string} */
+            what: "area" | "fence" | "no_fly" | "confidence_region";
+            /** @enum {string} */
+            fault: "crosses_itself" | "hole_outside" | "not_simple";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "outline_unusable";
+        };
+        /** @description refused_hz: the channels that lie outside what is sampled around `centre_hz`. */
+        OutsideBand: {
+            sample_rate_hz: number;
+            centre_hz: number;
+            refused_hz: number[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "outside_band";
+        };
+        OutsideFence: {
+            /** @enum {string} */
+            what: "vehicle_stands" | "vehicle" | "home" | "place";
+            beyond_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "outside_fence";
+        };
+        Overdriven: {
+            clipped: number;
+            samples: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "overdriven";
         };
         /** @description Points, lines and areas drawn over the map. `notes`: what was left out or changed while reading. */
         Overlay: {
@@ -1498,7 +3448,7 @@ export interface components {
                 number,
                 number
             ];
-            notes: string[];
+            notes: components["schemas"]["Reason"][];
             /** Format: date-time */
             added_at_utc: string;
         };
@@ -1535,6 +3485,7 @@ export interface components {
         };
         /** @description Fly to this place next instead of the planner's choice. */
         Override: {
+            craft_id: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1542,21 +3493,113 @@ export interface components {
             kind: "override";
             place: components["schemas"]["Place"];
         };
+        /** @description Fly to this place next instead of the planner's choice. */
+        OverrideInput: {
+            craft_id?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "override";
+            place: components["schemas"]["Place"];
+        };
+        ParameterNotSet: {
+            parameter: string;
+            wanted: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "parameter_not_set";
+        };
+        ParameterSet: {
+            parameter: string;
+            before: number;
+            after: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "parameter_set";
+        };
+        /** @description which: its number in the file, from 1, and in quotes its name when it has one. */
+        PartLeftOut: {
+            /** @enum {string} */
+            part: "feature" | "placemark";
+            which: string;
+            /** @enum {string} */
+            fault: "missing" | "type_unknown" | "nested_too_deep" | "no_position" | "not_numbers" | "swapped" | "in_metres" | "too_few_positions";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "part_left_out";
+        };
+        /** @description after_deg: clockwise from the antenna's front. */
+        PatternGap: {
+            name: string;
+            gap_deg: number;
+            after_deg: number;
+            widest_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_gap";
+        };
+        PatternInUse: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_in_use";
+        };
+        PatternOfOtherFrequency: {
+            name: string;
+            measured_hz: number;
+            wanted_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_of_other_frequency";
+        };
+        PatternRowUnusable: {
+            file: string;
+            line: number;
+            row: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_row_unusable";
+        };
+        PatternUnitUnknown: {
+            file: string;
+            unit: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_unit_unknown";
+        };
         /** @description The text of an antenna pattern: JSON, or a turntable table when `filename` ends in .csv, .tsv or .txt. */
         PatternUpload: {
             text: string;
             filename: string;
         };
         /**
-         * @description A companion computer with a radio. `age_s`: since it was last heard. `clock_offset_s`: server minus payload; its
-         *     samples are corrected by it. `waiting`: samples on its disk that are still to come; `lost`: its disk was full.
+         * @description A companion computer with a radio. `age_s`: since it was last heard. `receiver`: how it is, None until it has
+         *     said so. `clock_offset_s`: server minus payload; its samples are corrected by it. `waiting`: samples on its disk
+         *     that are still to come; `lost`: its disk was full.
          */
         Payload: {
             name: string;
             connected: boolean;
             age_s: number;
             software: string;
-            receiver: string;
+            receiver: components["schemas"]["Reason"] | null;
             receiver_ok: boolean;
             temperature_c: number | null;
             clock_offset_s: number | null;
@@ -1566,14 +3609,80 @@ export interface components {
             lost: number;
             received: number;
         };
+        /** @description away_s: how long none was connected. */
+        PayloadAway: {
+            away_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_away";
+        };
+        /** @description name: the payload's. */
+        PayloadConnectedAgain: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_connected_again";
+        };
+        PayloadLinkLost: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_link_lost";
+        };
         /** @description `expected` False: this server takes no payload (it was given no tokens). */
         PayloadList: {
             expected: boolean;
             payloads: components["schemas"]["Payload"][];
         };
+        /** @description channels: to how many emitters. */
+        PayloadListening: {
+            channels: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_listening";
+        };
+        PayloadStarting: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_starting";
+        };
+        /** @description told: the code that the payload sent. */
+        PayloadStateUnknown: {
+            told: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_state_unknown";
+        };
+        PayloadTokensMissing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "payload_tokens_missing";
+        };
         Peak: {
             bearing_deg: number;
             weight: number;
+        };
+        /** @description Somebody with an antenna in their hand. */
+        PersonSource: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "person";
+            name: string;
         };
         PhaseChanged: {
             /**
@@ -1581,15 +3690,43 @@ export interface components {
              * @enum {string}
              */
             kind: "phase_changed";
+            craft_id: string;
             /** @enum {string} */
-            before: "draft" | "ready" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing" | "done" | "aborted" | "failed";
+            before: "ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing";
             /** @enum {string} */
-            after: "draft" | "ready" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing" | "done" | "aborted" | "failed";
-            reason: string;
+            after: "ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing";
+            reason: components["schemas"]["Reason"];
         };
+        PilotControls: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pilot_controls";
+        };
+        /** @description mode: as the autopilot names it. perhaps_failsafe: its failsafe enters that mode by itself, too. */
+        PilotFlies: {
+            mode: string;
+            /** @default false */
+            perhaps_failsafe: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pilot_flies";
+        };
+        /** @description A place on the ground, WGS84 degrees. The only type for one, on the wire too. */
         Place: {
             lat: number;
             lon: number;
+        };
+        PlaceNotStated: {
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "place_not_stated";
         };
         PlaceReached: {
             /**
@@ -1597,14 +3734,34 @@ export interface components {
              * @enum {string}
              */
             kind: "place_reached";
+            craft_id: string;
             place_number: number;
             place: components["schemas"]["Place"];
             distance_m: number;
             flight_time_s: number;
         };
+        /** @description The vehicle's reported position jumped, or wind moved it, while it measured. */
+        PlaceUnsure: {
+            place_number: number;
+            drift_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "place_unsure";
+        };
+        PlacesUsedUp: {
+            places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "places_used_up";
+        };
         /**
-         * @description The next measurement place. `place_number` counts places from 1. `expected_time_s`: mean time until localized
-         *     by way of this place; `time_90_s`: not exceeded in 90 % of the rollouts (None when not sampled).
+         * @description The next measurement place. `emitter_id`: the emitter it is to tell most of, None of an operator's.
+         *     `place_number` counts places from 1. `expected_time_s`: mean time until localized by way of this place; `time_90_s`:
+         *     not exceeded in 90 % of the rollouts (None when not sampled).
          */
         PlanChosen: {
             /**
@@ -1612,11 +3769,13 @@ export interface components {
              * @enum {string}
              */
             kind: "plan_chosen";
+            craft_id: string;
+            emitter_id: string | null;
             place_number: number;
             place: components["schemas"]["Place"];
             /** @enum {string} */
             source: "planner" | "operator";
-            reason: string;
+            reason: components["schemas"]["Reason"];
             expected_time_s: number | null;
             time_90_s: number | null;
             candidates: components["schemas"]["CandidateFact"][];
@@ -1631,6 +3790,7 @@ export interface components {
              * @enum {string}
              */
             kind: "plan_vetoed";
+            craft_id: string;
             place: components["schemas"]["Place"];
             by: string;
         };
@@ -1720,6 +3880,47 @@ export interface components {
                 number
             ][][];
         };
+        PolygonsUnited: {
+            polygons: number;
+            areas: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "polygons_united";
+        };
+        /** @description jumped_m: from where the vehicle could have flown. */
+        PositionJumped: {
+            jumped_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "position_jumped";
+        };
+        /** @description Before the first fix, or since. */
+        PositionLost: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "position_lost";
+        };
+        PositionOld: {
+            age_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "position_old";
+        };
+        PowerNotNumbers: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "power_not_numbers";
+        };
         PreflightChecked: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1729,6 +3930,17 @@ export interface components {
             passed: boolean;
             checks: components["schemas"]["CheckFact"][];
         };
+        /** @description The first blocking check that failed. */
+        PreflightFailed: {
+            /** @enum {string} */
+            check: "vehicle_link" | "gps" | "position" | "heading" | "battery" | "home" | "ready_to_arm" | "control" | "failsafe" | "receiver" | "antenna" | "pattern" | "area" | "safety";
+            because: components["schemas"]["Reason"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "preflight_failed";
+        };
         PreflightReply: {
             passed: boolean;
             checks: components["schemas"]["CheckFact"][];
@@ -1737,7 +3949,7 @@ export interface components {
         Preview: {
             start: components["schemas"]["Place"];
             first_place: components["schemas"]["Place"];
-            reason: string;
+            reason: components["schemas"]["Reason"];
             expected_time_s: number | null;
             time_90_s: number | null;
             times_s: number[];
@@ -1745,10 +3957,17 @@ export interface components {
             rollouts: number;
             plan_ms: number;
         };
+        /** @description The prior and the search area do not overlap. */
+        PriorOutsideArea: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "prior_outside_area";
+        };
         /**
-         * @description title: what went wrong in a few words; detail: the sentence to show; remedy: how to mend it ("" when unknown).
-         *
-         *     incident: set for a fault of the server's own; the same id is in its log.
+         * @description reason: what went wrong and how to mend it, for a program. title, detail, remedy: the same in English, for people
+         *     without our page.
          */
         Problem: {
             /** @default about:blank */
@@ -1756,10 +3975,163 @@ export interface components {
             title: string;
             status: number;
             detail: string;
-            /** @default  */
             remedy: string;
+            reason: components["schemas"]["Reason"];
             errors: components["schemas"]["FieldProblem"][];
-            incident: string | null;
+        };
+        /** @description Automatic control goes on because this is done. */
+        Proceeds: {
+            /** @enum {string} */
+            after: "climb" | "plan" | "flight" | "bearing" | "belief" | "way_home" | "area";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "proceeds";
+        };
+        PulseTimingIncomplete: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pulse_timing_incomplete";
+        };
+        PulsesOutsideRotations: {
+            file: string;
+            pulses: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pulses_outside_rotations";
+        };
+        PutByHand: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "put_by_hand";
+        };
+        /** @description Cosine similarity of sweep and pattern, [0, 1]. */
+        QualityTooLow: {
+            quality: number;
+            wanted: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "quality_too_low";
+        };
+        /** @description gain_s: how much sooner than by way of the best other place. places: how many were tried. */
+        QuickestPlace: {
+            expected_time_s: number;
+            gain_s: number;
+            places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "quickest_place";
+        };
+        /** @description By a search over a continuous action space. */
+        QuickestPlaceFound: {
+            expected_time_s: number;
+            /** @enum {string} */
+            search: "quadrant" | "sgd" | "bfgs";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "quickest_place_found";
+        };
+        /** @description device: its string. says: the driver's own words. */
+        RadioFailed: {
+            device: string;
+            /** @enum {string} */
+            stage: "call" | "start" | "read";
+            says: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "radio_failed";
+        };
+        ReadingsWithoutHeading: {
+            file: string;
+            left_out: number;
+            readings: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "readings_without_heading";
+        };
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["OperatorInControl"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["IqOptionsUnused"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingWithoutPlace"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"];
+        /** @description offset_s: receiver's clock minus vehicle's. */
+        ReceiverClockOff: {
+            offset_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_clock_off";
+        };
+        ReceiverDelivers: {
+            channels: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_delivers";
+        };
+        /** @description device: the name as it was given. */
+        ReceiverMisnamed: {
+            device: string;
+            /** @enum {string} */
+            fault: "form" | "host" | "port" | "driver" | "server";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_misnamed";
+        };
+        ReceiverNotOpen: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_not_open";
+        };
+        /** @description quiet_s: how long it has delivered nothing. */
+        ReceiverSilent: {
+            quiet_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_silent";
+        };
+        ReceiverStreamEnded: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_stream_ended";
+        };
+        ReceiverTrouble: {
+            because: components["schemas"]["Reason"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_trouble";
+        };
+        ReceiverUnplugged: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "receiver_unplugged";
         };
         /** @description A stored event: `seq` counts from 1 without gaps within a mission. */
         Recorded: {
@@ -1767,13 +4139,29 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["ControlTaken"] | components["schemas"]["ControlReleased"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        };
+        RecordedElsewhere: {
+            recorded_hz: number;
+            wanted_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recorded_elsewhere";
+        };
+        RecordedSweepEmpty: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recorded_sweep_empty";
         };
         /**
          * @description What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-         *     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name.
-         *     offset_deg: the antenna's front, clockwise of the nose. frequency_hz, pulse_width_s, pulse_period_s: what to look
-         *     for in IQ.
+         *     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name. offset_deg:
+         *     the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's.
+         *     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ.
          */
         RecordingForm: {
             files: string[];
@@ -1781,6 +4169,7 @@ export interface components {
             lon?: number | null;
             at_utc?: string | null;
             tag?: string | null;
+            emitter_id?: string | null;
             offset_deg?: number | null;
             frequency_hz?: number | null;
             pulse_width_s?: number | null;
@@ -1795,12 +4184,13 @@ export interface components {
             filename: string;
             already: boolean;
             sweeps: components["schemas"]["ImportedSweep"][];
-            remarks: string[];
+            remarks: components["schemas"]["Reason"][];
             last_seq: number;
         };
         /**
-         * @description Recorded sweeps were brought in; their facts follow. recording_id: SHA-256 of the files and of what was said
-         *     about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood and why.
+         * @description Recorded sweeps of an emitter were brought in; their facts follow. recording_id: SHA-256 of the files and of what
+         *     was said about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood
+         *     and why.
          */
         RecordingImported: {
             /**
@@ -1808,16 +4198,91 @@ export interface components {
              * @enum {string}
              */
             kind: "recording_imported";
+            emitter_id: string;
             recording_id: string;
             filename: string;
             by: string;
             recorded_at_utc: string | null;
             sweep_ids: string[];
-            remarks: string[];
+            remarks: components["schemas"]["Reason"][];
             antenna: components["schemas"]["AntennaFact"] | null;
         };
-        /** @description Continue after hold, restart or a pilot's takeover (then it also releases the pilot latch). */
+        RecordingTooFar: {
+            distance_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recording_too_far";
+        };
+        RecordingTooLong: {
+            sweeps: number;
+            most: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recording_too_long";
+        };
+        RecordingUnusable: {
+            file: string;
+            because: components["schemas"]["NothingHeardInTurn"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["OutsideBand"] | components["schemas"]["ImpossiblePulses"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recording_unusable";
+        };
+        RecordingWithoutPlace: {
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "recording_without_place";
+        };
+        /** @description says: the server's sentence. */
+        RefusedByServer: {
+            says: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "refused_by_server";
+        };
+        /** @description age_s: since it was true, by the clock of this program. */
+        ReportAge: {
+            /** @enum {string} */
+            what: "position" | "heading";
+            age_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "report_age";
+        };
+        /** @description field: path into the request of the first fault, empty for the whole. faults: how many there are. */
+        RequestInvalid: {
+            field: string;
+            faults: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "request_invalid";
+        };
+        /** @description Continue after hold, restart or a pilot's takeover (then it also takes control back). */
         Resume: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "resume";
+        };
+        /** @description Continue after hold, restart or a pilot's takeover (then it also takes control back). */
+        ResumeInput: {
+            craft_id?: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1830,9 +4295,19 @@ export interface components {
              * @enum {string}
              */
             kind: "resume_ordered";
+            craft_id: string;
             by: string;
         };
         Return: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "return";
+        };
+        ReturnInput: {
+            craft_id?: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1845,8 +4320,9 @@ export interface components {
              * @enum {string}
              */
             kind: "return_ordered";
-            by: string;
-            reason: string;
+            craft_id: string;
+            by: string | null;
+            reason: components["schemas"]["Reason"] | null;
         };
         RingPriorSpec: {
             /**
@@ -1858,20 +4334,135 @@ export interface components {
             inner_m: number;
             outer_m: number;
         };
+        RoomToFly: {
+            area_m2: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "room_to_fly";
+        };
+        /** @description line: of the row that begins it, or of the first row when none does. */
+        RotationIrregular: {
+            file: string;
+            line: number;
+            /** @enum {string} */
+            why: "empty" | "not_closed" | "offset_changes";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "rotation_irregular";
+        };
+        RowLeftOut: {
+            file: string;
+            line: number;
+            /** @enum {string} */
+            why: "columns" | "not_open" | "two_offsets";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "row_left_out";
+        };
+        RtlSdrSampleRate: {
+            sample_rate_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "rtl_sdr_sample_rate";
+        };
+        /** @description closed: whether it hung up, or did not answer. */
+        RtlTcpBusy: {
+            address: string;
+            closed: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "rtl_tcp_busy";
+        };
+        /** @description broken: the connection broke, and the server did not end the stream. */
+        RtlTcpEnded: {
+            address: string;
+            broken: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "rtl_tcp_ended";
+        };
+        /** @description detail: the operating system's words. */
+        RtlTcpUnreachable: {
+            address: string;
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "rtl_tcp_unreachable";
+        };
         SafetyVetoed: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "safety_vetoed";
-            rule: string;
-            detail: string;
-            remedy: string;
+            craft_id: string;
+            reason: components["schemas"]["Reason"];
+        };
+        SampleRateTooLow: {
+            sample_rate_hz: number;
+            needed_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sample_rate_too_low";
+        };
+        /** @description lost_percent: of the IQ samples of the last seconds. */
+        SamplesLost: {
+            lost_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "samples_lost";
+        };
+        /** @description first_s: where the first of them stands, from the recording's beginning. */
+        SamplesNotNumbers: {
+            file: string;
+            samples: number;
+            first_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "samples_not_numbers";
+        };
+        SamplesNotStored: {
+            place_number: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "samples_not_stored";
+        };
+        SamplesUnusable: {
+            file: string;
+            /** @enum {string} */
+            why: "collection" | "real" | "none" | "zero" | "too_short";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "samples_unusable";
         };
         /**
          * @description mission_id None: the mission that flies now, and the next one after it. seq None: follow the live mission; a
          *     number: the mission as it was after that event. `hidden`: layers left out. `belief_height_m`: height of the belief's
-         *     peak; None: chosen from the area. `language`: of the labels; the window's own panel keeps that of its opening.
+         *     peak; None: chosen from the area.
          */
         SceneRequest: {
             mission_id?: string | null;
@@ -1883,11 +4474,13 @@ export interface components {
              * @enum {string}
              */
             theme: "dark" | "light";
+        };
+        SceneSilent: {
             /**
-             * @default en
+             * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
-            language: "en" | "de";
+            code: "scene_silent";
         };
         /**
          * @description `url`: the page to put into a frame. `mission_id`: what is shown, None while nothing flies. `shown_seq`: the last
@@ -1901,18 +4494,30 @@ export interface components {
             shown_seq: number;
             watchers: number;
         };
-        /** @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec. */
+        /**
+         * @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec.
+         *
+         *     priors: by emitter id; an emitter that is not named keeps its own.
+         */
         SearchArea: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
-            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
+            priors: {
+                [key: string]: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
+            };
             fence: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"]) | null;
             fence_margin_m: number;
             no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
         };
-        /** @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec. */
+        /**
+         * @description Where is searched and flown: what may still change in flight (in hold). Fields as in MissionSpec, FlightSpec.
+         *
+         *     priors: by emitter id; an emitter that is not named keeps its own.
+         */
         SearchAreaInput: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
-            prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
+            priors: {
+                [key: string]: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
+            };
             fence: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"]) | null;
             fence_margin_m: number;
             no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
@@ -1951,15 +4556,24 @@ export interface components {
             /** @default 2 */
             maximum_retakes: number;
         };
+        /** @description incident: the same id is in the server's log. */
+        ServerBroke: {
+            incident: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "server_broke";
+        };
         ServerRestarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "server_restarted";
-            detail: string;
         };
         SetAutomatic: {
+            craft_id: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1967,14 +4581,136 @@ export interface components {
             kind: "set_automatic";
             automatic: boolean;
         };
+        SetAutomaticInput: {
+            craft_id?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "set_automatic";
+            automatic: boolean;
+        };
+        SigmfFieldMissing: {
+            file: string;
+            /** @enum {string} */
+            field: "core:sample_rate" | "core:frequency" | "core:datetime" | "core:geolocation" | "core:dataset" | "antenna:azimuth_angle";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sigmf_field_missing";
+        };
+        /** @description value: as it stands in the file. */
+        SigmfFieldUnusable: {
+            file: string;
+            /** @enum {string} */
+            field: "core:sample_rate" | "core:frequency" | "core:datetime" | "core:geolocation" | "core:dataset" | "antenna:azimuth_angle";
+            value: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sigmf_field_unusable";
+        };
+        /** @description missing: the name of the other file. */
+        SigmfFileMissing: {
+            file: string;
+            missing: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sigmf_file_missing";
+        };
+        /** @description above_db: the strongest reading over the noise. */
+        SilentAt: {
+            file: string;
+            frequency_hz: number;
+            above_db: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "silent_at";
+        };
+        /** @description problem: the simulator's own words. */
+        SimulatorRefused: {
+            problem: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "simulator_refused";
+        };
+        /** @description order: what it was asked to do. */
+        SimulatorSilent: {
+            order: string;
+            waited_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "simulator_silent";
+        };
+        SoapyMissing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "soapy_missing";
+        };
+        SpoolNotWritten: {
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "spool_not_written";
+        };
+        /** @description path: of its file. detail: the database's or the operating system's words. */
+        SpoolUnusable: {
+            path: string;
+            detail: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "spool_unusable";
+        };
+        /** @description manoeuvre: the one that has nothing to do there. */
+        StandsDisarmed: {
+            /** @enum {string} */
+            manoeuvre: "return" | "landing";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "stands_disarmed";
+        };
         Start: {
+            craft_id: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "start";
         };
-        /** @description Once a second: what the mission does now, in words, and the health of each part. */
+        StartAllowed: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "start_allowed";
+        };
+        StartInput: {
+            craft_id?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "start";
+        };
+        /** @description Once a second: the mission in the air, None when none is, every craft there is, and the server's own health. */
         StatusMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1984,19 +4720,53 @@ export interface components {
             /** Format: date-time */
             at_utc: string;
             mission_id: string | null;
-            phase: string | null;
-            doing: string;
-            waits_for: string | null;
-            /** @enum {string} */
-            receiver: "ok" | "silent" | "off" | "lost";
-            receiver_power_db: number | null;
-            receiver_age_s: number | null;
+            phase: ("draft" | "ready" | "searching" | "done" | "aborted" | "failed") | ("ground" | "taking_off" | "planning" | "waiting" | "flying" | "measuring" | "hold" | "manual" | "returning" | "landing") | null;
+            crafts: components["schemas"]["CraftStatusMessage"][];
             viewers: number;
-            battery_to_return_percent: number | null;
             /** @enum {string} */
             database: "ok" | "slow" | "lost";
         };
-        /** @description The running sweep: antenna heading (true) and power of the samples so far, thinned to at most 360. */
+        /** @description A fault of ours, not of the equipment; the log has the traceback. */
+        StepBroke: {
+            /** @enum {string} */
+            step: "take_off" | "fly" | "measure" | "plan" | "belief" | "hold" | "return" | "land";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "step_broke";
+        };
+        SticksMoved: {
+            /** @enum {string} */
+            manoeuvre: "take_off" | "flight" | "turn" | "hold" | "return" | "landing";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sticks_moved";
+        };
+        StrongestUsed: {
+            file: string;
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "strongest_used";
+        };
+        /** @description unknown: what of the sweep is not a number. */
+        SweepIncomplete: {
+            unknown: ("bearing" | "sigma" | "quality" | "altitude" | "drift")[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sweep_incomplete";
+        };
+        /**
+         * @description The running sweep of a craft: antenna heading (true) and power of one emitter's samples so far, thinned to at
+         *     most 360.
+         */
         SweepProgress: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2004,6 +4774,8 @@ export interface components {
              */
             type: "sweep_progress";
             mission_id: string;
+            craft_id: string;
+            emitter_id: string;
             place_number: number;
             heading_deg: number[];
             power_db: number[];
@@ -2016,6 +4788,8 @@ export interface components {
         SweepRecord: {
             sweep_id: string;
             mission_id: string;
+            craft_id: string | null;
+            emitter_id: string;
             place_number: number;
             attempt: number;
             /** Format: date-time */
@@ -2037,11 +4811,13 @@ export interface components {
              * @enum {string}
              */
             kind: "sweep_rejected";
+            emitter_id: string;
+            source: components["schemas"]["CraftSource"] | components["schemas"]["ImportSource"] | components["schemas"]["PersonSource"];
             sweep_id: string;
             place_number: number;
             attempt: number;
             quality: number;
-            reason: string;
+            reason: components["schemas"]["Reason"];
             place: components["schemas"]["Place"];
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
@@ -2052,16 +4828,62 @@ export interface components {
              * @enum {string}
              */
             kind: "sweep_started";
+            craft_id: string;
             place_number: number;
             attempt: number;
         };
-        /** @description `*_age_s`: how old each group of values was when sent; None: never heard. */
+        TagNotHeard: {
+            file: string;
+            line: number;
+            tag: string;
+            heard: string[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tag_not_heard";
+        };
+        TagUnheard: {
+            frequency_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tag_unheard";
+        };
+        TakeOffIgnored: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "take_off_ignored";
+        };
+        /** @description mode: the one that they selected, as the autopilot names it. */
+        TakenOver: {
+            /** @enum {string} */
+            who: "pilot" | "failsafe";
+            mode: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "taken_over";
+        };
+        TakenOverBySticks: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "taken_over_by_sticks";
+        };
+        /** @description Of one craft. `*_age_s`: how old each group of values was when sent; None: never heard. who: who flies it. */
         TelemetryMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             type: "telemetry";
+            craft_id: string;
             /** Format: date-time */
             at_utc: string;
             connected: boolean;
@@ -2083,10 +4905,19 @@ export interface components {
             mode: string | null;
             mode_age_s: number | null;
             /** @enum {string} */
-            controller: "crossfix" | "pilot" | "nobody";
+            who: "ours" | "pilot" | "failsafe" | "nobody";
             /** @enum {string} */
             autopilot: "px4" | "ardupilot" | "unknown";
             dropped: number;
+        };
+        /** @description tile_type: as the PMTiles specification names it. */
+        TilesNotDrawable: {
+            tile_type: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tiles_not_drawable";
         };
         /** @description What happens when links are lost. Seconds; the autopilot's own failsafes act besides. */
         TimerSpec: {
@@ -2096,8 +4927,6 @@ export interface components {
             console_lost_return_s: number;
             /** @default 5 */
             receiver_silent_s: number;
-            /** @default 60 */
-            vehicle_command_s: number;
         };
         /** @description What happens when links are lost. Seconds; the autopilot's own failsafes act besides. */
         TimerSpecInput: {
@@ -2107,8 +4936,129 @@ export interface components {
             console_lost_return_s: number;
             /** @default 5 */
             receiver_silent_s: number;
-            /** @default 60 */
-            vehicle_command_s: number;
+        };
+        /** @description A sentence out of a journal of before reasons had names. Only the journal's upgrade makes one. */
+        ToldBefore: {
+            text: string;
+            /** @default  */
+            remedy: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "told_before";
+        };
+        TooFarFromHome: {
+            distance_m: number;
+            most_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_far_from_home";
+        };
+        TooFewCorners: {
+            /** @enum {string} */
+            what: "area" | "fence" | "no_fly" | "confidence_region";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_corners";
+        };
+        TooFewDirections: {
+            heard: number;
+            needed: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_directions";
+        };
+        /** @description places: distinct ones that bearings were taken from. */
+        TooFewPlaces: {
+            bearings: number;
+            places: number;
+            needed_places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_places";
+        };
+        /** @description agreeing_places: those of the `places` whose bearings point at the estimate. */
+        TooFewPlacesAgree: {
+            agreeing_places: number;
+            places: number;
+            needed_places: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_places_agree";
+        };
+        TooFewPoints: {
+            name: string;
+            points: number;
+            needed: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_points";
+        };
+        TooFewSamples: {
+            samples: number;
+            needed: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_few_samples";
+        };
+        TooManyCorners: {
+            /** @enum {string} */
+            what: "area" | "fence" | "no_fly" | "confidence_region";
+            most: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_corners";
+        };
+        TooManyFeatures: {
+            most: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_features";
+        };
+        TooManyFiles: {
+            files: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_files";
+        };
+        /** @description spacing_m: of the action lattice. finest_m: the least spacing that gives no more than `most_places`. */
+        TooManyPlaces: {
+            spacing_m: number;
+            most_places: number;
+            finest_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_places";
+        };
+        TooManyScenes: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_scenes";
         };
         TookOff: {
             /**
@@ -2116,12 +5066,14 @@ export interface components {
              * @enum {string}
              */
             kind: "took_off";
+            craft_id: string;
             place: components["schemas"]["Place"];
             altitude_relative_m: number;
         };
-        /** @description The flown path, thinned to 2 Hz, in time order. */
+        /** @description The flown path of a craft, thinned to 2 Hz, in time order. */
         Track: {
             mission_id: string;
+            craft_id: string;
             points: components["schemas"]["TrackFact"][];
         };
         TrackFact: {
@@ -2135,12 +5087,178 @@ export interface components {
             battery_percent: number | null;
             mode: string | null;
         };
+        /** @description attempt: the number of the one that follows, the first is 1. */
+        TriedAgain: {
+            because: components["schemas"]["AutopilotRefused"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["HoldIgnored"] | components["schemas"]["NoProgress"] | components["schemas"]["TurnStopped"] | components["schemas"]["TakeOffIgnored"];
+            attempt: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tried_again";
+        };
+        TunedElsewhere: {
+            device: string;
+            tuned_hz: number;
+            wanted_hz: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tuned_elsewhere";
+        };
+        TurnIncomplete: {
+            heard_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "turn_incomplete";
+        };
+        /** @description ways: of turning that were tried. */
+        TurnNotMade: {
+            turned_deg: number;
+            ways: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "turn_not_made";
+        };
+        /** @description turned_deg: as far as telemetry showed. */
+        TurnStopped: {
+            turned_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "turn_stopped";
+        };
+        TwoRecordings: {
+            first: string;
+            second: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "two_recordings";
+        };
         UniformPriorSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "uniform";
+        };
+        /** @description number: MAV_AUTOPILOT. */
+        UnknownAutopilot: {
+            url: string;
+            number: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unknown_autopilot";
+        };
+        UnknownHost: {
+            host: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unknown_host";
+        };
+        UnknownToken: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unknown_token";
+        };
+        /** @description quality, needed: cosine similarity of sweep and pattern, [0, 1]. */
+        UnlikeAntenna: {
+            quality: number;
+            needed: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unlike_antenna";
+        };
+        /** @description Of the search area. */
+        UnusableArea: {
+            /** @enum {string} */
+            flaw: "no_ring" | "too_few_corners" | "not_finite" | "no_extent";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_area";
+        };
+        /** @description flaw: what about it cannot be used in a likelihood. */
+        UnusableBearing: {
+            /** @enum {string} */
+            flaw: "not_finite" | "sigma" | "outlier_probability" | "peak";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_bearing";
+        };
+        /** @description Of the flights that a movement time model is fitted to. */
+        UnusableFlights: {
+            /** @enum {string} */
+            flaw: "lengths_differ" | "too_few" | "not_finite" | "equal_distances";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_flights";
+        };
+        /** @description Of a prior or a belief. */
+        UnusableGaussian: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_gaussian";
+        };
+        /** @description given: as text, since it may be what no JSON number can be, or several numbers. */
+        UnusableNumber: {
+            /** @enum {string} */
+            quantity: "sigma" | "threshold" | "measurement_time" | "speed" | "turn_rate" | "acceleration" | "movement_constant" | "action_spacing" | "action_grid" | "platform_position" | "actions" | "budget" | "horizon" | "threads" | "levels" | "paths";
+            /** @enum {string} */
+            wanted: "positive" | "not_negative" | "at_least_one" | "finite" | "power_of_two";
+            given: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_number";
+        };
+        /** @description inner_m and outer_m are left out: what is not a finite number survives no JSON. */
+        UnusableRing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "unusable_ring";
+        };
+        UploadBrokeOff: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "upload_broke_off";
+        };
+        UploadIncomplete: {
+            arrived_bytes: number;
+            announced_bytes: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "upload_incomplete";
         };
         /** @description One layer of a vector map; `fields`: the names of its attributes. */
         VectorLayer: {
@@ -2150,29 +5268,134 @@ export interface components {
             max_zoom: number | null;
             fields: string[];
         };
+        VehicleConnected: {
+            /** @enum {string} */
+            autopilot: "px4" | "ardupilot";
+            url: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_connected";
+        };
+        /** @description `reason`: why there is no vehicle. */
         VehicleHealth: {
+            craft_id: string;
             connected: boolean;
             /** @enum {string} */
             autopilot: "px4" | "ardupilot" | "unknown";
-            detail: string;
+            reason: components["schemas"]["Reason"] | null;
+        };
+        VehicleHeardAgain: {
+            outage_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_heard_again";
+        };
+        /** @description silent_s None: nothing was ever heard. */
+        VehicleLinkLost: {
+            silent_s: number | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_link_lost";
+        };
+        /** @description url: the vehicle's address; problem: the system's own words. */
+        VehicleLinkNotOpened: {
+            url: string;
+            problem: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_link_not_opened";
+        };
+        VehicleNotConnected: {
+            url: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_not_connected";
+        };
+        /** @description The manoeuvre was given up; the vehicle goes on with what it was commanded last. */
+        VehicleSilent: {
+            /** @enum {string} */
+            manoeuvre: "take_off" | "flight" | "turn" | "hold" | "return" | "landing";
+            silent_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_silent";
+        };
+        VehicleUnheard: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_unheard";
+        };
+        VehicleUnknown: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "vehicle_unknown";
         };
         Veto: {
+            craft_id: string | null;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
              */
             kind: "veto";
         };
+        VetoInput: {
+            craft_id?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "veto";
+        };
+        /** @description A background task of ours failed and begins again. */
+        WatchBroke: {
+            /** @enum {string} */
+            watch: "vehicle" | "changes" | "track";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "watch_broke";
+        };
+        WayCrossesNoFly: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "way_crosses_no_fly";
+        };
+        WayLeavesFence: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "way_leaves_fence";
+        };
         /**
          * @description `belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
          *     binary frame (lite). `sweeps`: what each would have told, in order, without those left out or not taken then.
-         *     `antenna`: through which the sweeps were taken anew, None: they were not.
+         *     `antenna`: through which the sweeps were taken again, None: they were not.
          */
         WhatIf: {
             steps: components["schemas"]["WhatIfStep"][];
             belief: components["schemas"]["BeliefUpdated"];
             plan: components["schemas"]["PlanChosen"] | null;
-            no_plan: string;
+            no_plan: components["schemas"]["Reason"] | null;
             frame_base64: string;
             sweeps: (components["schemas"]["BearingMeasured"] | components["schemas"]["SweepRejected"])[];
             antenna: components["schemas"]["WhatIfAntenna"] | null;
@@ -2182,11 +5405,13 @@ export interface components {
             offset_to_nose_deg: number;
         };
         /**
-         * @description A flown mission's decision after so many bearings, taken anew. None: as it was flown. `sigma_deg`: of every
-         *     bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg` (clockwise, instead of the
-         *     pattern's own): the stored sweeps are taken through this antenna; None of both: their bearings stay.
+         * @description A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
+         *     `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`
+         *     (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
+         *     bearings stay.
          */
         WhatIfRequest: {
+            emitter_id?: string | null;
             bearings: number;
             sigma_deg?: number | null;
             outlier_probability?: number | null;
@@ -2197,13 +5422,23 @@ export interface components {
             selection?: ("uniform" | "sequential_halving") | null;
             estimator?: ("map" | "expected_value" | "geometric_median") | null;
         };
-        /** @description After so many flown bearings: what would have been said, and what was (None: nothing was said then). */
+        /** @description After this many flown bearings: what would have been said, and what was (None: nothing was said then). */
         WhatIfStep: {
             bearings: number;
             expected_rmse_m: number | null;
             localized: boolean;
             flown_expected_rmse_m: number | null;
             flown_localized: boolean | null;
+        };
+        /** @description Another writer has used the place of event `seq`, or left a gap before it. */
+        WrittenElsewhere: {
+            mission_id: string;
+            seq: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "written_elsewhere";
         };
         /**
          * @description `fraction` of the area, 0..1, that lies on tiles the archive has at this zoom. `metres_per_pixel`: ground size of
@@ -2314,7 +5549,9 @@ export interface operations {
     };
     vehicle: {
         parameters: {
-            query?: never;
+            query?: {
+                craft?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -2659,13 +5896,13 @@ export interface operations {
         parameters: {
             query?: {
                 seq?: number | null;
+                emitter?: string | null;
                 lite?: boolean;
             };
             header?: never;
             path: {
                 /** @description The mission's id */
                 mission_id: string;
-                bearings: number;
             };
             cookie?: never;
         };
@@ -2763,7 +6000,9 @@ export interface operations {
     };
     get_track: {
         parameters: {
-            query?: never;
+            query?: {
+                craft?: string;
+            };
             header?: never;
             path: {
                 /** @description The mission's id */
@@ -2818,6 +6057,39 @@ export interface operations {
                     "application/json": Record<string, never>;
                     "application/vnd.mcap": string;
                     "application/zip": string;
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_exported_mission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": Record<string, never>;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ExportedMission"];
                 };
             };
             /** @description What went wrong and how to mend it */

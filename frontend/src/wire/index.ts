@@ -9,34 +9,44 @@ export type Polygon = Schemas["Polygon"];
 export type MultiPolygon = Schemas["MultiPolygon"];
 export type Area = Polygon | MultiPolygon;
 
+export type Reason = Schemas["Reason"];
+export type ReasonCode = Reason["code"];
+
 export type Recorded = Schemas["Recorded"];
 export type MissionEvent = Recorded["event"];
 export type EventKind = MissionEvent["kind"];
 export type EventOf<K extends EventKind> = Extract<MissionEvent, { kind: K }>;
+/** What a craft does. */
 export type Phase = Schemas["PhaseChanged"]["after"];
+/** A mission in one word: what its craft does while one flies, else the stage of its search. */
+export type MissionPhase = Schemas["MissionSummary"]["phase"];
+export type Authority = Schemas["Authority"];
+export type EmitterSpec = Schemas["EmitterSpec"];
 export type PlanChosen = Schemas["PlanChosen"];
 export type CandidateFact = Schemas["CandidateFact"];
 export type CheckFact = Schemas["CheckFact"];
-export type EstimateFact = Schemas["EstimateFact"];
 export type BearingMeasured = Schemas["BearingMeasured"];
 export type SweepRejected = Schemas["SweepRejected"];
 export type BeliefUpdated = Schemas["BeliefUpdated"];
 export type MissionEnded = Schemas["MissionEnded"];
 export type LinkName = Schemas["LinkLost"]["link"];
 export type AlertLevel = Schemas["AlertRaised"]["level"];
+export type AlertTopic = Schemas["AlertRaised"]["topic"];
 
 export type Hello = Schemas["Hello"];
 export type EventMessage = Schemas["EventMessage"];
 export type TelemetryMessage = Schemas["TelemetryMessage"];
 export type SweepProgress = Schemas["SweepProgress"];
 export type StatusMessage = Schemas["StatusMessage"];
+export type CraftStatus = Schemas["CraftStatusMessage"];
 export type LiveMessage = Hello | EventMessage | TelemetryMessage | SweepProgress | StatusMessage;
 
 export type CommandRequest = Schemas["CommandRequest"];
 export type Command = CommandRequest["command"];
 export type CommandReply = Schemas["CommandReply"];
 
-export type Problem = Schemas["Problem"];
+/** reason null: found by the page itself, and said in its own words. */
+export type Problem = Omit<Schemas["Problem"], "reason"> & { reason: Reason | null };
 export type Defaults = Schemas["Defaults"];
 export type MissionSummary = Schemas["MissionSummary"];
 export type Mission = Schemas["Mission"];
@@ -45,6 +55,7 @@ export type PreflightReply = Schemas["PreflightReply"];
 export type EventPage = Schemas["EventPage"];
 export type Track = Schemas["Track"];
 export type TrackFact = Schemas["TrackFact"];
+export type ExportedMission = Schemas["ExportedMission"];
 export type ExpectedTime = Schemas["ExpectedTime"];
 export type Preview = Schemas["Preview"];
 export type WhatIf = Schemas["WhatIf"];

@@ -8,6 +8,7 @@ import math
 import signal
 import sys
 from collections.abc import Sequence
+from types import FrameType
 
 from hardware.sim.autopilot.ardupilot import ArduCopter
 from hardware.sim.autopilot.copter import Wind
@@ -100,7 +101,9 @@ def parser() -> argparse.ArgumentParser:
         help="wall seconds below which a silent ground station is not taken for lost (for sped-up runs)",
     )  # fmt: skip
     p.add_argument("--parent", type=int, metavar="PID", help="stop when this parent process is gone")
-    p.add_argument("--linger", type=_positive, metavar="S", help="stop when nobody was heard for so many wall seconds")
+    p.add_argument(
+        "--linger", type=_positive, metavar="S", help="stop when nobody was heard for that many wall seconds"
+    )
     return p
 
 
@@ -122,6 +125,10 @@ def build(arguments: argparse.Namespace) -> Firmware:
     return firmware
 
 
+def _leave(_signal: int, _frame: FrameType | None) -> None:
+    sys.exit(0)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     arguments = parser().parse_args(argv)
     try:
@@ -130,7 +137,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         print(f"The simulated autopilot cannot start: {error}", file=sys.stderr)
         return 2
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+    signal.signal(signal.SIGTERM, _leave)
     print(json.dumps({"ready": True, "control_port": process.control_port}), flush=True)
     try:
         process.run()

@@ -4,6 +4,9 @@ A flavour gives modes their numbers and says how commands, sticks and failsafes 
 behaviour was measured on PX4 1.16 SIH and ArduCopter 4.7 SITL).
 """
 
+# pyright: reportMissingTypeStubs=false
+# (pymavlink has none; its generated dialects are typed well enough)
+
 from __future__ import annotations
 
 import math
@@ -174,7 +177,7 @@ class Firmware(ABC):
         return False
 
     def reboot(self) -> None:
-        """Time, mode, arming and whatever a ground station had asked for begin anew. Raises ValueError in the air."""
+        """Time, mode, arming and whatever a ground station had asked for start again. Raises ValueError in the air."""
         if self.flight.in_air:
             raise ValueError("The autopilot does not reboot in the air: land first.")
         self.flight.disarm()

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hardware.ports import HardwareError
+from hardware.reasons.simulation import SimulatorRefused, SimulatorSilent
 from hardware.sim.autopilot.geodesy import HomeFrame
 
 LINGER_S = 1800.0
@@ -38,7 +39,7 @@ class Setting:
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)
     heading_deg: float = 0.0
     battery_percent: float = 100.0
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     heading_error_deg: float = 0.0
     connect_port: int | None = None
     control_port: int | None = None
@@ -104,13 +105,11 @@ class SimulatedAutopilot:
             async with asyncio.timeout(timeout_s):
                 answer = json.loads(await answers.queue.get())
         except TimeoutError:
-            raise SimulatorError(
-                f"The simulated autopilot did not answer {do!r} on port {self.control_port}."
-            ) from None
+            raise SimulatorError(SimulatorSilent(do, timeout_s)) from None
         finally:
             transport.close()
         if not answer["ok"]:
-            raise SimulatorError(answer["error"])
+            raise SimulatorError(SimulatorRefused(answer["error"]))
         return answer
 
     async def stop(self) -> None:
@@ -141,13 +140,15 @@ async def launch_simulated(setting: Setting, timeout_s: float = 20.0) -> Simulat
             line = await asyncio.to_thread(process.stdout.readline)
     except BaseException as error:
         process.kill()
+        await asyncio.to_thread(process.communicate)
         if isinstance(error, TimeoutError):
-            raise SimulatorError(f"The simulated autopilot did not start within {timeout_s:g} s.") from None
+            raise SimulatorError(SimulatorSilent("start", timeout_s)) from None
         raise
     if not line:
-        words = (await asyncio.to_thread(process.stderr.read)).decode(errors="replace").strip()
-        await asyncio.to_thread(process.wait)
-        raise SimulatorError(words or "The simulated autopilot ended at once, without a word.")
+        words = (await asyncio.to_thread(process.communicate))[1].decode(errors="replace").strip()
+        raise SimulatorError(SimulatorRefused(words or "it ended at once"))
+    process.stdout.close()
+    process.stderr.close()
     return SimulatedAutopilot(connect_port, json.loads(line)["control_port"], process)
 
 

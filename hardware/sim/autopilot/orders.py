@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any
+from typing import Any, cast
 
 from hardware.sim.autopilot.firmware import Firmware
 
@@ -51,7 +51,9 @@ class Orders:
             order = json.loads(line)
             if not isinstance(order, dict):
                 raise OrderError('An order is a JSON object such as {"do": "ping"}.')
-            answer = {"ok": True, "time_s": self._firmware.time} | self.carry_out(order)
+            answer: dict[str, Any] = {"ok": True, "time_s": self._firmware.time} | self.carry_out(
+                cast(dict[str, Any], order)
+            )
         except (ValueError, RecursionError) as error:
             answer = {"ok": False, "time_s": self._firmware.time, "error": str(error)}
         return json.dumps(answer).encode() + b"\n"

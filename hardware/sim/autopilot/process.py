@@ -17,10 +17,14 @@ STEP = 0.02
 """Simulated seconds a step."""
 MOST_BEHIND_WALL = 5.0
 """When the process was suspended for longer than this, the time it missed is not made up for."""
+LOOK_UP_AGAIN = 5.0
+"""Wall seconds of silence after which the ground station's name is looked up again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
+    """Of the ground station. host: an IPv4 address or a name."""
+
     host: str
     port: int
 
@@ -48,10 +52,11 @@ class Process:
         self._firmware = firmware
         self._station = Station(firmware)
         self._orders = Orders(firmware)
-        self._peer = (connect.host, connect.port)
+        self._connect = connect
+        self._peer = (socket.gethostbyname(connect.host), connect.port)
         self._speedup = schedule.speedup
         self._schedule = schedule
-        self._heard_at = time.monotonic()
+        self._heard_at = self._looked_up_at = time.monotonic()
         self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._link.bind(("127.0.0.1" if connect.host.startswith("127.") else "0.0.0.0", 0))
         self._control = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -81,9 +86,17 @@ class Process:
                 next_look = now + 0.25
                 if self._abandoned(now):
                     return
+                if now - max(self._heard_at, self._looked_up_at) > LOOK_UP_AGAIN:
+                    self._look_up_station(now)
             readable, _, _ = select.select([self._link, self._control], [], [], self._tick)
             for each in readable:
                 self._read(each)
+
+    def _look_up_station(self, now: float) -> None:
+        """A ground station that fell silent may come back at another address, as a container does."""
+        self._looked_up_at = now
+        with contextlib.suppress(socket.gaierror):
+            self._peer = (socket.gethostbyname(self._connect.host), self._connect.port)
 
     def _abandoned(self, now: float) -> bool:
         parent, linger = self._schedule.parent, self._schedule.linger

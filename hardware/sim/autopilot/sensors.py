@@ -27,7 +27,7 @@ class Navigation:
         self.satellites = 14
 
     def jump(self, north: float, east: float, seconds: float) -> None:
-        """The GPS position steps by (north, east) m for so many seconds, then comes back."""
+        """The GPS position steps by (north, east) m for that many seconds, then comes back."""
         self._jump, self._jump_left = (north, east), seconds
 
     def step(self, dt: float) -> None:

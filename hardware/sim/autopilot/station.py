@@ -1,5 +1,8 @@
 """The MAVLink side: streams at their rates in simulated time, commands, parameters. Bytes in, bytes out; no socket."""
 
+# pyright: reportMissingTypeStubs=false
+# (pymavlink has none; its generated dialects are typed well enough)
+
 from __future__ import annotations
 
 import math
@@ -167,7 +170,8 @@ class Station:
         if message.get_type() == "PARAM_REQUEST_LIST":
             return [self._param_value(name) for name in names]
         if message.get_type() == "PARAM_REQUEST_READ" and message.param_index >= 0:
-            return [self._param_value(names[message.param_index])] if message.param_index < len(names) else []
+            index: int = message.param_index
+            return [self._param_value(names[index])] if index < len(names) else []
         name = message.param_id.rstrip("\x00")
         if name not in table:
             return []

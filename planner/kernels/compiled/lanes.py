@@ -9,7 +9,7 @@ from numba import extending, types
 
 intrinsic: Any = extending.intrinsic  # whose callers leave out the typing context: no type says so
 BLOCK = 16
-"""Doubles in a block. Arrays of cells have so many more, because the last block of a row runs over its end."""
+"""Doubles in a block. Arrays of cells are longer by as many, because the last block of a row runs over its end."""
 
 
 @intrinsic

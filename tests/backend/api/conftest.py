@@ -1,4 +1,4 @@
-"""The application around a real journal and hub, with a mission room of facts only (no vehicle)."""
+"""The application around a real journal, hub and mission room; its vehicle is paper and never flies."""
 
 from __future__ import annotations
 
@@ -6,72 +6,44 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
-from uuid import uuid4
 
 import httpx
 import pytest
 import uvicorn
+from equipment import FlatVehicle, HummingReceiver
 from fastapi import FastAPI
+from stepped_clock import SteppedClock
 
 from backend.api.application import make_application
 from backend.api.services import Services
-from backend.commands import CommandReply, CommandRequest
-from backend.events import MissionDrafted, MissionEdited, PreflightChecked
+from backend.craft.equipment import CraftEquipment
+from backend.events import FIRST_CRAFT
 from backend.live.hub import Hub
 from backend.live.protocol import LiveProtocol
-from backend.mission.errors import MissionConflict, MissionNotFound
+from backend.mission.equipment import MissionEquipment
+from backend.mission.room import mission_room
 from backend.settings import Settings
-from backend.spec import MissionSpec
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.payload.session import PayloadHub
-from hardware.readings import GeoPoint, Telemetry
+from hardware.readings import Place, Telemetry
 
 TOKEN = "a token of sixteen letters or more"
 NOW_S = 1_700_000_000.0
 
 
-class PaperMissions:
-    """Keeps drafts; refuses every command, since nothing flies here."""
+class PaperVehicle(FlatVehicle):
+    """Heard as `heard` says."""
 
-    def __init__(self, journal: SqlJournal, hub: Hub) -> None:
-        self.journal, self.hub = journal, hub
-        self.asked: list[CommandRequest] = []
-        self.heard = Telemetry(connected=True, at_s=NOW_S, home=GeoPoint(50.6, 7.2), autopilot="px4")
-
-    async def create(self, spec: MissionSpec, by: str) -> str:
-        mission_id = uuid4().hex
-        self.hub.events(await self.journal.append(mission_id, [MissionDrafted(spec=spec)]))
-        return mission_id
-
-    async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
-        digest = await self.journal.mission(mission_id)
-        if digest is None:
-            raise MissionNotFound(mission_id)
-        if digest.phase != "draft":
-            raise MissionConflict("the mission has started", "draft a new one")
-        self.hub.events(await self.journal.append(mission_id, [MissionEdited(spec=spec)]))
-
-    async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
-        digest = await self.journal.mission(mission_id)
-        if digest is None:
-            raise MissionNotFound(mission_id)
-        self.asked.append(request)
-        reason = "nothing flies here"
-        return CommandReply(
-            command_id=request.command_id, accepted=False, reason=reason, remedy="", seq=digest.last_seq
-        )
-
-    async def preflight(self, mission_id: str) -> PreflightChecked:
-        if await self.journal.mission(mission_id) is None:
-            raise MissionNotFound(mission_id)
-        return PreflightChecked(passed=False, checks=[])
+    def __init__(self) -> None:
+        super().__init__(SteppedClock(NOW_S))
+        self.heard_last = Telemetry(connected=True, at_s=NOW_S, home=Place(50.6, 7.2), autopilot="px4")
 
     def telemetry(self) -> Telemetry:
-        return self.heard
+        return self.heard_last
 
 
 @pytest.fixture
@@ -84,30 +56,29 @@ def settings(tmp_path: Path) -> Settings:
 
 
 @asynccontextmanager
-async def running_services(settings: Settings) -> AsyncIterator[Services]:
+async def running_services(settings: Settings, vehicle: PaperVehicle) -> AsyncIterator[Services]:
     await migrate(settings.async_database_url)
     spool = Spool(settings.spool_path, 64 * 1024)
     journal = SqlJournal(make_engine(settings.async_database_url, 2.0), spool, lambda: NOW_S)
-    hub = Hub(journal.read, lambda: NOW_S)
+    hub, clock = Hub(journal.read, lambda: NOW_S), SteppedClock(NOW_S)
+    finder, pattern = SparseDirectionFinder(), load_pattern(SMALL_YAGI)
+    craft = CraftEquipment(FIRST_CRAFT, vehicle, HummingReceiver(clock), finder, pattern, clock, hub)
+    room = mission_room(MissionEquipment({FIRST_CRAFT: craft}, journal, hub, clock, "test"))
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
-        yield Services(
-            PaperMissions(journal, hub),
-            journal,
-            hub,
-            settings,
-            lambda: NOW_S,
-            payload,
-            finder=SparseDirectionFinder(),
-            pattern=load_pattern(SMALL_YAGI),
-        )
+        yield Services(room, journal, hub, settings, lambda: NOW_S, payload, finder=finder, pattern=pattern)
     finally:
         await journal.close()
 
 
 @pytest.fixture
-async def services(settings: Settings) -> AsyncIterator[Services]:
-    async with running_services(settings) as services:
+def vehicle() -> PaperVehicle:
+    return PaperVehicle()
+
+
+@pytest.fixture
+async def services(settings: Settings, vehicle: PaperVehicle) -> AsyncIterator[Services]:
+    async with running_services(settings, vehicle) as services:
         yield services
 
 

@@ -9,8 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from backend.api.areas import read_area
-from backend.mission.errors import MissionInputError
+from backend.reasons.maps import NotAreas, PolygonsUnited
+from backend.search.errors import MissionInputError
 from backend.wire.resources import AreaUpload
+from planner.reason import remedy_of
 
 RING = [[7.2, 50.6], [7.203, 50.6], [7.203, 50.602], [7.2, 50.602], [7.2, 50.6]]
 FAR = [[7.21, 50.6], [7.213, 50.6], [7.213, 50.602], [7.21, 50.6]]
@@ -62,14 +64,14 @@ def test_overlapping_polygons_are_united_and_it_says_so():
     shifted = [[lon + 0.001, lat] for lon, lat in RING]
     found, area = read({"type": "MultiPolygon", "coordinates": [[RING], [shifted]]})
     assert area["type"] == "Polygon"
-    assert any("united" in note for note in found.notes)
+    assert found.notes == [PolygonsUnited(polygons=2, areas=1)]
 
 
 def test_what_is_left_out_is_named():
     point = {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [7, 50]}}
     area = {"type": "Feature", "properties": {}, "geometry": POLYGON}
     found, _ = read({"type": "FeatureCollection", "features": [point, area]})
-    assert any("left out" in note for note in found.notes)
+    assert found.notes == [NotAreas(1)]
 
 
 @pytest.mark.parametrize(
@@ -88,7 +90,7 @@ def test_what_is_left_out_is_named():
 def test_what_is_wrong_is_said_in_a_sentence(document, says):
     with pytest.raises(MissionInputError, match=says) as refused:
         read(document)
-    assert refused.value.remedy
+    assert remedy_of(refused.value.reason)
 
 
 @given(st.text(min_size=1) | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))

@@ -23,7 +23,7 @@ SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6
 async def happen(services, count: int, mission_id: str = "m") -> None:
     for _ in range(count):
         first = await services.journal.mission(mission_id) is None
-        event = MissionDrafted(spec=SPEC) if first else HoldOrdered(by="operator", reason="x" * 500)
+        event = MissionDrafted(spec=SPEC) if first else HoldOrdered(craft_id="craft-1", by="x" * 500, reason=None)
         services.hub.events(await services.journal.append(mission_id, [event]))
 
 
@@ -44,10 +44,11 @@ async def test_hello_then_history_then_the_present(served, services):
         await happen(services, 1)
         recorded = (await take(websocket, "event"))["recorded"]
         assert recorded["seq"] == 4
-        services.hub.telemetry(Telemetry(connected=True, at_s=1.0, mode="HOLD"), 2.0)
-        assert (await take(websocket, "telemetry"))["mode"] == "HOLD"
+        services.hub.telemetry("craft-2", Telemetry(connected=True, at_s=1.0, mode="HOLD"), 2.0)
+        heard = await take(websocket, "telemetry")
+        assert (heard["craft_id"], heard["mode"]) == ("craft-2", "HOLD")
         belief = GridBelief(np.full((3, 2), 1 / 6), 0.0, 0.0, 1.0, (), (), 1, True)
-        services.hub.belief("m", 1, belief, [(7.0, 50.0)] * 4)
+        services.hub.belief("m", "emitter-1", 7, 1, belief, [(7.0, 50.0)] * 4)
         assert b'"nx":2' in (await take(websocket, "belief"))["frame"]
 
 
@@ -62,7 +63,7 @@ async def test_a_dropped_viewer_comes_back_where_it_was(served, services):
     assert got == [1, 2, 3, 4, 5]
 
 
-async def test_a_number_from_another_database_begins_anew(served, services):
+async def test_a_number_from_another_database_starts_from_the_beginning(served, services):
     await happen(services, 2)
     async with websockets.connect(f"ws://{served}/api/live?mission=m&after=99") as websocket:
         assert (await take(websocket, "hello"))["last_seq"] == 2
@@ -121,7 +122,7 @@ async def test_stalled_viewers_delay_nobody_and_are_cut_off(served, services):
     stalled = [await asyncio.to_thread(stalled_viewer, served) for _ in range(3)]
     async with websockets.connect(f"ws://{served}/api/live?mission=m", max_queue=None) as websocket:
         async with asyncio.timeout(10):
-            while services.hub.viewers() < 4:  # noqa: ASYNC110 (joining is the server's deed)
+            while services.hub.viewers() < 4:  # noqa: ASYNC110 (the server decides when one has joined)
                 await asyncio.sleep(0.02)
         seqs = []
         for _ in range(40):

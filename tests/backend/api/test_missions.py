@@ -6,6 +6,9 @@ from uuid import uuid4
 
 import pytest
 
+from backend.events import CommandRefused
+from backend.wire.problem import Problem
+
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
 
 
@@ -23,9 +26,8 @@ def is_problem(reply, status: int) -> dict:
     assert reply.status_code == status, reply.text
     assert reply.headers["content-type"] == "application/problem+json"
     problem = reply.json()
+    assert Problem.model_validate(problem).model_dump(mode="json") == problem
     assert problem["status"] == status
-    assert problem["title"]
-    assert problem["detail"]
     assert "Traceback" not in reply.text
     return problem
 
@@ -51,9 +53,12 @@ async def test_editing_replaces_the_specification(client):
 
 async def test_a_wrong_field_is_named(client):
     problem = is_problem(await client.post("/api/missions", json=spec(sensor={"sigma_deg": -1})), 422)
-    assert [error["field"] for error in problem["errors"]] == ["sensor.sigma_deg"]
+    assert problem["reason"]["code"] == "request_invalid"
+    assert [(error["field"], error["reason"]["code"]) for error in problem["errors"]] == [
+        ("sensor.sigma_deg", "field_out_of_range")
+    ]
     problem = is_problem(await client.post("/api/missions", json=spec(colour="red")), 422)
-    assert [error["field"] for error in problem["errors"]] == ["colour"]
+    assert [(error["field"], error["reason"]["code"]) for error in problem["errors"]] == [("colour", "field_unknown")]
 
 
 @pytest.mark.parametrize("body", [b"", b"{", b"[" * 100_000, b"\xff\xfe", b'{"name": NaN}', b"1" * 5000])
@@ -63,32 +68,58 @@ async def test_a_body_that_is_no_json_is_a_problem(client, body):
     assert 400 <= reply.status_code < 500
 
 
-@pytest.mark.parametrize("rest", ["", "/events", "/track", "/sweeps/s", "/beliefs/0", "/export/kml"])
+@pytest.mark.parametrize("rest", ["", "/events", "/track", "/sweeps/s", "/beliefs", "/export/kml"])
 async def test_an_unknown_mission_is_not_found(client, rest):
     is_problem(await client.get(f"/api/missions/nobody{rest}"), 404)
 
 
 async def test_a_command_reaches_the_mission_and_its_refusal_is_an_answer(client, services):
-    mission = await draft(client)
+    mission_id = (await draft(client))["mission_id"]
     body = {"command_id": str(uuid4()), "command": {"kind": "hold"}}
-    reply = await client.post(f"/api/missions/{mission['mission_id']}/commands", json=body)
+    reply = await client.post(f"/api/missions/{mission_id}/commands", json=body)
     assert reply.status_code == 200
     assert reply.json()["accepted"] is False
-    assert reply.json()["reason"] == "nothing flies here"
-    assert [str(request.command_id) for request in services.missions.asked] == [body["command_id"]]
+    refused = (await services.journal.read(mission_id))[-1]
+    assert isinstance(refused.event, CommandRefused)
+    assert (refused.event.command_id, refused.event.command) == (body["command_id"], "hold")
+    assert (reply.json()["reason"], reply.json()["seq"]) == (refused.model_dump(mode="json")["event"]["reason"], 2)
     is_problem(await client.post("/api/missions/nobody/commands", json=body), 404)
     body["command"] = {"kind": "fly_away"}
-    is_problem(await client.post(f"/api/missions/{mission['mission_id']}/commands", json=body), 422)
+    is_problem(await client.post(f"/api/missions/{mission_id}/commands", json=body), 422)
 
 
-async def test_a_fault_of_our_own_is_a_problem_with_an_incident(client, services, monkeypatch, caplog):
+@pytest.mark.parametrize(
+    ("craft_id", "code"), [("craft-9", "no_such_craft"), ("craft-1", "not_started"), (None, "not_started")]
+)
+async def test_a_command_names_its_craft_or_means_the_only_one(client, craft_id, code):
+    mission = await draft(client)
+    body = {"command_id": str(uuid4()), "command": {"kind": "resume", "craft_id": craft_id}}
+    reply = await client.post(f"/api/missions/{mission['mission_id']}/commands", json=body)
+    assert reply.json()["reason"]["code"] == code
+
+
+async def test_a_mission_says_what_is_known_of_each_emitter(client):
+    tag = {"emitter_id": "tag", "frequency_hz": 150e6, "kind": "pulsed"}
+    mission = await draft(client, emitters=[{"emitter_id": "beacon"}, tag])
+    assert mission["emitters"] == 2
+    assert [(e["emitter_id"], e["bearings"], e["localized"]) for e in mission["found"]] == [
+        ("beacon", 0, False),
+        ("tag", 0, False),
+    ]
+    assert [reason["code"] for e in mission["found"] for reason in e["not_yet"]] == ["no_bearing_yet"] * 2
+    twice = await client.post("/api/missions", json=spec(emitters=[tag, tag]))
+    is_problem(twice, 422)
+
+
+async def test_a_fault_of_our_own_is_a_problem_with_an_incident(client, vehicle, monkeypatch, caplog):
     def broken() -> None:
         raise RuntimeError("secret detail")
 
-    monkeypatch.setattr(services.missions, "telemetry", broken)
+    monkeypatch.setattr(vehicle, "telemetry", broken)
     reply = await client.get("/api/vehicle")
-    problem = is_problem(reply, 500)
-    assert problem["incident"] in caplog.text
+    reason = is_problem(reply, 500)["reason"]
+    assert reason["code"] == "server_broke"
+    assert reason["incident"] in caplog.text
     assert "secret detail" not in reply.text
 
 

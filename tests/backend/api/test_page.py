@@ -8,7 +8,7 @@ import pytest
 from starlette.staticfiles import StaticFiles
 
 
-async def test_the_page_and_its_deep_links_are_asked_for_anew(client):
+async def test_the_page_and_its_deep_links_are_never_taken_from_a_cache(client):
     for path in ("/", "/missions/abc", "/index.html"):
         reply = await client.get(path)
         assert reply.status_code == 200
@@ -54,4 +54,4 @@ async def test_a_file_that_vanishes_while_it_is_asked_for_is_a_plain_404(client,
     monkeypatch.setattr(StaticFiles, "lookup_path", rebuilt_meanwhile)
     reply = await client.get("/assets/app-1a2b.js")
     assert reply.status_code == 404
-    assert reply.json()["detail"] == "The file /assets/app-1a2b.js was replaced just now; load the page again."
+    assert reply.json()["reason"] == {"what": "file", "which": "/assets/app-1a2b.js", "code": "nothing_there"}

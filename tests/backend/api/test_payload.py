@@ -9,10 +9,11 @@ from dataclasses import replace
 import pytest
 import websockets
 
+from hardware.payload.messages import PROTOCOL
 from hardware.payload.session import PayloadSession
 
 TOKEN = "a token of sixteen letters or more"
-HELLO = {"type": "hello", "protocol": 2, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
+HELLO = {"type": "hello", "protocol": PROTOCOL, "agent": "pi", "stream": "s", "software": "0", "first_seq": 1}
 SAMPLE = [1.7e9, 868.3e6, -80.0, None, False, True]
 SAMPLES = {"type": "samples", "first_seq": 1, "oldest_seq": 1, "clock_offset_s": None, "samples": [SAMPLE] * 3}
 
@@ -71,10 +72,17 @@ async def test_what_is_not_understood_is_told_and_ends_the_talk(served, content)
 async def test_the_console_is_told_how_a_payload_is(client, services):
     hub = services.payload
     session = PayloadSession(hub)
-    hello = {"type": "hello", "protocol": 2, "agent": "pi", "stream": "s1", "software": "crossfix 1", "first_seq": 1}
+    hello = {
+        "type": "hello",
+        "protocol": PROTOCOL,
+        "agent": "pi",
+        "stream": "s1",
+        "software": "crossfix 1",
+        "first_seq": 1,
+    }
     status = {
         "type": "status",
-        "receiver": "listening",
+        "receiver": {"code": "payload_listening", "channels": 1},
         "receiver_ok": True,
         "temperature_c": 51.5,
         "clock_offset_s": 0.25,

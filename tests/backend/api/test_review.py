@@ -16,44 +16,50 @@ from backend.events import (
     AreaChanged,
     BearingExcluded,
     BearingMeasured,
+    BeliefUpdated,
+    CraftSource,
     MissionDrafted,
     MissionEnded,
     MissionStarted,
     PhaseChanged,
     SweepStarted,
 )
-from backend.mission.localization import localization
-from backend.mission.ports import TrackPoint
-from backend.spec import MissionSpec, Place, Polygon, SearchArea
+from backend.ports import TrackPoint
+from backend.reasons.search import Localized
+from backend.search.localization import localization
+from backend.spec import EmitterSpec, MissionSpec, Polygon, SearchArea
 from backend.wire.belief_frame import encode_belief
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
 
 HOME = Place(lat=50.6, lon=7.2)
-FRAME = LocalFrame(GeoPoint(HOME.lat, HOME.lon))
+FRAME = LocalFrame(HOME)
 EMITTER = FRAME.to_geo(30.0, 120.0)
 
 
 def corner(x: float, y: float) -> tuple[float, float]:
     point = FRAME.to_geo(x, y)
-    return point.lon_deg, point.lat_deg
+    return point.lon, point.lat
 
 
 SPEC = MissionSpec(
     name="Owl <7> & \x07 friends",
     area=Polygon(coordinates=[[corner(-150, 0), corner(150, 0), corner(150, 200), corner(-150, 200), corner(-150, 0)]]),
+    emitters=[EmitterSpec(), EmitterSpec(emitter_id="tag", frequency_hz=150e6, label="tag 7")],
 )
-TASK = localization(SPEC, HOME, 100.0)
+TASK, TAG_TASK = localization(SPEC, HOME), localization(SPEC, HOME, "tag")
 
 
 def bearing(number: int, x: float, y: float, error_deg: float = 0.0) -> BearingMeasured:
     here = FRAME.to_geo(x, y)
     true = math.degrees(math.atan2(30.0 - x, 120.0 - y))
     return BearingMeasured(
+        emitter_id="emitter-1",
+        source=CraftSource(craft_id="craft-1"),
         bearing_id=f"b{number}",
         sweep_id=f"s{number}",
         place_number=number,
-        place=Place(lat=here.lat_deg, lon=here.lon_deg),
+        place=here,
         altitude_amsl_m=140.0,
         bearing_deg=(true + error_deg) % 360,
         sigma_deg=7.0,
@@ -68,32 +74,46 @@ def bearing(number: int, x: float, y: float, error_deg: float = 0.0) -> BearingM
 
 BEARINGS = [bearing(1, 0, 0), bearing(2, 150, 60, 90.0), bearing(3, 140, 150)]
 COUNTED = [BEARINGS[0], BEARINGS[2]]
+OF_TAG = bearing(4, 0, 0).model_copy(update={"emitter_id": "tag"})
 
 
 @pytest.fixture
 async def flown(services) -> str:
-    started = MissionStarted(by="operator", home=HOME, home_amsl_m=100.0, software="0")
+    started = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
     events = [MissionDrafted(spec=SPEC), started]
     for number, fact in enumerate(BEARINGS, start=1):
-        events += [SweepStarted(place_number=number, attempt=1), fact, TASK.belief_fact(BEARINGS[:number])[0]]
-    events += [BearingExcluded(bearing_id="b2", by="operator", reason="mirror"), TASK.belief_fact(COUNTED)[0]]
-    events += [PhaseChanged(before="measuring", after="done", reason="localized")]
-    events += [MissionEnded(outcome="localized", reason="within 10 m", mission_time_s=200.0)]
+        events += [
+            SweepStarted(craft_id="craft-1", place_number=number, attempt=1),
+            fact,
+            TASK.belief_fact(BEARINGS[:number])[0],
+        ]
+    excluded = BearingExcluded(emitter_id="emitter-1", bearing_id="b2", by="operator", reason="mirror")
+    events += [OF_TAG, TAG_TASK.belief_fact([OF_TAG])[0], excluded, TASK.belief_fact(COUNTED)[0]]
+    events += [PhaseChanged(craft_id="craft-1", before="measuring", after="returning", reason=Localized())]
+    events += [MissionEnded(outcome="localized", reason=Localized(), mission_time_s=200.0)]
+    events += [PhaseChanged(craft_id="craft-1", before="returning", after="ground", reason=Localized())]
     services.hub.events(await services.journal.append("flown", events))
     points = [TrackPoint(1.7e9 + n, 50.6 + n * 1e-5, 7.2, 140.0, 40.0, 0.0, 80.0, "AUTO") for n in range(4)]
-    await services.journal.save_track("flown", points)
+    await services.journal.save_track("flown", "craft-1", points)
     power = np.array([-80.0, math.nan, -70.0])
-    sweep = Sweep(np.array([10.0, 10.5, 11.0]), np.array([0.0, 15.0, 30.0]), power, 868e6, GeoPoint(50.6, 7.2), 140.0)
-    await services.journal.save_sweep("flown", "s1", 1, 1, sweep)
+    sweep = Sweep(np.array([10.0, 10.5, 11.0]), np.array([0.0, 15.0, 30.0]), power, 868e6, Place(50.6, 7.2), 140.0)
+    await services.journal.save_sweep("flown", "s1", "craft-1", "emitter-1", 1, 1, sweep)
     return "/api/missions/flown"
 
 
-async def test_the_mission_tells_how_it_ended(client, flown):
+async def test_the_mission_tells_how_it_ended_and_what_is_known_of_each_emitter(client, flown):
     mission = (await client.get(flown)).json()
-    assert (mission["phase"], mission["outcome"], mission["outcome_reason"]) == ("done", "localized", "within 10 m")
-    assert (mission["bearings"], mission["editable"]) == (2, False)
-    estimate = mission["estimate"]
-    east, north = FRAME.to_enu(GeoPoint(estimate["lat"], estimate["lon"]))
+    assert (mission["phase"], mission["outcome"]) == ("done", "localized")
+    assert mission["outcome_reason"] == {"code": "localized"}
+    assert (mission["bearings"], mission["editable"], mission["flying"]) == (3, False, False)
+    first, tag = mission["found"]
+    assert [(e["emitter_id"], e["bearings"], e["localized"]) for e in (first, tag)] == [
+        ("emitter-1", 2, TASK.belief_fact(COUNTED)[0].localized),
+        ("tag", 1, False),
+    ]
+    assert tag["not_yet"]
+    estimate = first["estimate"]
+    east, north = FRAME.to_enu(Place(estimate["lat"], estimate["lon"]))
     assert math.hypot(east - 30, north - 120) < 3 * estimate["expected_rmse_m"]
 
 
@@ -106,46 +126,74 @@ async def test_events_come_in_pages(client, flown):
     assert seqs == list(range(1, page["last_seq"] + 1))
 
 
-@pytest.mark.parametrize("counted", [[], BEARINGS[:1], COUNTED, BEARINGS])
-async def test_a_past_belief_is_rebuilt_as_it_was(client, flown, counted):
-    """After two bearings: the later of the two beliefs, without the excluded bearing."""
-    _, belief = TASK.belief_fact(counted)
-    for lite in (False, True):
-        reply = await client.get(f"{flown}/beliefs/{len(counted)}", params={"lite": lite})
-        corners = TASK.corners_lon_lat(belief)
-        assert reply.content == encode_belief("flown", len(counted), belief.density, corners, lite=lite)
+async def test_a_past_belief_is_rebuilt_as_it_was(client, services, flown):
+    """At every event: the belief of the last BeliefUpdated until then, with that event's number."""
+    told, seq = [], 0
+    for record in await services.journal.read("flown"):
+        match record.event:
+            case BearingMeasured(emitter_id="emitter-1") as measured:
+                told.append(measured)
+            case BearingExcluded():
+                told = COUNTED
+            case BeliefUpdated(emitter_id="emitter-1"):
+                seq, counted = record.seq, list(told)
+            case _:
+                pass
+        if seq == 0:
+            continue
+        _, belief = TASK.belief_fact(counted)
+        for lite in (False, True):
+            reply = await client.get(f"{flown}/beliefs", params={"seq": record.seq, "lite": lite})
+            corners = TASK.corners_lon_lat(belief)
+            frame = encode_belief("flown", "emitter-1", seq, len(counted), belief.density, corners, lite=lite)
+            assert reply.content == frame
 
 
-async def test_a_belief_from_before_a_bearing_was_left_out_or_the_area_changed_is_rebuilt_too(client, services, flown):
-    _, earlier = TASK.belief_fact(BEARINGS[:2])
+async def test_the_belief_about_another_emitter_is_asked_for_by_its_name(client, services, flown):
+    (seq,) = [
+        r.seq
+        for r in await services.journal.read("flown")
+        if isinstance(r.event, BeliefUpdated) and r.event.emitter_id == "tag"
+    ]
+    _, belief = TAG_TASK.belief_fact([OF_TAG])
+    reply = await client.get(f"{flown}/beliefs", params={"emitter": "tag"})
+    assert reply.content == encode_belief(
+        "flown", "tag", seq, 1, belief.density, TAG_TASK.corners_lon_lat(belief), lite=False
+    )
+    unknown = await client.get(f"{flown}/beliefs", params={"emitter": "fox"})
+    assert (unknown.status_code, unknown.json()["reason"]["what"]) == (404, "belief")
+
+
+async def test_a_belief_from_before_the_area_changed_is_rebuilt_too(client, services, flown):
     recorded = await services.journal.read("flown")
-    excluded = next(r.seq for r in recorded if r.event.kind == "bearing_excluded")
-    reply = await client.get(f"{flown}/beliefs/2", params={"seq": excluded})
-    assert reply.content == encode_belief("flown", 2, earlier.density, TASK.corners_lon_lat(earlier), lite=False)
-
+    flown_seq = max(r.seq for r in recorded if r.event.kind == "belief_updated")
     west = Polygon(coordinates=[[corner(-150, 0), corner(50, 0), corner(50, 200), corner(-150, 200), corner(-150, 0)]])
-    task = localization(SPEC.model_copy(update={"area": west}), HOME, 100.0)
+    task = localization(SPEC.model_copy(update={"area": west}), HOME)
     fact, later = task.belief_fact(COUNTED)
-    search = SearchArea(area=west, prior=SPEC.prior, fence=None, fence_margin_m=60.0, no_fly=[])
-    changed = AreaChanged(search=search, by="operator")
-    await services.journal.append("flown", [changed, fact])
-    frames = [(await client.get(f"{flown}/beliefs/2", params=q)).content for q in ({"seq": recorded[-1].seq}, {})]
+    search = SearchArea(area=west, priors={}, fence=None, fence_margin_m=60.0, no_fly=[])
+    _, new = await services.journal.append("flown", [AreaChanged(search=search, by="operator"), fact])
+    frames = [(await client.get(f"{flown}/beliefs", params=q)).content for q in ({"seq": recorded[-1].seq}, {})]
     _, before = TASK.belief_fact(COUNTED)
     assert frames == [
-        encode_belief("flown", 2, before.density, TASK.corners_lon_lat(before), lite=False),
-        encode_belief("flown", 2, later.density, task.corners_lon_lat(later), lite=False),
+        encode_belief("flown", "emitter-1", flown_seq, 2, before.density, TASK.corners_lon_lat(before), lite=False),
+        encode_belief("flown", "emitter-1", new.seq, 2, later.density, task.corners_lon_lat(later), lite=False),
     ]
 
 
-async def test_there_is_no_belief_beyond_the_last_bearing(client, flown):
-    assert (await client.get(f"{flown}/beliefs/4")).status_code == 404
+async def test_before_the_first_bearing_there_is_the_prior(client, flown):
+    _, prior = TASK.belief_fact([])
+    reply = await client.get(f"{flown}/beliefs", params={"seq": 4})
+    assert reply.content == encode_belief(
+        "flown", "emitter-1", 0, 0, prior.density, TASK.corners_lon_lat(prior), lite=False
+    )
 
 
 async def test_a_draft_shows_its_prior(client):
     spec = SPEC.model_dump(mode="json")
     mission_id = (await client.post("/api/missions", json=spec)).json()["mission_id"]
-    assert (await client.get(f"/api/missions/{mission_id}/beliefs/0")).status_code == 200
-    assert (await client.get(f"/api/missions/{mission_id}/beliefs/1")).status_code == 404
+    reply = await client.get(f"/api/missions/{mission_id}/beliefs")
+    assert reply.status_code == 200
+    assert b'"seq":0' in reply.content
 
 
 async def test_a_raw_sweep_is_told_sample_by_sample(client, flown):
@@ -156,15 +204,17 @@ async def test_a_raw_sweep_is_told_sample_by_sample(client, flown):
 
 
 async def test_the_track_is_told_point_by_point(client, flown):
-    points = (await client.get(f"{flown}/track")).json()["points"]
-    assert [point["lat"] for point in points] == pytest.approx([50.6, 50.60001, 50.60002, 50.60003])
+    track = (await client.get(f"{flown}/track")).json()
+    assert track["craft_id"] == "craft-1"
+    assert [point["lat"] for point in track["points"]] == pytest.approx([50.6, 50.60001, 50.60002, 50.60003])
+    assert (await client.get(f"{flown}/track", params={"craft": "craft-2"})).json()["points"] == []
 
 
 async def test_the_bearing_file_has_the_columns_of_uavrt(client, flown):
     reply = await client.get(f"{flown}/export/csv")
     rows = list(csv.reader(io.StringIO(reply.text)))
-    assert [row[1] for row in rows] == ["s1", "s3"]
-    for row, fact in zip(rows, COUNTED, strict=True):
+    assert [(row[0], row[1]) for row in rows] == [("1", "s1"), ("1", "s3"), ("2", "s4")]
+    for row, fact in zip(rows, [*COUNTED, OF_TAG], strict=True):
         assert len(row) == 10
         numbers = [float(row[column]) for column in (2, 3, 4, 5, 6, 7)]
         wanted = [fact.bearing_deg, fact.quality, fact.place.lat, fact.place.lon, 40.0, 140.0]
@@ -181,15 +231,16 @@ async def test_geojson_shows_where_and_what(client, flown):
     assert {what: len(features) for what, features in found.items()} == {
         "area": 1,
         "track": 1,
-        "place": 3,
-        "bearing": 3,
-        "estimate": 1,
-        "c95": 1,
+        "place": 4,
+        "bearing": 4,
+        "estimate": 2,
+        "c95": 2,
     }
-    assert [f["properties"]["excluded"] for f in found["bearing"]] == [False, True, False]
-    for feature, fact in zip(found["bearing"], BEARINGS, strict=True):
+    assert [f["properties"]["excluded"] for f in found["bearing"]] == [False, True, False, False]
+    assert [f["properties"]["emitter"] for f in found["estimate"]] == [e.label for e in SPEC.emitters]
+    for feature, fact in zip(found["bearing"], [*BEARINGS, OF_TAG], strict=True):
         (lon0, lat0), (lon1, lat1) = feature["geometry"]["coordinates"]
-        east, north = LocalFrame(GeoPoint(lat0, lon0)).to_enu(GeoPoint(lat1, lon1))
+        east, north = LocalFrame(Place(lat0, lon0)).to_enu(Place(lat1, lon1))
         turned = (math.degrees(math.atan2(east, north)) - fact.bearing_deg + 180) % 360 - 180
         assert abs(turned) < 0.01
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from backend.mission.localization import localization
-from backend.spec import MissionSpec, Place
-from hardware.readings import GeoPoint, Telemetry
+from backend.search.localization import localization
+from backend.spec import MissionSpec
+from hardware.readings import Place, Telemetry
 
 GONE = Telemetry(connected=False, at_s=0.0)
 
@@ -14,30 +14,30 @@ GONE = Telemetry(connected=False, at_s=0.0)
 async def test_all_is_well(client):
     health = (await client.get("/api/health")).json()
     assert health["state"] == "ok"
-    assert health["database"] == {"state": "ok", "kind": "sqlite", "detail": "", "spooled": 0}
-    assert health["vehicle"] == {"connected": True, "autopilot": "px4", "detail": ""}
+    assert health["database"] == {"state": "ok", "kind": "sqlite", "reason": None, "spooled": 0}
+    assert health["vehicles"] == [{"craft_id": "craft-1", "connected": True, "autopilot": "px4", "reason": None}]
 
 
-async def test_a_missing_vehicle_is_said_in_words(client, services):
-    services.missions.heard = GONE
+async def test_a_missing_vehicle_is_said_with_its_reason(client, vehicle):
+    vehicle.heard_last = GONE
     health = (await client.get("/api/health")).json()
     assert health["state"] == "degraded"
-    assert "No vehicle" in health["vehicle"]["detail"]
+    assert [vehicle["reason"]["code"] for vehicle in health["vehicles"]] == ["no_link"]
 
 
 async def test_the_suggested_mission_can_be_flown_from_home(client):
     defaults = (await client.get("/api/defaults")).json()
     assert defaults["home"] == {"lat": 50.6, "lon": 7.2}
     spec = MissionSpec.model_validate(defaults["spec"])
-    task = localization(spec, Place(**defaults["home"]), 100.0)
+    task = localization(spec, Place(**defaults["home"]))
     x, y = task.problem.area[0].T
     assert math.isclose(x.min(), -x.max(), abs_tol=0.1)
     assert abs(y.min()) < 0.1
     assert (await client.post("/api/missions", json=defaults["spec"])).status_code == 201
 
 
-async def test_without_a_vehicle_the_area_lies_around_the_configured_place(client, services, settings):
-    services.missions.heard = GONE
+async def test_without_a_vehicle_the_area_lies_around_the_configured_place(client, vehicle, settings):
+    vehicle.heard_last = GONE
     defaults = (await client.get("/api/defaults")).json()
     assert defaults["home"] is None
     lon, lat = defaults["spec"]["area"]["coordinates"][0][0]
@@ -45,11 +45,11 @@ async def test_without_a_vehicle_the_area_lies_around_the_configured_place(clien
     assert abs(lon - settings.home_lon_deg) < 0.01
 
 
-async def test_every_value_has_its_age_and_nan_is_unknown(client, services):
-    services.missions.heard = Telemetry(
+async def test_every_value_has_its_age_and_nan_is_unknown(client, services, vehicle):
+    vehicle.heard_last = Telemetry(
         connected=True,
         at_s=services.now() - 1,
-        position=GeoPoint(50.6, 7.2),
+        position=Place(50.6, 7.2),
         position_at_s=services.now() - 2,
         heading_deg=math.nan,
         heading_at_s=services.now() + 1,
@@ -62,3 +62,11 @@ async def test_every_value_has_its_age_and_nan_is_unknown(client, services):
     assert (told["heading_deg"], told["heading_age_s"]) == (None, 0.0)
     assert (told["ground_speed_m_s"], told["climb_m_s"]) == (5.0, 1.0)
     assert (told["battery_percent"], told["battery_age_s"]) == (None, None)
+
+
+async def test_a_craft_is_asked_by_its_name(client):
+    told = (await client.get("/api/vehicle", params={"craft": "craft-1"})).json()
+    assert (told["craft_id"], told["who"]) == ("craft-1", "nobody")
+    unknown = await client.get("/api/vehicle", params={"craft": "craft-9"})
+    assert unknown.status_code == 404
+    assert unknown.json()["reason"] == {"what": "craft", "which": "craft-9", "code": "nothing_there"}

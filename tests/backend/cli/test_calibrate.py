@@ -14,11 +14,11 @@ from typer.testing import CliRunner
 from backend.cli.calibrate import calibrate
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 APP = typer.Typer()
 APP.command()(calibrate)
-EMITTER = GeoPoint(50.6, 7.2)
+EMITTER = Place(50.6, 7.2)
 
 
 def flight(tmp_path: Path, offset_deg: float = 0.0) -> list[str]:
@@ -28,7 +28,7 @@ def flight(tmp_path: Path, offset_deg: float = 0.0) -> list[str]:
         place = LocalFrame(EMITTER).to_geo(150.0 * math.sin(angle), 150.0 * math.cos(angle))
         heading = np.arange(0.0, 360.0, 3.0)
         power = -50.0 - 5.0 * k + load_pattern(SMALL_YAGI).gain_at(bearing - heading - offset_deg)
-        rows = [f"{place.lat_deg},{place.lon_deg},{h},{p}" for h, p in zip(heading, power, strict=True)]
+        rows = [f"{place.lat},{place.lon},{h},{p}" for h, p in zip(heading, power, strict=True)]
         path = tmp_path / f"sweep{k}.csv"
         path.write_text("lat,lon,heading_deg,power_db\n" + "\n".join(rows))
         files.append(str(path))

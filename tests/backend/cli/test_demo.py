@@ -5,22 +5,42 @@ from datetime import UTC, datetime
 
 import pytest
 
-from backend.cli.demo import MissionLog, _sentence, summary
-from backend.events import BeliefUpdated, EstimateFact, Event, MissionEnded, Recorded
+from backend.cli.demo import CARRIER, TAG, simulated, sought
+from backend.cli.demo_grade import MissionLog, sentences, summary
+from backend.cli.progress import progress_line
+from backend.events import (
+    FIRST_CRAFT,
+    BeliefUpdated,
+    EstimateFact,
+    Event,
+    MissionDrafted,
+    MissionEnded,
+    PhaseChanged,
+    Recorded,
+    SweepStarted,
+)
+from backend.reasons import NotLocalized, PlacesUsedUp
+from backend.reasons.search import Localized
 from backend.settings import Settings
-from backend.spec import Polygon
+from backend.spec import FIRST_EMITTER, EmitterSpec, MissionSpec, Polygon
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
-TRUTH = GeoPoint(50.0, 7.0)
+TRUTH = Place(50.0, 7.0)
+TRUTHS = {EmitterSpec().frequency_hz: TRUTH}
 
 
-def log(*events: Event) -> MissionLog:
+def log(*events: Event, emitters: list[EmitterSpec] | None = None) -> MissionLog:
     at = datetime(2026, 1, 1, tzinfo=UTC)
-    return MissionLog("m", [Recorded(seq=i, mission_id="m", at_utc=at, event=e) for i, e in enumerate(events, 1)])
+    ring = [(7.0, 50.0), (7.01, 50.0), (7.0, 50.01), (7.0, 50.0)]
+    drafted = MissionDrafted(
+        spec=MissionSpec(name="m", area=Polygon(coordinates=[ring]), emitters=emitters or sought(CARRIER, 1))
+    )
+    told = [drafted, *events]
+    return MissionLog("m", [Recorded(seq=i, mission_id="m", at_utc=at, event=e) for i, e in enumerate(told, 1)])
 
 
-def belief(east: float, size: float) -> BeliefUpdated:
+def belief(east: float, size: float, emitter_id: str = FIRST_EMITTER) -> BeliefUpdated:
     frame = LocalFrame(TRUTH)
     place = frame.to_geo(east, 0.0)
     corners = (
@@ -30,10 +50,10 @@ def belief(east: float, size: float) -> BeliefUpdated:
         (east - size, size),
         (east - size, -size),
     )
-    ring = [(p.lon_deg, p.lat_deg) for p in (frame.to_geo(*corner) for corner in corners)]
+    ring = [(p.lon, p.lat) for p in (frame.to_geo(*corner) for corner in corners)]
     estimate = EstimateFact(
-        lat=place.lat_deg,
-        lon=place.lon_deg,
+        lat=place.lat,
+        lon=place.lon,
         expected_rmse_m=4.0,
         c95=Polygon(coordinates=[ring]),
         c95_area_m2=4 * size**2,
@@ -41,30 +61,63 @@ def belief(east: float, size: float) -> BeliefUpdated:
         minor_axis_m=2.0,
         major_axis_deg=10.0,
     )
-    return BeliefUpdated(bearings=2, estimate=estimate, consistent=True, localized=True, not_yet=[], digest="d")
+    return BeliefUpdated(
+        emitter_id=emitter_id, bearings=2, estimate=estimate, consistent=True, localized=True, not_yet=[], digest="d"
+    )
 
 
 def ended(outcome: str) -> MissionEnded:
-    return MissionEnded(outcome=outcome, reason="because", mission_time_s=95.0)  # type: ignore[arg-type]
+    reason = Localized() if outcome == "localized" else NotLocalized(PlacesUsedUp(3))
+    return MissionEnded(outcome=outcome, reason=reason, mission_time_s=95.0)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("east", "size", "inside"), [(3.0, 10.0, True), (30.0, 10.0, False)])
 def test_the_last_estimate_is_compared_with_the_truth(east: float, size: float, inside: bool) -> None:
-    result = summary(log(belief(100.0, 5.0), belief(east, size), ended("localized")), Settings(seed=7), TRUTH)
+    result = summary(log(belief(100.0, 5.0), belief(east, size), ended("localized")), Settings(seed=7), TRUTHS)
     assert result["localized"]
     assert result["error_m"] == pytest.approx(east, rel=1e-3)
     assert result["in_c95"] is inside
     assert result["seed"] == 7
     assert result["database"].endswith("crossfix.sqlite")
     json.dumps(result, allow_nan=False)
-    assert f"{east:.1f} m from the emitter" in _sentence(result)
+    assert f"{east:.1f} m from the emitter" in sentences(result)[0]
+    assert "emitters" not in result
 
 
 def test_not_localized_is_said_with_its_reason_and_no_made_up_numbers() -> None:
-    nothing = BeliefUpdated(bearings=3, estimate=None, consistent=False, localized=False, not_yet=["x"], digest="d")
-    result = summary(log(nothing, ended("not_localized")), Settings(), TRUTH)
+    nothing = BeliefUpdated(
+        emitter_id=FIRST_EMITTER, bearings=3, estimate=None, consistent=False, localized=False, not_yet=[], digest="d"
+    )
+    result = summary(log(nothing, ended("not_localized")), Settings(), TRUTHS)
     assert not result["localized"]
     assert result["error_m"] is None
     assert result["in_c95"] is None
     assert result["expected_rmse_m"] is None
-    assert "because" in _sentence(result)
+    assert result["reason"].startswith("Not localized. 3 places were used")
+    assert result["reason"] in sentences(result)[0]
+
+
+def test_every_emitter_is_graded_against_its_own_truth() -> None:
+    emitters = sought(CARRIER, 2)
+    flown = log(belief(3.0, 10.0), belief(30.0, 10.0, "emitter-2"), ended("localized"), emitters=emitters)
+    result = summary(flown, Settings(), {emitter.frequency_hz: TRUTH for emitter in emitters})
+    assert [graded["emitter_id"] for graded in result["emitters"]] == ["emitter-1", "emitter-2"]
+    assert [graded["in_c95"] for graded in result["emitters"]] == [True, False]
+    assert result["emitters"][1]["error_m"] == pytest.approx(30.0, rel=1e-3)
+    assert result["error_m"] == result["emitters"][0]["error_m"]
+    assert len(sentences(result)) == 3
+
+
+@pytest.mark.parametrize("first", [CARRIER, TAG])
+def test_every_emitter_sought_is_simulated_once(first: EmitterSpec) -> None:
+    emitters = sought(first, 8)
+    there = [emitter.frequency_hz for emitter in simulated(emitters)]
+    assert len(set(there)) == len(there)
+    assert {emitter.frequency_hz for emitter in emitters} <= set(there)
+
+
+def test_progress_tells_of_phases_and_estimates_and_little_else() -> None:
+    changed = PhaseChanged(craft_id=FIRST_CRAFT, before="measuring", after="returning", reason=Localized())
+    assert progress_line(changed) == "craft-1: returning: Localized: the expected error is below the threshold."
+    assert progress_line(belief(3.0, 10.0)) == "emitter-1: localized, expected error 4.0 m"
+    assert progress_line(SweepStarted(craft_id=FIRST_CRAFT, place_number=1, attempt=1)) is None

@@ -13,11 +13,11 @@ from typer.testing import CliRunner
 
 from backend.cli.localize import localize
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
 APP = typer.Typer()
 APP.command()(localize)
-FRAME = LocalFrame(GeoPoint(50.6, 7.2))
+FRAME = LocalFrame(Place(50.6, 7.2))
 
 
 def bearing_to(x: float, y: float, east: float, north: float) -> float:
@@ -29,7 +29,7 @@ def written(tmp_path: Path, rows: list[tuple[float, float, float]], sigma: float
     lines = ["lat,lon,bearing_deg,sigma_deg"]
     for east, north, bearing in rows:
         place = FRAME.to_geo(east, north)
-        lines.append(f"{place.lat_deg},{place.lon_deg},{bearing},{sigma}")
+        lines.append(f"{place.lat},{place.lon},{bearing},{sigma}")
     path = tmp_path / "bearings.csv"
     path.write_text("\n".join(lines))
     return path
@@ -39,13 +39,13 @@ def test_crossing_bearings_find_the_emitter(tmp_path: Path) -> None:
     rows = [(x, y, bearing_to(x, y, 120.0, 140.0)) for x, y in ((0, 0), (250, 0), (100, 350), (-80, 150))]
     result = CliRunner().invoke(APP, [str(written(tmp_path, rows)), "--json"])
     answer = json.loads(result.stdout)
-    east, north = FRAME.to_enu(GeoPoint(answer["estimate"]["lat"], answer["estimate"]["lon"]))
+    east, north = FRAME.to_enu(Place(answer["estimate"]["lat"], answer["estimate"]["lon"]))
     assert result.exit_code == 0
     assert math.hypot(east - 120.0, north - 140.0) < 6.0
     assert 0.0 < answer["expected_rmse_m"] < 20.0
     assert answer["consistent"] is True
     truth = FRAME.to_geo(120.0, 140.0)
-    assert shape(answer["c95"]).contains(Point(truth.lon_deg, truth.lat_deg))
+    assert shape(answer["c95"]).contains(Point(truth.lon, truth.lat))
 
 
 def test_one_bearing_is_answered_honestly(tmp_path: Path) -> None:
@@ -66,7 +66,7 @@ def test_contradicting_bearings_give_no_estimate(tmp_path: Path) -> None:
 
 def test_area_option_bounds_the_estimate(tmp_path: Path) -> None:
     corners = [FRAME.to_geo(x, y) for x, y in ((50, 50), (150, 50), (150, 150), (50, 150), (50, 50))]
-    polygon = {"type": "Polygon", "coordinates": [[[p.lon_deg, p.lat_deg] for p in corners]]}
+    polygon = {"type": "Polygon", "coordinates": [[[p.lon, p.lat] for p in corners]]}
     area = tmp_path / "area.geojson"
     area.write_text(json.dumps({"type": "Feature", "properties": {}, "geometry": polygon}))
     path = written(tmp_path, [(0, 0, 45.0)])

@@ -53,11 +53,11 @@ def test_systemd_unit_without_crossfix_on_the_path_starts_a_program_that_runs(mo
         ({"--server": "http://x"}, "websocket address"),
         ({"--token": "short"}, "token"),
         ({"--receiver": "radio"}, "is not understood"),
-        ({"--receiver": "sigmf:nothing.sigmf-meta"}, "SigMF"),
+        ({"--receiver": "sigmf:nothing.sigmf-meta"}, "nothing.sigmf-meta"),
         ({"--receiver": "rtl_tcp://host:port"}, "port"),
         ({"--frequency-hz": "-5"}, "frequency_hz"),
         ({"--pulse-width-s": None}, "both"),
-        ({"--pulse-width-s": "9"}, "cannot be"),
+        ({"--pulse-width-s": "9"}, "is impossible"),
         ({"--server": None}, "--server"),
     ],
 )

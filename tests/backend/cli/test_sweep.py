@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from backend.cli.sweep import sweep
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sdr.sigmf_file import Azimuth, write_sigmf
 
 APP = typer.Typer()
@@ -96,14 +96,14 @@ def test_a_turn_recorded_as_sigmf_prints_the_same_object(tmp_path: Path) -> None
     noise = np.random.default_rng(1).normal(size=(2, t.size)) * 1e-4
     iq = 10.0 ** (gain_db / 20.0 - 1.0) * np.exp(2j * np.pi * 900.0 * t) + noise[0] + 1j * noise[1]
     azimuths = [Azimuth(int(s * rate_hz), 0, 30.0 * s % 360.0) for s in np.arange(0.0, 12.0, 0.1)]
-    place = GeoPoint(50.5, 7.5)
+    place = Place(50.5, 7.5)
     path = write_sigmf(tmp_path / "turn", iq.astype(np.complex64), rate_hz, centre_hz, 1.78e9, azimuths, place)
     result = CliRunner().invoke(APP, [str(path), "--json"])
     answer = json.loads(result.stdout)
     assert answer.keys() == json.loads(CliRunner().invoke(APP, [str(recording(tmp_path, 0.0)), "--json"]).stdout).keys()
     assert answer["bearing_deg"] == pytest.approx(300.0, abs=1.0)
     assert (answer["lat"], answer["lon"], answer["accepted"]) == (50.5, 7.5, True)
-    assert "strongest signal" in result.stderr
+    assert "The strongest signal" in result.stderr
     headings = tmp_path / "nose.csv"
     headings.write_text("\n".join(f"{s},{(30.0 * s - 40.0) % 360.0}" for s in np.arange(0.0, 12.1, 0.1)))
     given = ["--headings", str(headings), "--offset", "40", "--frequency-hz", str(centre_hz + 900.0), "--json"]
@@ -112,4 +112,4 @@ def test_a_turn_recorded_as_sigmf_prints_the_same_object(tmp_path: Path) -> None
     path.with_suffix(".sigmf-data").unlink()
     gone = CliRunner().invoke(APP, [str(path)])
     assert gone.exit_code == 2
-    assert "turn.sigmf-data is missing" in gone.stderr
+    assert "lacks its file turn.sigmf-data" in gone.stderr

@@ -15,17 +15,18 @@ from hypothesis import strategies as st
 from backend.events import HoldOrdered, Recorded, SweepStarted
 from backend.live.hub import FEEDS, RING, STALLED_S, Hub, Viewer
 from backend.live.viewer import ViewerStalled, serve
-from backend.mission.ports import Status
-from hardware.readings import GeoPoint, Telemetry
+from backend.ports import CraftStatus, Status
+from hardware.readings import Place, Telemetry
 from planner.belief.grid import GridBelief
 
 AT = datetime(2026, 1, 1, tzinfo=UTC)
-TELEMETRY = Telemetry(connected=True, at_s=100.0, position=GeoPoint(50.6, 7.2), position_at_s=99.0)
-STATUS = Status("m", "flying", "flying", None, "ok", None, None, None, "ok")
+TELEMETRY = Telemetry(connected=True, at_s=100.0, position=Place(50.6, 7.2), position_at_s=99.0)
+CRAFT = CraftStatus("craft-1", "m", "flying", "ok", -60.0, 0.1, 12.0)
+STATUS = Status("m", "flying", (CRAFT, CraftStatus("craft-2", None, "ground", "off", None, None, None)), "ok")
 
 
 def fact(seq: int, mission_id: str = "m", event=None) -> Recorded:
-    event = event or HoldOrdered(by="operator", reason=str(seq))
+    event = event or HoldOrdered(craft_id="craft-1", by=str(seq), reason=None)
     return Recorded(seq=seq, mission_id=mission_id, at_utc=AT, event=event)
 
 
@@ -182,11 +183,11 @@ def test_no_event_is_lost_or_doubled_whatever_happens(steps):
 
 async def test_a_slow_viewer_gets_the_newest_telemetry_and_what_it_missed_is_counted(bench):
     link = bench.watch()
-    bench.hub.telemetry(TELEMETRY, 100.0)
+    bench.hub.telemetry("craft-1", TELEMETRY, 100.0)
     await settle()
     link.open.clear()
     for second in range(101, 110):
-        bench.hub.telemetry(replace(TELEMETRY, battery_percent=float(second)), float(second))
+        bench.hub.telemetry("craft-1", replace(TELEMETRY, battery_percent=float(second)), float(second))
         await settle()
     link.open.set()
     await settle()
@@ -198,18 +199,22 @@ async def test_a_slow_viewer_gets_the_newest_telemetry_and_what_it_missed_is_cou
 
 async def test_a_new_viewer_sees_the_present_at_once_and_missed_nothing(bench):
     for second in range(5):
-        bench.hub.telemetry(TELEMETRY, 100.0 + second)
+        bench.hub.telemetry("craft-1", TELEMETRY, 100.0 + second)
         bench.hub.status(STATUS)
     link = bench.watch(None)
     await settle()
     assert [m["dropped"] for m in link.of("telemetry")] == [0]
-    assert [m["doing"] for m in link.of("status")] == ["flying"]
+    (status,) = link.of("status")
+    assert (status["phase"], [(c["craft_id"], c["phase"]) for c in status["crafts"]]) == (
+        "flying",
+        [("craft-1", "flying"), ("craft-2", "ground")],
+    )
     assert link.seqs() == []
 
 
 async def test_telemetry_lives_while_a_long_journal_is_caught_up_with(bench):
     bench.happen(400, publish=False)
-    bench.hub.telemetry(TELEMETRY, 100.0)
+    bench.hub.telemetry("craft-1", TELEMETRY, 100.0)
     link = bench.watch()
     for _ in range(5):
         await settle()
@@ -221,20 +226,53 @@ async def test_telemetry_lives_while_a_long_journal_is_caught_up_with(bench):
 async def test_the_belief_comes_in_the_viewers_encoding_and_only_for_its_mission(bench):
     belief = GridBelief(np.full((3, 2), 1 / 6), 0.0, 0.0, 1.0, (), (), 1, True)
     full, lite, other = bench.watch(), bench.watch(lite=True), bench.watch("n")
-    bench.hub.belief("m", 1, belief, [(7.0, 50.0)] * 4)
+    bench.hub.belief("m", "emitter-1", 7, 1, belief, [(7.0, 50.0)] * 4)
     await settle()
     assert [b"f32-shuffle-zlib" in frame for frame in full.got] == [True]
     assert [b"u8-log-zlib" in frame for frame in lite.got] == [True]
     assert other.got == []
 
 
+async def test_the_belief_of_an_event_goes_out_before_the_event(bench):
+    belief = GridBelief(np.full((3, 2), 1 / 6), 0.0, 0.0, 1.0, (), (), 1, True)
+    early = bench.watch()
+    for seq in (1, 2):
+        bench.happen(1)
+        bench.hub.belief("m", "emitter-1", seq, seq, belief, [(7.0, 50.0)] * 4)
+        await settle()
+    late = bench.watch()
+    await settle()
+    kinds = [["belief" if isinstance(content, bytes) else "event" for content in link.got] for link in (early, late)]
+    assert kinds == [["belief", "event"] * 2, ["belief", "event", "event"]]
+
+
+async def test_of_several_craft_and_emitters_each_has_its_newest_value(bench):
+    belief = GridBelief(np.full((3, 2), 1 / 6), 0.0, 0.0, 1.0, (), (), 1, True)
+    link = bench.watch()
+    link.open.clear()
+    await settle()
+    for second in range(3):
+        for craft_id in ("craft-1", "craft-2"):
+            heard = replace(TELEMETRY, battery_percent=float(second))
+            bench.hub.telemetry(craft_id, heard, 100.0 + second)
+        for emitter_id in ("emitter-1", "emitter-2"):
+            bench.hub.belief("m", emitter_id, 7 + second, second, belief, [(7.0, 50.0)] * 4)
+    link.open.set()
+    await settle()
+    newest = {m["craft_id"]: m["battery_percent"] for m in link.of("telemetry")}
+    assert newest == {"craft-1": 2.0, "craft-2": 2.0}
+    frames = [frame for frame in link.got if isinstance(frame, bytes)]
+    assert [b'"seq":9' in frame for frame in frames] == [True, True]
+    assert [name in frame for frame, name in zip(frames, (b"emitter-1", b"emitter-2"), strict=True)] == [True, True]
+
+
 async def test_the_running_sweep_is_thinned_and_forgotten_when_a_new_one_begins(bench):
     link = bench.watch()
-    bench.hub.sweep_progress("m", 1, [float(n) for n in range(1000)], [0.0] * 1000, 100.0)
+    bench.hub.sweep_progress("m", "craft-1", "emitter-1", 1, [float(n) for n in range(1000)], [0.0] * 1000, 100.0)
     await settle()
     (progress,) = link.of("sweep_progress")
     assert 300 <= len(progress["heading_deg"]) == len(progress["power_db"]) <= 360
-    bench.stored.append(fact(1, event=SweepStarted(place_number=1, attempt=2)))
+    bench.stored.append(fact(1, event=SweepStarted(craft_id="craft-1", place_number=1, attempt=2)))
     bench.hub.events(bench.stored)
     late = bench.watch()
     await settle()
@@ -246,7 +284,7 @@ async def test_a_lite_viewer_gets_telemetry_once_a_second_the_last_value_too_and
     full, lite = bench.watch(), bench.watch(lite=True)
     for tick in range(26):
         monkeypatch.setattr(loop, "time", lambda tick=tick: began + tick / 10)
-        bench.hub.telemetry(replace(TELEMETRY, battery_percent=float(tick)), 100.0 + tick / 10)
+        bench.hub.telemetry("craft-1", replace(TELEMETRY, battery_percent=float(tick)), 100.0 + tick / 10)
         bench.happen(1)
         await settle()
     assert len(full.of("telemetry")) == 26
@@ -260,10 +298,10 @@ async def test_a_lite_viewer_gets_telemetry_once_a_second_the_last_value_too_and
 
 async def test_a_lite_viewer_is_told_at_once_that_the_sweep_is_over(bench):
     lite = bench.watch(lite=True)
-    bench.hub.sweep_progress("m", 1, [1.04], [-60.06], 10.0)
+    bench.hub.sweep_progress("m", "craft-1", "emitter-1", 1, [1.04], [-60.06], 10.0)
     await settle()
-    bench.hub.sweep_progress("m", 1, [1.0, 2.0], [-60.0, -61.0], 20.0)
-    bench.stored.append(fact(1, event=SweepStarted(place_number=1, attempt=2)))
+    bench.hub.sweep_progress("m", "craft-1", "emitter-1", 1, [1.0, 2.0], [-60.0, -61.0], 20.0)
+    bench.stored.append(fact(1, event=SweepStarted(craft_id="craft-1", place_number=1, attempt=2)))
     bench.hub.events(bench.stored)
     bench.hub.status(STATUS)
     await settle()
@@ -275,7 +313,7 @@ async def test_a_viewer_that_stands_still_is_no_watcher_and_is_let_go(bench, mon
     link, awake = bench.watch(), bench.watch()
     now = asyncio.get_running_loop().time()
     link.open.clear()
-    bench.hub.telemetry(TELEMETRY, 100.0)
+    bench.hub.telemetry("craft-1", TELEMETRY, 100.0)
     await settle()
     assert bench.hub.watchers() == 2
     monkeypatch.setattr(asyncio.get_running_loop(), "time", lambda: now + STALLED_S + 1)

@@ -14,6 +14,7 @@ from pmtiles.tile import Entry, deserialize_directory, serialize_directory, writ
 
 from backend.maps.archive import Archive, parse_directory, parse_varints
 from backend.maps.refusal import MapRefused
+from planner.reason import remedy_of
 
 
 def test_has_exactly_the_tiles_that_were_written(make_archive) -> None:
@@ -73,10 +74,10 @@ def test_varints_come_back(numbers: list[int]) -> None:
         (b"SQLite format 3\x00" + bytes(200), "MBTiles"),
         (b"\x89PNG" + bytes(200), "PNG picture"),
         (b"<html>" + bytes(200), "XML or a web page"),
-        (b"PMTiles\x03" + bytes(10), "inside its header"),
+        (b"PMTiles\x03" + bytes(10), "header: there is less"),
         (b"PMTiles\x02" + bytes(200), "version 2"),
         (b"PMTiles\x03" + bytes(200), "type unknown"),
-        (b"PMTiles\x03" + b"\xff" * 200, "header is not valid"),
+        (b"PMTiles\x03" + b"\xff" * 200, "header: it cannot be read"),
     ],
 )
 def test_other_files_are_named_for_what_they_are(tmp_path: Path, content: bytes, words: str) -> None:
@@ -84,14 +85,14 @@ def test_other_files_are_named_for_what_they_are(tmp_path: Path, content: bytes,
     path.write_bytes(content)
     with pytest.raises(MapRefused, match=words) as refusal:
         Archive(path)
-    assert refusal.value.remedy
+    assert remedy_of(refusal.value.reason)
 
 
 def test_an_archive_cut_off_is_refused(make_archive) -> None:
     path = make_archive([(1, 0, 0), (1, 1, 0)])
     content = path.read_bytes()
     path.write_bytes(content[:-10])
-    with pytest.raises(MapRefused, match="incomplete"):
+    with pytest.raises(MapRefused, match="less than it states"):
         Archive(path).check()
 
 
@@ -100,7 +101,7 @@ def test_tiles_of_another_type_than_stated_are_refused(make_archive) -> None:
     content = bytearray(path.read_bytes())
     content[99] = 3
     path.write_bytes(content)
-    with pytest.raises(MapRefused, match="says its tiles are jpeg, but the first one is png"):
+    with pytest.raises(MapRefused, match="first tile: the picture is not of the type"):
         Archive(path).check()
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from backend.maps.drawing import map_layers
 from backend.maps.schemas import SCHEMAS
+from backend.reasons.maps import MapDrawnPlainly
 from backend.wire.maps import MapPackage, VectorLayer
 
 
@@ -53,7 +54,7 @@ def test_layers_that_are_not_there_are_not_drawn() -> None:
 def test_an_unknown_schema_is_drawn_by_geometry_and_said_so() -> None:
     drawn = map_layers(package("vector", ["contours", "my_lakes"], ["height"]), "light", None)
     assert {layer["type"] for layer in drawn.layers} == {"fill", "line", "circle"}
-    assert "no schema" in drawn.notes[0]
+    assert drawn.notes == [MapDrawnPlainly("schema_unknown")]
     fills = {layer["source-layer"]: layer["paint"]["fill-color"] for layer in drawn.layers if layer["type"] == "fill"}
     assert fills["contours"] != fills["my_lakes"]
 
@@ -61,7 +62,7 @@ def test_an_unknown_schema_is_drawn_by_geometry_and_said_so() -> None:
 def test_an_archive_without_layer_names_says_so() -> None:
     drawn = map_layers(package("vector", []), "light", None)
     assert drawn.layers == []
-    assert "does not say" in drawn.notes[0]
+    assert drawn.notes == [MapDrawnPlainly("layers_not_named")]
 
 
 def test_pictures_keep_their_pixels_and_are_dimmed_in_the_dark() -> None:

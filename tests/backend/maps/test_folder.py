@@ -11,7 +11,8 @@ import pytest
 
 from backend.maps import folder as folder_module
 from backend.maps.folder import MapFolder
-from backend.maps.refusal import MapRefused, NoRoom, NotStored
+from backend.maps.refusal import MapRefused, NotStored
+from backend.reasons.maps import MapLabelDamaged, NotAnArchive, PutByHand
 
 NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
@@ -117,7 +118,7 @@ async def test_the_reserve_stays_free(folder: MapFolder, make_archive, monkeypat
     full = MapFolder(folder.directory, reserve_bytes=2**60)
     assert full.room_bytes() == 0
     for announced in (len(content), None):
-        with pytest.raises(NoRoom, match="does not fit"):
+        with pytest.raises(MapRefused, match="does not fit"):
             await full.store(pieces(content), "big", announced, NOW)
     assert files(folder) == []
 
@@ -143,9 +144,11 @@ async def test_a_file_put_there_by_hand_is_named_not_shown(folder: MapFolder, ma
     (folder.directory / f"{unlabelled.map_id}.json").write_text("{}")
     packages, unusable = folder.packages()
     assert [package.name for package in packages] == ["good"]
-    assert len(unusable) == 3
-    assert any("label is missing or damaged" in sentence for sentence in unusable)
-    assert any("mine.pmtiles was put into the map folder by hand" in sentence for sentence in unusable)
+    assert {found.file: found.because for found in unusable} == {
+        "mine.pmtiles": PutByHand(),
+        "0123456789abcdef.pmtiles": NotAnArchive(None),
+        f"{unlabelled.map_id}.pmtiles": MapLabelDamaged(),
+    }
 
 
 async def test_a_deleted_map_is_gone(folder: MapFolder, make_archive) -> None:

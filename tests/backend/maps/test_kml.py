@@ -9,6 +9,7 @@ import pytest
 
 from backend.maps.kml import read_kml, read_kmz
 from backend.maps.refusal import MapRefused
+from backend.reasons.maps import FileLeftOut, KindLeftOut, PartLeftOut
 
 
 def kml(body: str) -> bytes:
@@ -93,20 +94,21 @@ def test_what_is_not_drawn_is_named() -> None:
         )
     )
     assert len(reading.features) == 1
-    notes = "\n".join(reading.notes)
-    assert 'Placemark 1 "empty" is left out: it has no geometry' in notes
-    assert "Placemark 2 is left out: its coordinates 'north,east' are not numbers" in notes
-    assert "Placemark 3 is left out" in notes
-    assert "Placemark 4 is left out" in notes
-    assert "A link to another file (NetworkLink, 1 times)" in notes
-    assert "A picture on the ground (GroundOverlay, 2 times)" in notes
+    assert reading.notes == [
+        PartLeftOut("placemark", '1 "empty"', "missing"),
+        PartLeftOut("placemark", "2", "not_numbers"),
+        PartLeftOut("placemark", "3", "in_metres"),
+        PartLeftOut("placemark", "4", "no_position"),
+        KindLeftOut("NetworkLink", 1),
+        KindLeftOut("GroundOverlay", 2),
+    ]
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
         (b"<kml>", "not valid XML"),
-        (b"<gpx></gpx>", "first element is <gpx>"),
+        (b"<gpx></gpx>", "first element is not <kml>"),
         (b'<!DOCTYPE kml [<!ENTITY a "b">]><kml>&a;</kml>', "document type definition"),
     ],
 )
@@ -117,7 +119,7 @@ def test_other_xml_is_refused(content: bytes, words: str) -> None:
 
 def test_nested_without_end_is_named() -> None:
     deep = "<MultiGeometry>" * 200 + POINT + "</MultiGeometry>" * 200
-    assert "nested" in read_kml(kml(placemark(deep))).notes[0]
+    assert read_kml(kml(placemark(deep))).notes == [PartLeftOut("placemark", "1", "nested_too_deep")]
 
 
 def kmz(**files: bytes) -> bytes:
@@ -132,11 +134,11 @@ def test_a_kmz_is_its_main_file() -> None:
     other = kml(placemark("<Point><coordinates>1,1</coordinates></Point>"))
     reading = read_kmz(kmz(a_kml=other, doc_kml=kml(placemark(POINT))))
     assert reading.features[0].geometry["coordinates"] == [7.0, 50.0]
-    assert "a.kml is left out" in reading.notes[0]
+    assert reading.notes == [FileLeftOut("a.kml")]
 
 
 def test_a_kmz_without_kml_or_damaged_is_refused() -> None:
-    with pytest.raises(MapRefused, match="no KML file"):
+    with pytest.raises(MapRefused, match="there is no KML file in it"):
         read_kmz(kmz(a_png=b"x"))
     with pytest.raises(MapRefused, match="cannot be unpacked"):
         read_kmz(b"PK\x03\x04 nonsense")

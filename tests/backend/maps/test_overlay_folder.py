@@ -38,7 +38,7 @@ def test_stored_listed_read_and_deleted(folder: OverlayFolder) -> None:
     ("content", "words"),
     [
         (b"", "is empty"),
-        (b"lat,lon", "neither GeoJSON nor KML"),
+        (b"lat,lon", "something else"),
         (b'{"type": "FeatureCollection", "features": []}', "nothing that can be drawn"),
         (b'{"type": "Point", "coordinates": [1000, 2000]}', "not on Earth"),
         (b"<kml/>", "nothing that can be drawn"),
@@ -48,3 +48,10 @@ def test_nothing_is_kept_of_what_cannot_be_drawn(folder: OverlayFolder, content:
     with pytest.raises(MapRefused, match=words):
         folder.store(content, "bad", NOW)
     assert folder.overlays() == []
+
+
+def test_notes_of_before_they_had_names_are_dropped(folder: OverlayFolder) -> None:
+    stored = folder.store(GEOJSON, "Nests", NOW)
+    label = folder.directory / f"{stored.overlay_id}.json"
+    label.write_text(label.read_text().replace('"notes":[]', '"notes":["Feature 2 is left out."]'))
+    assert folder.overlays() == [stored]

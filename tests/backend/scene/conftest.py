@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 from backend.events import (
+    FIRST_CRAFT,
     BearingMeasured,
     CandidateFact,
+    CraftSource,
     Event,
     FlightStarted,
     MissionDrafted,
@@ -22,22 +24,24 @@ from backend.events import (
     Recorded,
     SweepRejected,
 )
-from backend.mission.localization import localization
-from backend.mission.ports import TrackPoint
-from backend.spec import FlightSpec, MissionSpec, Place, Polygon
+from backend.ports import TrackPoint
+from backend.reasons.search import Localized
+from backend.search.localization import localization
+from backend.spec import FIRST_EMITTER, EmitterSpec, FlightSpec, MissionSpec, Polygon
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.sweep import NoPulseHeard
 
 HOME = Place(lat=50.6234, lon=7.2046)
 HOME_AMSL_M = 200.0
-FRAME = LocalFrame(GeoPoint(HOME.lat, HOME.lon))
+FRAME = LocalFrame(HOME)
 EMITTER = (40.0, 130.0)
 PLACES = ((0.0, 20.0), (-95.0, 75.0), (-20.0, 190.0), (120.0, 190.0))
 
 
 def place(x: float, y: float) -> Place:
     point = FRAME.to_geo(x, y)
-    return Place(lat=point.lat_deg, lon=point.lon_deg)
+    return point
 
 
 def polygon(corners: Iterable[tuple[float, float]]) -> Polygon:
@@ -67,6 +71,8 @@ def bearing(number: int, x: float, y: float) -> BearingMeasured:
     off = np.radians((np.arange(180) * 2 + 1) - direction)
     power = [float(value) for value in -60 + 10 * np.log10(np.maximum(np.cos(off / 2) ** 8, 0.003))]
     return BearingMeasured(
+        emitter_id=FIRST_EMITTER,
+        source=CraftSource(craft_id=FIRST_CRAFT),
         bearing_id=f"b{number}",
         sweep_id=f"s{number}",
         place_number=number,
@@ -94,19 +100,21 @@ def spec() -> MissionSpec:
 def recorded(spec: MissionSpec) -> list[Recorded]:
     log = Log()
     log.add(MissionDrafted(spec=spec))
-    log.add(MissionStarted(by="test", home=HOME, home_amsl_m=HOME_AMSL_M, software="test"))
-    task = localization(spec, HOME, HOME_AMSL_M)
+    log.add(MissionStarted(craft_id=FIRST_CRAFT, by="test", home=HOME, home_amsl_m=HOME_AMSL_M, software="test"))
+    task = localization(spec, HOME)
     measured: list[BearingMeasured] = []
     for number, (x, y) in enumerate(PLACES[:3], start=1):
         if number == 2:
             silent: list[float | None] = [None] * 90 + [-80.0] * 90
             log.add(
                 SweepRejected(
+                    emitter_id=FIRST_EMITTER,
+                    source=CraftSource(craft_id=FIRST_CRAFT),
                     sweep_id="r1",
                     place_number=2,
                     attempt=1,
                     quality=0.4,
-                    reason="flat",
+                    reason=NoPulseHeard(),
                     place=place(x, y),
                     binned_db=silent,
                     fitted_db=[None] * 180,
@@ -118,10 +126,11 @@ def recorded(spec: MissionSpec) -> list[Recorded]:
         there = place(*PLACES[number])
         log.add(
             PlanChosen(
+                craft_id=FIRST_CRAFT,
                 place_number=number + 1,
                 place=there,
                 source="planner",
-                reason="test",
+                reason=Localized(),
                 expected_time_s=83.0,
                 time_90_s=120.0,
                 candidates=candidates(),
@@ -129,7 +138,9 @@ def recorded(spec: MissionSpec) -> list[Recorded]:
                 plan_ms=5.0,
             )
         )
-    log.add(FlightStarted(place_number=4, place=place(*PLACES[3]), altitude_amsl_m=HOME_AMSL_M + 40))
+    log.add(
+        FlightStarted(craft_id=FIRST_CRAFT, place_number=4, place=place(*PLACES[3]), altitude_amsl_m=HOME_AMSL_M + 40)
+    )
     return log.recorded
 
 
@@ -159,3 +170,20 @@ def track(recorded: list[Recorded]) -> list[TrackPoint]:
         at = place(0.0, 3.0 * index)
         points.append(TrackPoint(float(at_s), at.lat, at.lon, 240.0, 40.0, 90.0, 80.0, "GUIDED"))
     return points
+
+
+@pytest.fixture(scope="module")
+def two_emitters(spec: MissionSpec) -> list[Recorded]:
+    """The first is localized, of the other there is one bearing."""
+    emitters = [EmitterSpec(label="fox"), EmitterSpec(emitter_id="emitter-2", label="hare", frequency_hz=868.4e6)]
+    both = spec.model_copy(update={"emitters": emitters})
+    log = Log()
+    log.add(MissionDrafted(spec=both))
+    log.add(MissionStarted(craft_id=FIRST_CRAFT, by="test", home=HOME, home_amsl_m=HOME_AMSL_M, software="test"))
+    measured = [bearing(number, x, y) for number, (x, y) in enumerate(PLACES[:3], start=1)]
+    for fact in measured:
+        log.add(fact)
+    found, _ = localization(both, HOME, FIRST_EMITTER).belief_fact(measured)
+    log.add(found.model_copy(update={"localized": True}))
+    log.add(bearing(3, *PLACES[2]).model_copy(update={"emitter_id": "emitter-2", "bearing_id": "b4"}))
+    return log.recorded

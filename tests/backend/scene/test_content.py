@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from backend.events import BearingExcluded, MissionEnded, Recorded
+from backend.reasons.search import Localized
 from backend.scene.content import content, read_story
+from backend.spec import FIRST_EMITTER
 
 
 def at_end(recorded, track=(), upto_seq=None):
@@ -26,7 +28,8 @@ def test_positions_are_metres_around_the_home(recorded) -> None:
     assert shown.area.bounds == pytest.approx((-150, -10, 170, 210), abs=0.05)
     assert shown.fence.contains(shown.area)
     assert [zone.bounds for zone in shown.no_fly] == [pytest.approx((90, 100, 140, 150), abs=0.05)]
-    assert (shown.next_place.x, shown.next_place.y) == pytest.approx((120, 190), abs=0.05)
+    (planned,) = shown.next_places
+    assert (planned.x, planned.y) == pytest.approx((120, 190), abs=0.05)
 
 
 def test_sweeps_carry_their_bearing_height_and_power(recorded) -> None:
@@ -40,7 +43,7 @@ def test_sweeps_carry_their_bearing_height_and_power(recorded) -> None:
 
 
 def test_an_excluded_bearing_stays_visible_but_does_not_count(recorded) -> None:
-    shown = at_end(more(recorded, BearingExcluded(bearing_id="b1", by="op", reason="")))
+    shown = at_end(more(recorded, BearingExcluded(emitter_id=FIRST_EMITTER, bearing_id="b1", by="op", reason="")))
     assert [sweep.counted for sweep in shown.sweeps] == [False, False, True, True]
 
 
@@ -49,11 +52,11 @@ def test_review_shows_what_was_known_then(recorded, track) -> None:
     then = at_end(recorded, track, first_belief)
     assert then.seq == first_belief
     assert [sweep.place_number for sweep in then.sweeps] == [1]
-    assert then.next_place is None
+    assert then.next_places == ()
     at_s = recorded[first_belief - 1].at_utc.timestamp()
     assert len(then.path) == sum(point.at_s <= at_s for point in track)
     assert then.vehicle.y == pytest.approx(then.path[-1][1])
-    assert then.estimate is not None
+    assert [mark.emitter_id for mark in then.estimates] == [FIRST_EMITTER]
 
 
 def test_before_the_start_there_is_the_area_only(recorded) -> None:
@@ -69,9 +72,9 @@ def test_nothing_is_drafted_no_story() -> None:
 
 
 def test_a_mission_that_is_over_has_no_next_place(recorded) -> None:
-    ended = more(recorded, MissionEnded(outcome="localized", reason="", mission_time_s=100.0))
+    ended = more(recorded, MissionEnded(outcome="localized", reason=Localized(), mission_time_s=100.0))
     shown = at_end(ended)
-    assert shown.next_place is None
+    assert shown.next_places == ()
     assert shown.candidates == ()
 
 

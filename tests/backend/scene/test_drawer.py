@@ -116,7 +116,7 @@ def test_a_scene_is_drawn_once(window, drawer) -> None:
     assert window.scene.seen() == {"/vehicle/body", "/path/0", "/home/label"}
 
 
-def test_what_changed_is_drawn_anew_and_what_is_gone_is_removed(window, drawer) -> None:
+def test_what_changed_is_drawn_again_and_what_is_gone_is_removed(window, drawer) -> None:
     drawer.draw(scene(surface(), lines(), label()))
     assert drawer.draw(scene(lines(2.0), label())) == 1
     assert window.scene.seen() == {"/path/0", "/home/label"}
@@ -177,11 +177,3 @@ def test_a_heading_turns_clockwise_seen_from_above() -> None:
     cos, sin = w * w - z * z, 2 * w * z
     assert (x, y) == (0.0, 0.0)
     assert np.array([[cos, -sin], [sin, cos]]) @ north == pytest.approx((1.0, 0.0))
-
-
-def test_the_panel_speaks_german_when_the_viewer_does(window) -> None:
-    Drawer(window, "de")
-    assert set(window.gui.boxes) == {
-        *("Wahrscheinlichkeit", "Peilungen", "Drehungen", "Nächste Orte", "Flugweg", "Zaun", "Beschriftung")
-    }
-    assert set(window.gui.buttons) == {"Von oben", "Von der Seite"}

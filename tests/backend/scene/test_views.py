@@ -10,12 +10,12 @@ from types import SimpleNamespace
 import pytest
 
 from backend.events import Recorded
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
 from backend.scene import views as views_module
 from backend.scene.items import Scene
 from backend.scene.views import MOST_VIEWS, SceneViews, TooManyViews
 from backend.wire.scene import SceneRequest
-from hardware.readings import GeoPoint, Telemetry
+from hardware.readings import Place, Telemetry
 
 
 class PaperSource:
@@ -51,10 +51,9 @@ class PaperSource:
 
 
 class PaperDrawer:
-    """Keeps the scenes it was told to draw; None when it was cleared."""
+    """Keeps the scenes it was given to draw; None when it was cleared."""
 
-    def __init__(self, window: SimpleNamespace, language: str) -> None:
-        self.language = language
+    def __init__(self, window: SimpleNamespace) -> None:
         self.shown: list[Scene | None] = window.shown
 
     def draw(self, scene: Scene) -> int:
@@ -142,12 +141,12 @@ async def test_it_follows_new_events(views: SceneViews, source: PaperSource, rec
 
 async def test_the_vehicle_moves_without_reading_the_journal_again(views: SceneViews, source: PaperSource) -> None:
     source.flies = "m1"
-    source.heard = replace(source.heard, position=GeoPoint(50.6240, 7.2046), altitude_relative_m=40.0, heading_deg=10.0)
+    source.heard = replace(source.heard, position=Place(50.6240, 7.2046), altitude_relative_m=40.0, heading_deg=10.0)
     views.show("view-one", SceneRequest())
     shown = open_window(views, "view-one")
     await until(lambda: bool(shown))
     reads = source.reads
-    source.heard = replace(source.heard, position=GeoPoint(50.6250, 7.2046), altitude_relative_m=45.0)
+    source.heard = replace(source.heard, position=Place(50.6250, 7.2046), altitude_relative_m=45.0)
 
     def height() -> float:
         return next(item for item in shown[-1].items if item.name == "vehicle/body").position[2]

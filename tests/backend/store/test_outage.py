@@ -17,24 +17,27 @@ import pytest
 from sqlalchemy import make_url
 
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
+from backend.reasons.storage import DatabaseSilent, DiskLow
 from backend.settings import Settings
-from backend.spec import MissionSpec, Place, Polygon
+from backend.spec import MissionSpec, Polygon
 from backend.store import opening
 from backend.store.engine import migrate
 from backend.store.journal import SqlJournal
 from backend.store.opening import DatabaseUnusable, open_journal
 from backend.store.reading import JournalUnavailable
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
+from planner.reason import remedy_of, sentence_of
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
 DRAFT = MissionDrafted(spec=SPEC)
-STARTED = MissionStarted(by="operator", home=Place(lat=50.6, lon=7.2), home_amsl_m=100.0, software="0")
-SWEEP = Sweep(np.arange(3.0), np.arange(3.0), np.arange(3.0), 868e6, GeoPoint(50.6, 7.2), 140.0)
+HOME = Place(lat=50.6, lon=7.2)
+STARTED = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
+SWEEP = Sweep(np.arange(3.0), np.arange(3.0), np.arange(3.0), 868e6, Place(50.6, 7.2), 140.0)
 
 
 def hold(n: int) -> HoldOrdered:
-    return HoldOrdered(by="operator", reason=str(n))
+    return HoldOrdered(craft_id="craft-1", by=str(n), reason=None)
 
 
 @asynccontextmanager
@@ -66,16 +69,16 @@ class Flight:
         for _ in range(steps):
             n = self.count
             await self.journal.append("m", [hold(n)])
-            await self.journal.save_sweep("m", f"s{n}", 1, 1, SWEEP)
+            await self.journal.save_sweep("m", f"s{n}", "craft-1", "emitter-1", 1, 1, SWEEP)
             point = TrackPoint(1.7e9 + n, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)
-            await self.journal.save_track("m", [point])
+            await self.journal.save_track("m", "craft-1", [point])
             self.count += 1
 
     async def check(self, stored: SqlJournal) -> None:
         read = await stored.read("m")
         assert [record.seq for record in read] == list(range(1, self.count + 3))
-        assert [record.event.reason for record in read[2:]] == [str(n) for n in range(self.count)]
-        assert len(await stored.track("m")) == self.count
+        assert [record.event.by for record in read[2:]] == [str(n) for n in range(self.count)]
+        assert len((await stored.tracks("m"))["craft-1"]) == self.count
         for n in range(self.count):
             assert await stored.sweep("m", f"s{n}") is not None
 
@@ -146,7 +149,7 @@ async def test_flight_goes_on_while_the_database_is_away(bench, outage):
             try:
                 await flight.go_on(4)
                 assert journal.report().state == "lost"
-                assert journal.report().detail
+                assert isinstance(journal.report().reason, DatabaseSilent)
                 assert journal.report().spooled == 12
                 assert len(await journal.read("m")) == flight.count + 2
                 waiting = await journal.sweep("m", f"s{flight.count - 1}")
@@ -212,7 +215,8 @@ async def test_an_entry_the_database_refuses_is_kept_aside_and_blocks_nothing(be
     await flight.begin()
     outage = Locked(bench, None)
     outage.begin()
-    await journal.save_track("no such mission", [TrackPoint(1.7e9, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)])
+    point = TrackPoint(1.7e9, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)
+    await journal.save_track("no such mission", "craft-1", [point])
     await flight.go_on(1)
     outage.end()
     async with watched(journal):
@@ -245,7 +249,7 @@ async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
                 file.write(bytes(4096))
         await flight.go_on(60)
         assert journal.report().state == "lost"
-        assert "full" in journal.report().detail
+        assert "full" in sentence_of(journal.report().reason)
         with pytest.raises(JournalUnavailable, match="the disk is full"):
             await flight.go_on(1000)
         filler.unlink()
@@ -261,7 +265,7 @@ async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
 async def test_a_disk_that_fills_up_is_told_before_it_is_full(tmp_path):
     async with open_journal(Settings(data_dir=tmp_path, disk_low_bytes=2**60), lambda: 1.7e9) as journal:
         await until(journal, "slow")
-        assert "left on the disk" in journal.report().detail
+        assert isinstance(journal.report().reason, DiskLow)
 
 
 WRITER = """
@@ -274,7 +278,7 @@ from backend.store.opening import open_journal
 async def main(folder, url):
     async with open_journal(Settings(data_dir=Path(folder), database_url=url), lambda: 1.7e9) as journal:
         while True:
-            (record,) = await journal.append("m", [HoldOrdered(by="operator", reason="r")])
+            (record,) = await journal.append("m", [HoldOrdered(craft_id="craft-1", by="o", reason=None)])
             print(record.seq, flush=True)
 
 asyncio.run(main(*sys.argv[1:]))
@@ -318,15 +322,17 @@ async def test_a_second_server_on_the_same_database_or_data_is_refused(tmp_path,
     same_data = Settings(data_dir=tmp_path / "one", database_url=f"sqlite:///{tmp_path / 'other.sqlite'}")
     async with open_journal(settings, lambda: 0.0):
         for second in (settings, beside, same_data):
-            with pytest.raises(DatabaseUnusable, match="--data-dir"):
+            with pytest.raises(DatabaseUnusable) as refused:
                 async with open_journal(second, lambda: 0.0):
                     pass
+            assert "--data-dir" in remedy_of(refused.value.reason)
     async with open_journal(beside, lambda: 0.0):
         pass
 
 
 @pytest.mark.parametrize("url", ["postgresql://nobody@127.0.0.1:1/none", "sqlite:////proc/none/x.sqlite"])
 async def test_a_database_that_cannot_be_used_is_named_with_what_to_try(tmp_path, url):
-    with pytest.raises(DatabaseUnusable, match="CROSSFIX_DATABASE_URL"):
+    with pytest.raises(DatabaseUnusable) as refused:
         async with open_journal(Settings(data_dir=tmp_path, database_url=url), lambda: 0.0):
             pass
+    assert "CROSSFIX_DATABASE_URL" in remedy_of(refused.value.reason)

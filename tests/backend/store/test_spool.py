@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from backend.store.spool import HEADER, Spool, SpoolFull, SpoolTaken
+from backend.store.spool import HEADER, Spool, SpoolForeign, SpoolFull, SpoolTaken
 
 RESERVE = 64 * 1024
 
@@ -76,7 +76,7 @@ def test_a_full_disk_takes_what_the_reserve_holds_and_then_says_so(tmp_path, mon
 
 def test_a_foreign_file_is_not_overwritten(tmp_path):
     (tmp_path / "s").write_bytes(b"my thesis" * 100)
-    with pytest.raises(ValueError, match="not a journal spool"):
+    with pytest.raises(SpoolForeign, match="not a journal spool"):
         Spool(tmp_path / "s", RESERVE)
     assert (tmp_path / "s").read_bytes().startswith(b"my thesis")
 

@@ -1,4 +1,5 @@
-"""A small mission with two bearings, one of them excluded later, an estimate, and three points of path."""
+"""A small mission with three bearings, one of them excluded later, an estimate, and three points of path; and one with
+a second emitter that has a bearing and no estimate."""
 
 from __future__ import annotations
 
@@ -10,14 +11,17 @@ from backend.events import (
     BearingExcluded,
     BearingMeasured,
     BeliefUpdated,
+    CraftSource,
     EstimateFact,
     Event,
     MissionDrafted,
     MissionStarted,
     Recorded,
 )
-from backend.mission.ports import TrackPoint
+from backend.ports import TrackPoint
 from backend.spec import EmitterSpec, MissionSpec, Place, Polygon
+from backend.wire.export import Tracks
+from planner.reasons import NoBearingYet
 
 BEGAN = datetime(2026, 5, 1, 12, tzinfo=UTC)
 AREA = Polygon(coordinates=[[(7.20, 50.62), (7.21, 50.62), (7.21, 50.63), (7.20, 50.63), (7.20, 50.62)]])
@@ -25,6 +29,8 @@ AREA = Polygon(coordinates=[[(7.20, 50.62), (7.21, 50.62), (7.21, 50.63), (7.20,
 
 def bearing(number: int, lat: float, lon: float, bearing_deg: float) -> BearingMeasured:
     return BearingMeasured(
+        emitter_id="fox",
+        source=CraftSource(craft_id="craft-1"),
         bearing_id=f"b{number}",
         sweep_id=f"s{number}",
         place_number=number,
@@ -41,8 +47,7 @@ def bearing(number: int, lat: float, lon: float, bearing_deg: float) -> BearingM
     )
 
 
-@pytest.fixture(scope="module")
-def recorded() -> list[Recorded]:
+def mission(*emitters: EmitterSpec) -> list[Event]:
     estimate = EstimateFact(
         lat=50.625,
         lon=7.205,
@@ -53,29 +58,56 @@ def recorded() -> list[Recorded]:
         minor_axis_m=5.0,
         major_axis_deg=30.0,
     )
-    emitter = EmitterSpec(label="fox & <hound>")
-    events: list[Event] = [
-        MissionDrafted(spec=MissionSpec(name='Meadow "A" & <B>', area=AREA, emitter=emitter)),
-        MissionStarted(by="op", home=Place(lat=50.62, lon=7.205), home_amsl_m=200.0, software="test"),
+    home = Place(lat=50.62, lon=7.205)
+    return [
+        MissionDrafted(spec=MissionSpec(name='Meadow "A" & <B>', area=AREA, emitters=list(emitters))),
+        MissionStarted(craft_id="craft-1", by="op", home=home, home_amsl_m=200.0, software="test"),
         bearing(1, 50.622, 7.202, 45.0),
         bearing(2, 50.622, 7.208, 315.0),
         BeliefUpdated(
-            bearings=2, estimate=estimate, consistent=True, localized=False, not_yet=["one side"], digest="0"
+            emitter_id="fox",
+            bearings=2,
+            estimate=estimate,
+            consistent=True,
+            localized=False,
+            not_yet=[NoBearingYet()],
+            digest="0",
         ),
         bearing(3, 50.621, 7.205, 10.0),
-        BearingExcluded(bearing_id="b3", by="op", reason="multipath"),
+        BearingExcluded(emitter_id="fox", bearing_id="b3", by="op", reason="multipath"),
     ]
+
+
+def numbered(events: list[Event]) -> list[Recorded]:
     return [
         Recorded(seq=seq, mission_id="m1", at_utc=BEGAN + timedelta(seconds=10 * seq), event=event)
         for seq, event in enumerate(events, start=1)
     ]
 
 
+FOX = EmitterSpec(emitter_id="fox", label="fox & <hound>")
+TAG = EmitterSpec(emitter_id="tag", frequency_hz=150e6, label="tag")
+
+
 @pytest.fixture(scope="module")
-def track() -> list[TrackPoint]:
+def recorded() -> list[Recorded]:
+    return numbered(mission(FOX))
+
+
+@pytest.fixture(scope="module")
+def of_two_emitters() -> list[Recorded]:
+    """The tag's bearing was taken in the same sweep as the fox's first."""
+    of_tag = bearing(1, 50.622, 7.202, 90.0).model_copy(update={"emitter_id": "tag", "bearing_id": "t1"})
+    return numbered([*mission(FOX, TAG), of_tag])
+
+
+@pytest.fixture(scope="module")
+def tracks() -> Tracks:
     began_s, unknown = BEGAN.timestamp(), float("nan")
-    return [
-        TrackPoint(began_s + 21, 50.6201, 7.205, 230.0, 30.0, 0.0, 90.0, "GUIDED"),
-        TrackPoint(began_s + 21.5, 50.6202, 7.205, unknown, 31.0, unknown, None, None),
-        TrackPoint(began_s + 22, unknown, 7.205, 230.0, 32.0, 0.0, 90.0, "GUIDED"),
-    ]
+    return {
+        "craft-1": [
+            TrackPoint(began_s + 21, 50.6201, 7.205, 230.0, 30.0, 0.0, 90.0, "GUIDED"),
+            TrackPoint(began_s + 21.5, 50.6202, 7.205, unknown, 31.0, unknown, None, None),
+            TrackPoint(began_s + 22, unknown, 7.205, 230.0, 32.0, 0.0, 90.0, "GUIDED"),
+        ]
+    }

@@ -50,13 +50,13 @@ def test_times_are_ordered_and_in_utc(recorded) -> None:
 
 
 def test_the_same_mission_keeps_its_uids_and_bytes(recorded) -> None:
-    assert cot_package(recorded, ()) == cot_package(recorded, ())
+    assert cot_package(recorded, {}) == cot_package(recorded, {})
     uids = [event.get("uid") for event in cot_events(recorded)]
     assert len(set(uids)) == len(uids)
 
 
 def test_the_package_names_every_file_it_holds(recorded) -> None:
-    with zipfile.ZipFile(io.BytesIO(cot_package(recorded, ()))) as archive:
+    with zipfile.ZipFile(io.BytesIO(cot_package(recorded, {}))) as archive:
         manifest = ElementTree.fromstring(archive.read("MANIFEST/manifest.xml"))
         entries = {content.get("zipEntry") for content in manifest.iter("Content")}
         assert entries == set(archive.namelist()) - {"MANIFEST/manifest.xml"}
@@ -70,3 +70,12 @@ def test_the_package_names_every_file_it_holds(recorded) -> None:
 def test_without_an_estimate_there_are_bearings_only(recorded) -> None:
     assert set(by_type(recorded[:4])) == {"u-rb-a"}
     assert cot_events(recorded[:1]) == []
+
+
+def test_each_emitter_has_events_of_its_own(recorded, of_two_emitters) -> None:
+    found = by_type(of_two_emitters)
+    assert [float(line.find("detail/bearing").get("value")) for line in found["u-rb-a"]] == [45.0, 315.0, 90.0]
+    assert len(found["a-u-G"]) == len(found["u-d-c-e"]) == 1
+    uids = [event.get("uid") for event in cot_events(of_two_emitters)]
+    assert len(set(uids)) == len(uids)
+    assert [event.get("uid") for event in cot_events(recorded)] == uids[:-1]

@@ -14,8 +14,8 @@ from backend.wire.mcap_export import mcap
 
 
 @pytest.fixture(scope="module")
-def messages(recorded, track) -> list[tuple[str, int, dict]]:
-    reader = make_reader(io.BytesIO(mcap(recorded, track)), validate_crcs=True)
+def messages(recorded, tracks) -> list[tuple[str, int, dict]]:
+    reader = make_reader(io.BytesIO(mcap(recorded, tracks)), validate_crcs=True)
     return [
         (channel.topic, message.log_time, json.loads(message.data)) for _, channel, message in reader.iter_messages()
     ]
@@ -58,12 +58,19 @@ def test_findings_show_what_was_known_then(messages) -> None:
     assert sum(feature["properties"]["what"] == "bearing" for feature in features) == 2
 
 
-def test_the_tools_find_well_known_schemas(recorded, track) -> None:
-    summary = make_reader(io.BytesIO(mcap(recorded, track))).get_summary()
+def test_the_tools_find_well_known_schemas(recorded, tracks) -> None:
+    summary = make_reader(io.BytesIO(mcap(recorded, tracks))).get_summary()
     names = {schema.name for schema in summary.schemas.values()}
     assert {"foxglove.LocationFix", "foxglove.GeoJSON"} <= names
     assert all(json.loads(schema.data)["type"] == "object" for schema in summary.schemas.values())
 
 
 def test_a_mission_of_one_event_is_a_recording_too(recorded) -> None:
-    assert make_reader(io.BytesIO(mcap(recorded[:1], ()))).get_summary().statistics.message_count == 1
+    assert make_reader(io.BytesIO(mcap(recorded[:1], {}))).get_summary().statistics.message_count == 1
+
+
+def test_findings_name_the_emitter_when_there_are_several(of_two_emitters) -> None:
+    reader = make_reader(io.BytesIO(mcap(of_two_emitters, {})), validate_crcs=True)
+    (found,) = [json.loads(m.data) for _, c, m in reader.iter_messages() if c.topic == "/findings"]
+    features = json.loads(found["geojson"])["features"]
+    assert {f["properties"]["emitter"] for f in features if f["properties"]["what"] == "bearing"} == {"fox & <hound>"}

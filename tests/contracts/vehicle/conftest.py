@@ -35,8 +35,8 @@ async def rig(request: pytest.FixtureRequest) -> AsyncIterator[Rig]:
     rig = Rig(name, vehicle, clock, autopilot)
 
     async def listen() -> None:
-        async for line in vehicle.changes():
-            rig.lines.append(line)
+        async for announcement in vehicle.changes():
+            rig.news.append(announcement.reason)
 
     listener = asyncio.create_task(listen())
     try:
@@ -45,7 +45,7 @@ async def rig(request: pytest.FixtureRequest) -> AsyncIterator[Rig]:
     finally:
         if autopilot is None and vehicle.telemetry().in_air:
             with contextlib.suppress(VehicleError):
-                vehicle.release_pilot_latch()
+                vehicle.take_control()
                 await vehicle.land()
                 await rig.until(lambda: not vehicle.telemetry().armed, 120, "landing")
         await vehicle.close()

@@ -18,7 +18,9 @@ from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
 from hardware.frame import LocalFrame
 from hardware.ports import Vehicle
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.vehicle import VehicleReason
+from hardware.reasons.vehicle_news import TriedAgain, VehicleNews
 from hardware.sim.autopilot.launch import SimulatedAutopilot
 
 REAL_URL = os.environ.get("CROSSFIX_TEST_VEHICLE")
@@ -36,7 +38,7 @@ class Rig:
     vehicle: MavsdkVehicle
     clock: ScaledClock
     autopilot: SimulatedAutopilot | None
-    lines: list[str] = field(default_factory=list)
+    news: list[VehicleNews] = field(default_factory=list[VehicleNews])
 
     @property
     def sim(self) -> SimulatedAutopilot:
@@ -44,13 +46,17 @@ class Rig:
             pytest.skip("needs the simulated autopilot's pilot and faults")
         return self.autopilot
 
+    def tried_again(self) -> list[VehicleReason]:
+        """Why, each time."""
+        return [news.because for news in self.news if isinstance(news, TriedAgain)]
+
     async def until(self, happened: Callable[[], bool], seconds: float, what: str) -> None:
         end = self.clock.now() + seconds
         while not happened():
             assert self.clock.now() < end, f"{what} did not happen within {seconds} s: {self.vehicle.telemetry()}"
             await self.clock.sleep(0.1)
 
-    def place(self, east: float, north: float) -> GeoPoint:
+    def place(self, east: float, north: float) -> Place:
         """Metres from home."""
         home = self.vehicle.telemetry().home
         assert home is not None
@@ -61,7 +67,7 @@ class Rig:
         assert home is not None
         return home + HEIGHT
 
-    def off_by(self, place: GeoPoint) -> float:
+    def off_by(self, place: Place) -> float:
         position = self.vehicle.telemetry().position
         assert position is not None
         return math.hypot(*LocalFrame(place).to_enu(position))
@@ -75,7 +81,7 @@ async def ready(vehicle: Vehicle, clock: ScaledClock) -> None:
     """Wait as an operator would until the vehicle is ready (failsafe parameters do not mend themselves)."""
     for _ in range(60):
         checks = await vehicle.preflight()
-        if all(check.ok for check in checks if check.blocking and not check.name.startswith("Failsafe")):
+        if all(check.ok for check in checks if check.blocking and check.name != "failsafe"):
             return
         await clock.sleep(1.0)
 

@@ -9,7 +9,8 @@ import pytest
 from rig import DEAD_STATION, FLIGHT_COMMANDS, HEIGHT, Rig, ends_with
 
 from hardware.autopilot.connect import connect_vehicle
-from hardware.ports import PilotHasControl
+from hardware.ports import NotInControl
+from hardware.reasons.vehicle_news import TakenOver, TakenOverBySticks
 
 
 async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(rig: Rig) -> None:
@@ -23,10 +24,10 @@ async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(r
         assert taken["took_control"]
     else:
         taken = await sim.order("pilot_mode")
-    await ends_with(flight, PilotHasControl, "Resume")
-    assert vehicle.telemetry().controller == "pilot"
-    assert vehicle.telemetry().held_by_pilot
-    assert any("pilot took over" in line for line in rig.lines)
+    await ends_with(flight, NotInControl)
+    assert vehicle.telemetry().authority.who == "pilot"
+    assert not vehicle.telemetry().authority.given_back
+    assert any(isinstance(news, TakenOver | TakenOverBySticks) for news in rig.news)
 
     here = rig.place(0.0, 10.0)
     orders: list[Callable[[], Awaitable[None]]] = [
@@ -38,20 +39,20 @@ async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(r
         lambda: vehicle.take_off(20.0),
     ]
     for order in orders:
-        with pytest.raises(PilotHasControl):
+        with pytest.raises(NotInControl):
             await order()
     await sim.order("give_back")
     await rig.clock.sleep(3.0)
-    assert not vehicle.telemetry().held_by_pilot
-    with pytest.raises(PilotHasControl):  # the mode switch alone gives nothing back
+    assert vehicle.telemetry().authority.given_back
+    with pytest.raises(NotInControl):  # the mode switch alone gives nothing back
         await vehicle.goto(here, rig.amsl(), 5.0)
     received = (await sim.order("commands", since_s=taken["time_s"] + 1e-6))["commands"]
     assert [number for _, number in received if number in FLIGHT_COMMANDS] == []
 
-    vehicle.release_pilot_latch()
-    assert vehicle.telemetry().controller != "pilot"
+    vehicle.take_control()
+    assert vehicle.telemetry().authority.who != "pilot"
     await vehicle.goto(here, rig.amsl(), 5.0)
-    assert vehicle.telemetry().controller == "crossfix"
+    assert vehicle.telemetry().authority.who == "ours"
     assert rig.off_by(here) < 3.0
 
 
@@ -60,13 +61,13 @@ async def test_a_mode_that_nobody_commanded_latches_until_the_vehicle_has_landed
     await rig.airborne()
 
     await rig.sim.order("pilot_mode", mode="LAND")
-    await rig.until(lambda: rig.vehicle.telemetry().controller == "pilot", 5, "the latch")
+    await rig.until(lambda: rig.vehicle.telemetry().authority.who == "pilot", 5, "the latch")
 
-    with pytest.raises(PilotHasControl, match="LAND"):
+    with pytest.raises(NotInControl, match="LAND"):
         await rig.vehicle.goto(rig.place(0.0, 0.0), rig.amsl(), 5.0)
     await rig.until(lambda: rig.vehicle.telemetry().armed is False, 60, "the landing")
-    assert rig.vehicle.telemetry().controller == "nobody"
-    with pytest.raises(PilotHasControl, match="LAND"):
+    assert rig.vehicle.telemetry().authority.who == "nobody"
+    with pytest.raises(NotInControl, match="LAND"):
         await rig.vehicle.take_off(HEIGHT)
 
 
@@ -81,10 +82,10 @@ async def test_when_this_program_dies_the_autopilot_acts_and_a_new_one_finds_it(
     try:
         t = again.telemetry()
         assert t.in_air
-        assert t.controller == "nobody"
+        assert t.authority.who == "nobody"
         assert rig.off_by(rig.place(0.0, 30.0)) < 3.0
         await again.hold()  # no latch: the vehicle waits as it was left
-        assert again.telemetry().controller == "crossfix"
+        assert again.telemetry().authority.who == "ours"
         await sim.order("set_param", name=parameter, value={"RETURN": 2, "RTL": 1}[returning])
     finally:
         await again.close()

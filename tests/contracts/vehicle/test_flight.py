@@ -1,4 +1,4 @@
-"""What every Vehicle does when it is told to: seen by telemetry, and refused in words before it is sent."""
+"""What every Vehicle does with a command: confirmed by telemetry, or refused with a reason before it is sent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import WallClock
 from hardware.frame import LocalFrame
 from hardware.ports import VehicleError, VehicleUnreachable
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.preflight import FailsafeParameter
+from hardware.reasons.vehicle_news import TakenOver, TakenOverBySticks
 
 
 async def test_the_snapshot_says_where_and_how_the_vehicle_is(rig: Rig) -> None:
@@ -29,7 +31,7 @@ async def test_the_snapshot_says_where_and_how_the_vehicle_is(rig: Rig) -> None:
     assert 0.0 <= t.heading_deg < 360.0
     assert t.heading_at_s is not None
     assert -0.05 < t.at_s - t.heading_at_s < 2.0
-    assert t.controller == "nobody"
+    assert t.authority.who == "nobody"
     assert t.mode
     await rig.clock.sleep(2.0)
     since = rig.clock.now() - 1.5
@@ -46,8 +48,9 @@ async def test_a_ready_vehicle_passes_its_checklist_and_each_bad_failsafe_refuse
     refused = [check for check in await rig.vehicle.preflight() if check.blocking and not check.ok]
 
     assert len(refused) == 1
-    assert parameter in refused[0].name
-    assert parameter in refused[0].remedy
+    reason = refused[0].reason
+    assert isinstance(reason, FailsafeParameter)
+    assert (reason.parameter, reason.value) == (parameter, 0.0)
 
 
 async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: Rig) -> None:
@@ -57,14 +60,14 @@ async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: 
     t = vehicle.telemetry()
     assert t.in_air
     assert t.altitude_relative_m == pytest.approx(HEIGHT, abs=1.5)
-    assert t.controller == "crossfix"
+    assert t.authority.who == "ours"
 
     place = rig.place(east=30.0, north=-25.0)
     await vehicle.goto(place, rig.amsl(), 5.0)
     assert rig.off_by(place) < 2.5
     if rig.autopilot is not None:
         truth = await rig.autopilot.order("truth")
-        assert math.hypot(*LocalFrame(place).to_enu(GeoPoint(truth["lat"], truth["lon"]))) < 4.0
+        assert math.hypot(*LocalFrame(place).to_enu(Place(truth["lat"], truth["lon"]))) < 4.0
 
     began = rig.clock.now()
     await vehicle.turn(30.0)
@@ -82,7 +85,7 @@ async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: 
     home = vehicle.telemetry().home
     assert home is not None
     assert rig.off_by(home) < 3.0
-    assert not [line for line in rig.lines if "took over" in line]
+    assert not [news for news in rig.news if isinstance(news, TakenOver | TakenOverBySticks)]
 
 
 async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
@@ -93,7 +96,7 @@ async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
     flight = asyncio.create_task(vehicle.goto(far, rig.amsl(), 7.0))
     await rig.until(lambda: (vehicle.telemetry().velocity_north_m_s or 0.0) > 4.0, 20, "flying north")
     await vehicle.hold()
-    await ends_with(flight, VehicleError, "replaced by Hold")
+    await ends_with(flight, VehicleError, "replaced by the hold")
     stopped = vehicle.telemetry().position
     assert stopped is not None
     assert rig.off_by(far) > 250.0
@@ -103,7 +106,7 @@ async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
     turn = asyncio.create_task(vehicle.turn(20.0))
     await rig.clock.sleep(5.0)
     await vehicle.hold()
-    await ends_with(turn, VehicleError, "replaced by Hold")
+    await ends_with(turn, VehicleError, "replaced by the hold")
     await rig.clock.sleep(4.0)
     headings = [sample.heading_deg for sample in vehicle.headings(rig.clock.now() - 2.0)]
     assert max(abs(math.remainder(heading - headings[0], 360.0)) for heading in headings) < 5.0
@@ -120,7 +123,7 @@ async def test_on_the_ground_flight_orders_are_refused_in_words(rig: Rig) -> Non
     assert here is not None
 
     for order in (rig.vehicle.goto(here, rig.amsl(), 5.0), rig.vehicle.turn(30.0)):
-        with pytest.raises(VehicleError, match="take off first"):
+        with pytest.raises(VehicleError, match="not in the air"):
             await order
     for order in (rig.vehicle.return_home(), rig.vehicle.land()):
         with pytest.raises(VehicleError, match="on the ground"):
@@ -133,7 +136,7 @@ async def test_orders_that_mean_nothing_are_refused_before_they_are_sent(altitud
     vehicle = MavsdkVehicle("udpin://127.0.0.1:1", WallClock())
 
     with pytest.raises(ValueError, match="No place to fly to"):
-        await vehicle.goto(GeoPoint(47.0, 8.0), altitude, speed)
+        await vehicle.goto(Place(47.0, 8.0), altitude, speed)
     for rate in (0.0, math.nan, 500.0):
         with pytest.raises(ValueError, match="turn rate must be"):
             await vehicle.turn(rate)
@@ -148,7 +151,7 @@ async def test_before_it_is_connected_every_order_says_so() -> None:
         vehicle.land,
         vehicle.return_home,
         vehicle.preflight,
-        lambda: vehicle.goto(GeoPoint(47.0, 8.0), 500.0, 5.0),
+        lambda: vehicle.goto(Place(47.0, 8.0), 500.0, 5.0),
         lambda: vehicle.turn(30.0),
         lambda: vehicle.take_off(10.0),
     ]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
-from hardware.autopilot.link import Fields
-from hardware.autopilot.messages import ACCEPTED
+from hardware.autopilot.commander import Commander
+from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.monitor import Monitor
 from hardware.autopilot.px4 import px4_mode
 from hardware.clock import WallClock
@@ -47,7 +47,7 @@ class PaperLink:
             return False
         number = fields["command"]
         self.sent.append(number)
-        asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": ACCEPTED})
+        asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": 0})
         return True
 
     async def close(self) -> None:
@@ -59,7 +59,8 @@ class Scene:
         self.clock = HandClock()
         self.monitor = Monitor("udpin://127.0.0.1:1", self.clock)
         self.link = PaperLink(self.hear, list(opened))
-        self.monitor.link = self.link  # type: ignore[assignment]
+        self.monitor.link = link = cast(MavlinkLink, self.link)
+        self.monitor.commander = Commander(link, self.clock, self.monitor.control, self.monitor.announce)
 
     def hear(self, name: str, fields: Fields) -> None:
         self.clock.at += 0.01

@@ -29,7 +29,7 @@ def test_a_moment_is_never_later_than_its_message(steps: list[tuple[float, float
         assert clock.to_utc(boot, heard) <= heard + 1e-6
 
 
-def test_a_reboot_starts_anew() -> None:
+def test_a_reboot_starts_from_zero() -> None:
     clock = BootClock()
     clock.to_utc(500.0, EPOCH)
 

@@ -8,12 +8,15 @@ from typing import Any
 
 import pytest
 
-from hardware.autopilot.commander import Commander, CommandRefused, Manoeuvre, ManoeuvreSuperseded
-from hardware.autopilot.control import ControlLatch
+from hardware.authority import ModeHeard, SticksTookOver
+from hardware.autopilot.commander import CommandDenied, Commander, Manoeuvre, ManoeuvreSuperseded
+from hardware.autopilot.control import Control
 from hardware.autopilot.link import Fields
 from hardware.autopilot.messages import Outgoing, arm, pause
 from hardware.clock import ScaledClock
-from hardware.ports import PilotHasControl, VehicleError
+from hardware.ports import NotInControl, VehicleError
+from hardware.reasons.vehicle import CommandUnanswered
+from hardware.reasons.vehicle_news import TriedAgain, VehicleNews
 
 MODES = frozenset({1})
 
@@ -39,17 +42,21 @@ class Wire:
 class Rig:
     def __init__(self) -> None:
         self.wire = Wire()
-        self.latch = ControlLatch(frozenset({1}), str)
-        self.lines: list[str] = []
+        self.control = Control(lambda before, after: None)
+        self.control.see(ModeHeard(1, "waiting", "HOLD", True, True, False, 0.0))
+        self.news: list[VehicleNews] = []
         link: Any = self.wire
-        self.commander = Commander(link, ScaledClock(None, 100.0), self.latch, self.lines.append)
-        self.manoeuvre = Manoeuvre("Flight")
+        self.commander = Commander(link, ScaledClock(None, 100.0), self.control, self.news.append)
+        self.manoeuvre = Manoeuvre("flight")
 
     def acknowledge(self, result: int, number: int = 192) -> None:
         self.commander.acknowledged({"command": number, "result": result})
 
+    def sticks(self) -> None:
+        self.control.see(SticksTookOver(0.0))
+
     async def order(self, outgoing: Outgoing | None = None) -> None:
-        await self.commander.order(self.manoeuvre, outgoing or pause(), MODES, "the place")
+        await self.commander.send(self.manoeuvre, outgoing or pause(), MODES, "place")
 
 
 async def test_accepted_is_done_and_refused_is_said() -> None:
@@ -58,7 +65,7 @@ async def test_accepted_is_done_and_refused_is_said() -> None:
     await rig.order()
     rig.wire.answer = lambda count: rig.acknowledge(2)
 
-    with pytest.raises(CommandRefused, match="refused the place: denied"):
+    with pytest.raises(CommandDenied, match="refused the next place: denied"):
         await rig.order()
     assert len(rig.wire.sent) == 2
 
@@ -71,7 +78,7 @@ async def test_another_commands_acknowledgement_is_not_ours() -> None:
 
     assert len(rig.wire.sent) == 2
     assert [fields["confirmation"] for fields in rig.wire.sent] == [0, 1]
-    assert rig.lines == ["no answer to the place, sent again (2 of 3)"]
+    assert rig.news == [TriedAgain(CommandUnanswered("place", 1), 2)]
 
 
 async def test_in_progress_waits_for_the_last_word_without_sending_again() -> None:
@@ -82,25 +89,25 @@ async def test_in_progress_waits_for_the_last_word_without_sending_again() -> No
         asyncio.get_running_loop().call_later(0.02, rig.acknowledge, 4)
 
     rig.wire.answer = answer
-    with pytest.raises(CommandRefused, match="failed"):
+    with pytest.raises(CommandDenied, match="failed"):
         await rig.order()
     assert len(rig.wire.sent) == 1
 
 
-async def test_a_latch_that_closes_in_the_instant_before_sending_stops_it() -> None:
+async def test_a_pilot_who_takes_over_in_the_instant_before_sending_stops_it() -> None:
     rig = Rig()
-    rig.wire.before = lambda: rig.latch.latch("the pilot moved the sticks")
+    rig.wire.before = rig.sticks
 
-    with pytest.raises(PilotHasControl, match="the pilot moved the sticks"):
+    with pytest.raises(NotInControl, match="sticks"):
         await rig.order(arm())
     assert rig.wire.sent == []
 
 
 async def test_a_pilot_who_takes_over_while_an_answer_is_awaited_gets_no_repetition() -> None:
     rig = Rig()
-    rig.wire.answer = lambda count: rig.latch.latch("the pilot moved the sticks")
+    rig.wire.answer = lambda count: rig.sticks()
 
-    with pytest.raises(PilotHasControl):
+    with pytest.raises(NotInControl):
         await rig.order()
     assert len(rig.wire.sent) == 1
 
@@ -109,10 +116,10 @@ async def test_a_superseded_manoeuvre_sends_nothing_more() -> None:
     rig = Rig()
 
     def supersede(count: int) -> None:
-        rig.manoeuvre.superseded_by = "Hold"
+        rig.manoeuvre.superseded_by = "hold"
 
     rig.wire.answer = supersede
-    with pytest.raises(ManoeuvreSuperseded, match="replaced by Hold"):
+    with pytest.raises(ManoeuvreSuperseded, match="replaced by the hold"):
         await rig.order()
     with pytest.raises(ManoeuvreSuperseded):
         await rig.order()
@@ -129,7 +136,7 @@ async def test_no_answer_at_all_is_an_error_after_three_sends() -> None:
 
 async def test_questions_pass_while_the_pilot_flies() -> None:
     rig = Rig()
-    rig.latch.latch("the pilot moved the sticks")
+    rig.sticks()
     rig.wire.answer = lambda count: rig.acknowledge(0)
 
     assert await rig.commander.ask(pause()) is True

@@ -7,9 +7,9 @@ import pytest
 from hardware.autopilot.ground import distance_m
 from hardware.autopilot.messages import message_interval, pause, reposition
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 
-PLACE = GeoPoint(47.3977419, -8.5455938)
+PLACE = Place(47.3977419, -8.5455938)
 
 
 @pytest.mark.parametrize(
@@ -43,4 +43,4 @@ def test_short_distances_are_good_to_half_a_percent(east: float, north: float) -
     away = LocalFrame(PLACE).to_geo(east, north)
 
     assert distance_m(PLACE, away) == pytest.approx(math.hypot(east, north), rel=5e-3)
-    assert distance_m(GeoPoint(10.0, 179.9999), GeoPoint(10.0, -179.9999)) < 30.0
+    assert distance_m(Place(10.0, 179.9999), Place(10.0, -179.9999)) < 30.0

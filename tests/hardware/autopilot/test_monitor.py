@@ -5,27 +5,29 @@ from __future__ import annotations
 import pytest
 from paper import ON_GROUND, PLACE, POSCTL, Scene, heartbeat
 
-from hardware.autopilot.monitor import LINK_LOST_WALL_S
-from hardware.autopilot.px4 import HOLD, RETURNING
+from hardware.authority import Authority, CommandSent
+from hardware.autopilot import monitor
+from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S
+from hardware.autopilot.px4 import HOLD, LANDING, RETURNING
 
 
 @pytest.fixture
 async def returning(flying: Scene) -> Scene:
     """By our order."""
-    flying.monitor.latch.command(frozenset({RETURNING}))
+    flying.monitor.control.see(CommandSent(frozenset({RETURNING})))
     flying.mode(RETURNING)
-    assert flying.monitor.telemetry().controller == "crossfix"
+    assert flying.monitor.telemetry().authority.who == "ours"
     return flying
 
 
-@pytest.mark.parametrize(("mode", "controller"), [(POSCTL, "pilot"), (RETURNING, "pilot"), (HOLD, "nobody")])
+@pytest.mark.parametrize(("mode", "who"), [(POSCTL, "pilot"), (RETURNING, "pilot"), (HOLD, "nobody")])
 async def test_who_has_control_is_known_when_connecting_is_done_though_the_mode_came_before_all_else(
-    mode: int, controller: str
+    mode: int, who: str
 ) -> None:
     """An order given at once would take the vehicle from a pilot."""
     scene = Scene(heartbeat(mode, True), ("GLOBAL_POSITION_INT", PLACE))
     await scene.monitor.connect(1.0)
-    assert scene.monitor.telemetry().controller == controller
+    assert scene.monitor.telemetry().authority.who == who
     await scene.monitor.close()
 
 
@@ -37,19 +39,19 @@ async def test_a_vehicle_that_landed_unheard_is_judged_by_what_it_says_now_and_n
     returning.mode(HOLD)
     returning.monitor.look_at_link(0.1)
     assert not returning.monitor.connected
-    assert returning.monitor.telemetry().controller == "crossfix"
+    assert returning.monitor.telemetry().authority.who == "ours"
     returning.heartbeat(HOLD, armed=False)
     returning.monitor.look_at_link(0.1)
     telemetry = returning.monitor.telemetry()
     assert telemetry.connected
-    assert telemetry.controller == "nobody"
+    assert telemetry.authority.who == "nobody"
     assert telemetry.in_air is False
 
 
-async def test_a_pilot_who_took_over_unheard_has_control_with_the_first_word_of_his_mode(returning: Scene) -> None:
+async def test_a_pilot_who_took_over_unheard_has_control_with_the_first_report_of_their_mode(returning: Scene) -> None:
     returning.silence(2 * LINK_LOST_WALL_S)
     returning.mode(POSCTL)
-    assert returning.monitor.telemetry().controller == "pilot"
+    assert returning.monitor.telemetry().authority.who == "pilot"
 
 
 async def test_a_hold_chosen_unheard_in_the_air_is_a_pilots_once_the_vehicle_says_that_it_flies(
@@ -59,7 +61,7 @@ async def test_a_hold_chosen_unheard_in_the_air_is_a_pilots_once_the_vehicle_say
     returning.heartbeat(HOLD, armed=True)
     returning.monitor.look_at_link(0.1)
     assert returning.monitor.telemetry().connected
-    assert returning.monitor.telemetry().controller == "pilot"
+    assert returning.monitor.telemetry().authority.who == "pilot"
 
 
 async def test_a_silence_in_which_it_took_off_leaves_no_old_word_of_the_ground(returning: Scene) -> None:
@@ -69,3 +71,62 @@ async def test_a_silence_in_which_it_took_off_leaves_no_old_word_of_the_ground(r
     returning.hear("GLOBAL_POSITION_INT", PLACE | {"time_boot_ms": 9000})
     returning.monitor.look_at_link(0.1)
     assert returning.monitor.telemetry().in_air
+
+
+def heard_again(scene: Scene, mode: int) -> None:
+    scene.silence(2 * LINK_LOST_WALL_S)
+    scene.heartbeat(mode, armed=True)
+    scene.monitor.look_at_link(0.1)
+    assert scene.monitor.connected
+
+
+@pytest.fixture
+async def holding(flying: Scene) -> Scene:
+    """By our command."""
+    flying.monitor.control.see(CommandSent(frozenset({HOLD})))
+    flying.mode(HOLD)
+    return flying
+
+
+async def test_a_return_found_after_a_silence_is_the_failsafes(holding: Scene) -> None:
+    heard_again(holding, RETURNING)
+    assert holding.monitor.telemetry().authority.who == "failsafe"
+
+
+async def test_a_return_begun_soon_after_a_silence_is_the_failsafes_a_later_one_may_be_the_pilots(
+    holding: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(monitor, "AFTER_SILENCE_WALL_S", 0.0)
+    heard_again(holding, HOLD)
+    assert holding.monitor.telemetry().authority.who == "ours"
+    before = holding.monitor.control.authority
+    holding.mode(RETURNING)
+    assert holding.monitor.telemetry().authority.who == "failsafe"
+    holding.monitor.control.authority = before
+    holding.clock.at += AFTER_SILENCE_S
+    holding.mode(RETURNING)
+    authority = holding.monitor.telemetry().authority
+    assert (authority.who, authority.perhaps_failsafe) == ("pilot", True)
+
+
+async def test_the_autopilots_report_of_the_sticks_is_a_takeover_before_its_mode_shows_one(holding: Scene) -> None:
+    holding.hear("STATUSTEXT", {"text": "Pilot took over using sticks\x00"})
+    authority = holding.monitor.telemetry().authority
+    assert (authority.who, authority.taken_by) == ("pilot", "sticks")
+
+
+@pytest.mark.parametrize("early", [True, False], ids=["before connecting", "after connecting"])
+@pytest.mark.parametrize(
+    ("mode", "who"), [(POSCTL, "pilot"), (RETURNING, "failsafe"), (LANDING, "ours"), (HOLD, "nobody")]
+)
+async def test_a_new_server_goes_on_from_who_flew_before(mode: int, who: str, early: bool) -> None:
+    """We had commanded the landing. What waits was commanded by nobody that is remembered."""
+    before = Authority(who="ours", commanded=(LANDING,), heard=LANDING, kind="land", armed=True)
+    scene = Scene(heartbeat(mode, True), ("GLOBAL_POSITION_INT", PLACE))
+    if early:
+        scene.monitor.restore(before)
+    await scene.monitor.connect(1.0)
+    if not early:
+        scene.monitor.restore(before)
+    assert scene.monitor.telemetry().authority.who == who
+    await scene.monitor.close()

@@ -4,33 +4,36 @@ from dataclasses import replace
 
 import pytest
 
+from hardware.authority import Authority
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.dialect import Dialect
-from hardware.autopilot.preflight import failsafe_checks, telemetry_checks
+from hardware.autopilot.preflight import failsafe_check, telemetry_checks
 from hardware.autopilot.px4 import PX4
-from hardware.readings import GeoPoint, Telemetry
+from hardware.readings import Place, Telemetry
+from hardware.reasons.preflight import FailsafeParameter, FailsafeUnread
+from planner.reason import remedy_of
 
 NOW = 1_700_000_000.0
 READY = Telemetry(
     connected=True,
     at_s=NOW,
-    position=GeoPoint(47.0, 8.0),
+    position=Place(47.0, 8.0),
     position_at_s=NOW - 0.1,
     heading_deg=10.0,
     heading_at_s=NOW - 0.05,
     battery_percent=90.0,
     gps_fix="3D",
     satellites=12,
-    home=GeoPoint(47.0, 8.0),
+    home=Place(47.0, 8.0),
     autopilot="px4",
 )
 SAFE_PX4 = {"NAV_DLL_ACT": 2.0, "COM_RC_OVERRIDE": 1.0, "GF_ACTION": 2.0, "COM_OBL_RC_ACT": 0.0}
 SAFE_ARDUPILOT = {"FS_GCS_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0, "FENCE_ACTION": 1.0, "FS_THR_ENABLE": 1.0}
 
 
-def refused(telemetry: Telemetry, prearm_ok: bool | None = True, latched: str | None = None) -> list[str]:
-    checks = telemetry_checks(telemetry, prearm_ok, latched, minimum_battery_percent=30.0)
-    assert all(check.remedy for check in checks)
+def refused(telemetry: Telemetry, prearm_ok: bool | None = True) -> list[str]:
+    checks = telemetry_checks(telemetry, prearm_ok, minimum_battery_percent=30.0)
+    assert all(check.ok or remedy_of(check.reason) for check in checks)
     return [check.name for check in checks if check.blocking and not check.ok]
 
 
@@ -42,15 +45,15 @@ def test_a_ready_vehicle_passes() -> None:
 @pytest.mark.parametrize(
     ("change", "name"),
     [
-        ({"connected": False}, "Vehicle link"),
-        ({"gps_fix": "2D"}, "GPS"),
-        ({"gps_fix": None}, "GPS"),
-        ({"satellites": 4}, "GPS"),
-        ({"position_at_s": NOW - 10.0}, "Position"),
-        ({"position_at_s": None}, "Position"),
-        ({"heading_at_s": NOW - 10.0}, "Heading"),
-        ({"battery_percent": 12.0}, "Battery"),
-        ({"home": None}, "Home position"),
+        ({"connected": False}, "vehicle_link"),
+        ({"gps_fix": "2D"}, "gps"),
+        ({"gps_fix": None}, "gps"),
+        ({"satellites": 4}, "gps"),
+        ({"position_at_s": NOW - 10.0}, "position"),
+        ({"position_at_s": None}, "position"),
+        ({"heading_at_s": NOW - 10.0}, "heading"),
+        ({"battery_percent": 12.0}, "battery"),
+        ({"home": None}, "home"),
     ],
 )
 def test_each_thing_missing_refuses_by_its_name(change: dict[str, object], name: str) -> None:
@@ -58,11 +61,12 @@ def test_each_thing_missing_refuses_by_its_name(change: dict[str, object], name:
 
 
 def test_an_autopilot_that_would_not_arm_and_a_pilot_in_control_refuse() -> None:
-    assert refused(READY, prearm_ok=False) == ["Ready to arm"]
+    assert refused(READY, prearm_ok=False) == ["ready_to_arm"]
     assert refused(replace(READY, in_air=True), prearm_ok=False) == []
-    assert refused(READY, latched="the pilot took over") == ["Control"]
-    assert refused(replace(READY, armed=True), latched="the pilot took over") == ["Control"]
-    assert refused(replace(READY, armed=False), latched="the pilot took over and landed") == []
+    taken = replace(READY, authority=Authority(who="pilot", taken_by="sticks"))
+    assert refused(taken) == ["control"]
+    assert refused(replace(taken, armed=True)) == ["control"]
+    assert refused(replace(taken, armed=False)) == []
 
 
 def test_a_battery_that_is_not_reported_is_a_caution_only() -> None:
@@ -75,21 +79,27 @@ def test_a_battery_that_is_not_reported_is_a_caution_only() -> None:
 def test_safe_parameters_pass_and_each_one_that_would_not_act_refuses(
     dialect: Dialect, values: dict[str, float]
 ) -> None:
-    assert all(check.ok for check in failsafe_checks(dialect, values))
     for rule in dialect.failsafes:
+        assert failsafe_check(rule, rule.parameter, values[rule.parameter]).ok
         assert rule.holds(rule.set_to), f"the remedy of {rule.parameter} is itself unsafe"
         unsafe = 6.0 if rule.parameter == "COM_OBL_RC_ACT" else 0.0
-        bad = [check for check in failsafe_checks(dialect, values | {rule.parameter: unsafe}) if not check.ok]
-        assert [check.name for check in bad] == [f"Failsafe {rule.parameter}"]
-        assert rule.parameter in bad[0].remedy
-        assert bad[0].blocking == rule.blocking
+        bad = failsafe_check(rule, rule.parameter, unsafe)
+        assert (bad.name, bad.ok, bad.blocking) == ("failsafe", False, rule.blocking)
+        assert bad.reason == FailsafeParameter(rule.watch, rule.parameter, unsafe, rule.wanted(unsafe))
+        assert f"Set {rule.parameter} to {rule.wanted(unsafe)}" in remedy_of(bad.reason)
 
 
 def test_a_parameter_that_cannot_be_read_is_not_taken_for_safe() -> None:
-    bad = [check for check in failsafe_checks(PX4, {}) if not check.ok]
+    for rule in PX4.failsafes:
+        check = failsafe_check(rule, rule.parameter, None)
+        assert not check.ok
+        assert check.reason == FailsafeUnread(rule.watch, rule.parameter, rule.set_to)
 
-    assert len(bad) == len(PX4.failsafes)
-    assert all("could not be read" in check.detail for check in bad)
+
+def test_a_remedy_keeps_the_bits_that_it_does_not_need() -> None:
+    rule = next(rule for rule in PX4.failsafes if rule.parameter == "COM_RC_OVERRIDE")
+
+    assert rule.wanted(6.0) == 7
 
 
 @pytest.mark.parametrize(("value", "holds"), [(0, False), (1, True), (2, False), (3, True)])

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from hardware.authority import NOBODY
 from hardware.autopilot.snapshot import HISTORY_S, Snapshot
 
 T0 = 1_700_000_000.0
@@ -35,10 +36,10 @@ def test_wire_units_become_named_units() -> None:
     snapshot.fold("EXTENDED_SYS_STATE", {"landed_state": 2}, T0)
     snapshot.fold("HOME_POSITION", {"latitude": 473000000, "longitude": 85000000, "altitude": 488_000}, T0)
 
-    t = snapshot.telemetry(T0 + 1.0, True, "GUIDED", "nobody", False, "ardupilot")
+    t = snapshot.telemetry(T0 + 1.0, True, "GUIDED", NOBODY, "ardupilot")
 
     assert t.position is not None
-    assert (t.position.lat_deg, t.position.lon_deg) == pytest.approx((47.3977419, 8.5455938))
+    assert (t.position.lat, t.position.lon) == pytest.approx((47.3977419, 8.5455938))
     assert (t.altitude_amsl_m, t.altitude_relative_m) == (528.0, 40.0)
     assert (t.velocity_north_m_s, t.velocity_east_m_s, t.velocity_down_m_s) == (3.0, -4.0, 0.12)
     assert t.heading_deg == pytest.approx(270.0)
@@ -53,7 +54,7 @@ def test_a_vehicle_that_agreed_to_arm_is_not_disarmed_until_a_later_heartbeat_sa
     assert snapshot.disarmed
     snapshot.arming_at_s = T0 + 0.1
     assert not snapshot.disarmed
-    assert snapshot.telemetry(T0 + 0.2, True, "GUIDED", "nobody", False, "ardupilot").armed is None
+    assert snapshot.telemetry(T0 + 0.2, True, "GUIDED", NOBODY, "ardupilot").armed is None
     snapshot.fold("HEARTBEAT", {"custom_mode": 4, "base_mode": 81}, T0 + 0.2)
     assert not snapshot.disarmed
     snapshot.fold("HEARTBEAT", {"custom_mode": 4, "base_mode": 81}, T0 + 1.7)
@@ -61,7 +62,7 @@ def test_a_vehicle_that_agreed_to_arm_is_not_disarmed_until_a_later_heartbeat_sa
 
 
 def test_what_was_never_heard_is_none() -> None:
-    t = Snapshot().telemetry(T0, False, None, "nobody", False, "unknown")
+    t = Snapshot().telemetry(T0, False, None, NOBODY, "unknown")
 
     assert t.position is None
     assert t.heading_deg is None
@@ -86,7 +87,7 @@ def test_an_unknown_charge_or_place_leaves_the_last_one() -> None:
     snapshot.fold("BATTERY_STATUS", {"id": 0, "battery_remaining": -1}, T0)
 
     assert snapshot.position is not None
-    assert snapshot.position.lat_deg == pytest.approx(47.3977419)
+    assert snapshot.position.lat == pytest.approx(47.3977419)
     assert snapshot.battery_percent is None
 
 

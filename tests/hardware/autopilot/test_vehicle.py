@@ -17,7 +17,10 @@ from hardware.autopilot.snapshot import Fields, Snapshot
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
 from hardware.frame import LocalFrame
-from hardware.ports import PilotHasControl, VehicleError
+from hardware.ports import NotInControl, VehicleError
+from hardware.readings import Announcement
+from hardware.reasons.vehicle import AutopilotRefused
+from hardware.reasons.vehicle_news import PositionJumped, TriedAgain, VehicleNews
 from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, launch_simulated
 
 SPEEDUP = 16.0
@@ -28,33 +31,33 @@ class Rig:
     vehicle: MavsdkVehicle
     clock: ScaledClock
     sim: SimulatedAutopilot
-    lines: list[str]
+    news: list[VehicleNews]
 
     async def until(self, happened: Callable[[], bool], seconds: float = 60.0) -> None:
         end = self.clock.now() + seconds
         while not happened():
-            assert self.clock.now() < end, f"did not happen in {seconds} s: {self.lines}, {self.vehicle.telemetry()}"
+            assert self.clock.now() < end, f"did not happen in {seconds} s: {self.news}, {self.vehicle.telemetry()}"
             await self.clock.sleep(0.1)
 
-    async def heard(self, words: str) -> None:
-        await self.until(lambda: any(words in line for line in self.lines))
+    async def announced(self, happened: Callable[[VehicleNews], bool]) -> None:
+        await self.until(lambda: any(happened(news) for news in self.news))
 
 
-async def _keep(source: AsyncIterator[str], lines: list[str]) -> None:
-    async for line in source:
-        lines.append(line)  # noqa: PERF401 (each line must be seen when it comes)
+async def _keep(source: AsyncIterator[Announcement], news: list[VehicleNews]) -> None:
+    async for announcement in source:
+        news.append(announcement.reason)  # noqa: PERF401 (each must be seen when it comes)
 
 
 async def make(flavour: str, speedup: float = SPEEDUP) -> AsyncIterator[Rig]:
     clock = ScaledClock(None, speedup)
     sim = await launch_simulated(Setting(flavour=flavour, speedup=speedup))
-    lines: list[str] = []
+    news: list[VehicleNews] = []
     try:
         vehicle = await connect_vehicle(sim.url, clock)
 
-        listener = asyncio.create_task(_keep(vehicle.changes(), lines))
+        listener = asyncio.create_task(_keep(vehicle.changes(), news))
         try:
-            yield Rig(vehicle, clock, sim, lines)
+            yield Rig(vehicle, clock, sim, news)
         finally:
             await vehicle.close()
             await asyncio.wait_for(listener, 5)
@@ -116,8 +119,8 @@ async def test_unsafe_failsafes_are_mended_on_wish_and_then_pass(rig: Rig) -> No
 
     done = await rig.vehicle.mend_failsafes()
 
-    assert {line.split()[0] for line in done} == set(unsafe[flavour])
-    checks = [check for check in await rig.vehicle.preflight() if check.name.startswith("Failsafe")]
+    assert {parameter.parameter for parameter in done} == set(unsafe[flavour])
+    checks = [check for check in await rig.vehicle.preflight() if check.name == "failsafe"]
     assert all(check.ok for check in checks), checks
     assert await rig.vehicle.mend_failsafes() == []
 
@@ -138,14 +141,14 @@ async def test_a_gps_jump_is_announced(px4: Rig) -> None:
     await px4.vehicle.take_off(10.0)
     await px4.sim.order("gps_jump", north_m=40, seconds=5)
 
-    await px4.heard("GPS position jumped by 4")
+    await px4.announced(lambda news: isinstance(news, PositionJumped) and 35.0 < news.jumped_m < 50.0)
 
 
 async def test_hold_during_take_off_stops_the_climb(rig: Rig) -> None:
     take_off = asyncio.create_task(rig.vehicle.take_off(100.0))
     await rig.until(lambda: (rig.vehicle.telemetry().altitude_relative_m or 0.0) > 8.0)
     await rig.vehicle.hold()
-    with pytest.raises(VehicleError, match="replaced by Hold"):
+    with pytest.raises(VehicleError, match="replaced by the hold"):
         await take_off
     await rig.clock.sleep(8.0)
 
@@ -185,10 +188,16 @@ async def test_two_holds_at_once_both_succeed(rig: Rig) -> None:
     assert rig.vehicle.telemetry().mode in ("HOLD", "BRAKE")
 
 
+def arming_refused(news: VehicleNews) -> bool:
+    return (
+        isinstance(news, TriedAgain) and isinstance(news.because, AutopilotRefused) and news.because.command == "arming"
+    )
+
+
 async def test_take_off_waits_out_an_autopilot_that_is_not_ready_and_says_so(px4: Rig) -> None:
     await px4.sim.order("prearm", ok=False)
     take_off = asyncio.create_task(px4.vehicle.take_off(10.0))
-    await px4.heard("take-off tried again: The autopilot refused arming")
+    await px4.announced(arming_refused)
     await px4.sim.order("prearm", ok=True)
     await asyncio.wait_for(take_off, 30)
 
@@ -199,10 +208,10 @@ async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: R
     await px4.clock.sleep(7.0)
     await px4.sim.order("prearm", ok=False)
     take_off = asyncio.create_task(px4.vehicle.take_off(10.0))
-    await px4.heard("take-off tried again")
+    await px4.announced(arming_refused)
     await px4.sim.order("pilot_mode", mode="STABILIZED")
 
-    with pytest.raises(PilotHasControl, match="STABILIZED"):
+    with pytest.raises(NotInControl, match="STABILIZED"):
         await asyncio.wait_for(take_off, 30)
 
 
@@ -223,7 +232,7 @@ async def test_a_cancelled_flight_sends_nothing_more_and_the_vehicle_obeys_the_n
     assert (await rig.sim.order("commands", since_s=at))["commands"] == []
 
     await rig.vehicle.hold()
-    assert rig.vehicle.telemetry().controller == "crossfix"
+    assert rig.vehicle.telemetry().authority.who == "ours"
 
 
 async def test_telemetry_keeps_its_rates_in_simulated_time(rig: Rig) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, read_bearings
 from hardware.direction_finding.table_file import RecordingError
+from hardware.reasons.table import CellUnusable, Quantity
 
 
 def written(tmp_path: Path, text: str) -> Path:
@@ -23,7 +24,7 @@ def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
     )
     first, second = read_bearings(written(tmp_path, text)).bearings
     assert (first.bearing_deg, first.tag) == (137.592747, "2")
-    assert (first.place.lat_deg, first.place.lon_deg) == (35.178241, -111.656587)
+    assert (first.place.lat, first.place.lon) == (35.178241, -111.656587)
     assert first.sigma_deg == DEFAULT_SIGMA_DEG
     assert second.bearing_deg == 315.0
 
@@ -39,31 +40,32 @@ def test_uavrt_bearing_file_with_and_without_quotes(tmp_path: Path) -> None:
 )
 def test_plain_csv_with_and_without_header_and_sigma(tmp_path: Path, text: str) -> None:
     first, second = read_bearings(written(tmp_path, text), sigma_deg=5.0).bearings
-    assert (first.place.lat_deg, first.place.lon_deg, first.bearing_deg, first.sigma_deg) == (50.1, 7.2, 10.0, 3.0)
+    assert (first.place.lat, first.place.lon, first.bearing_deg, first.sigma_deg) == (50.1, 7.2, 10.0, 3.0)
     assert (second.bearing_deg, second.sigma_deg) == (20.0, 5.0)
 
 
 @pytest.mark.parametrize(
-    ("row", "words"),
+    ("row", "column", "cell", "quantity"),
     [
-        ("50.1,7.2,north", 'the bearing is "north"'),
-        ("150.1,7.2,3", "latitude 150.1"),
-        ("50.1,720,3", "longitude 720"),
-        ("50.1,7.2,999", "bearing 999"),
-        ("50.1,7.2,3,-4", "sigma"),
-        ("50.1,7.2", "bearing"),
-        ("nan,7.2,3", "latitude"),
+        ("50.1,7.2,north", 3, "north", "bearing"),
+        ("150.1,7.2,3", 1, "150.1", "latitude"),
+        ("50.1,720,3", 2, "720", "longitude"),
+        ("50.1,7.2,999", 3, "999", "bearing"),
+        ("50.1,7.2,3,-4", 4, "-4", "sigma"),
+        ("50.1,7.2", 3, "", "bearing"),
+        ("nan,7.2,3", 1, "nan", "latitude"),
     ],
 )
-def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, words: str) -> None:
-    recorded = read_bearings(written(tmp_path, f"50.1,7.2,10\n{row}\n"))
+def test_bad_rows_are_named_and_left_out(tmp_path: Path, row: str, column: int, cell: str, quantity: Quantity) -> None:
+    path = written(tmp_path, f"50.1,7.2,10\n{row}\n")
+    recorded = read_bearings(path)
     assert len(recorded.bearings) == 1
-    (remark,) = recorded.remarks
-    assert "bearings.csv:2: " in remark
-    assert words in remark
+    assert recorded.remarks == (CellUnusable(str(path), 2, column, cell, quantity),)
 
 
-@pytest.mark.parametrize("text", ["", "a,b\n", "lat,lon,angle\n1,2,3\n", "x,y,z,w,v\n", "50.1,7.2,north\n"])
+@pytest.mark.parametrize(
+    "text", ["", "a,b\n", "lat,lon,bearing\n", "lat,lon,angle\n1,2,3\n", "x,y,z,w,v\n", "50.1,7.2,north\n"]
+)
 def test_useless_files_are_refused_with_their_name(tmp_path: Path, text: str) -> None:
     with pytest.raises(RecordingError, match=r"bearings\.csv"):
         read_bearings(written(tmp_path, text))

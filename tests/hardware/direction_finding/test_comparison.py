@@ -9,13 +9,17 @@ import pytest
 
 from hardware.direction_finding.comparison import paired_deg
 from hardware.readings import BearingReading
+from hardware.reasons.sweep import NoDirection
 
 NOTHING = np.full(180, np.nan)
 
 
 def off(errors_deg: np.ndarray, accepted: bool = True) -> list[BearingReading]:
     """Readings of emitters due north."""
-    return [BearingReading(e % 360.0, 1.0, 1.0, accepted, "", (), NOTHING, NOTHING) for e in errors_deg]
+    return [
+        BearingReading(e % 360.0, 1.0, 1.0, accepted, None if accepted else NoDirection(), (), NOTHING, NOTHING)
+        for e in errors_deg
+    ]
 
 
 def north(readings: list[BearingReading]) -> list[float]:

@@ -12,7 +12,19 @@ from hypothesis import strategies as st
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern, make_pattern
-from hardware.readings import GeoPoint, Sweep
+from hardware.readings import Place, Sweep
+from hardware.reasons.receiver import NothingHeardInTurn
+from hardware.reasons.sweep import (
+    ConstantPower,
+    DirectionInGap,
+    NothingAboveNoise,
+    Overdriven,
+    PowerNotNumbers,
+    TooFewDirections,
+    TurnIncomplete,
+    UnlikeAntenna,
+)
+from planner.reason import Reason
 
 ANGLE = np.arange(0.0, 360.0, 1.0)
 BEAM = make_pattern(
@@ -23,9 +35,9 @@ FINDER = SparseDirectionFinder()
 
 
 def sweep_of(heading_deg: np.ndarray, power_db: np.ndarray, **more: object) -> Sweep:
-    times = 0.05 * np.arange(heading_deg.size)
+    times = 0.05 * np.arange(heading_deg.size, dtype=float)
     return dataclasses.replace(
-        Sweep(times, heading_deg, power_db, 868e6, GeoPoint(50.0, 7.0), 100.0),
+        Sweep(times, heading_deg, power_db, 868e6, Place(50.0, 7.0), 100.0),
         **more,
     )
 
@@ -61,7 +73,7 @@ def test_clean_sweep_gives_the_exact_bearing_at_any_level_offset_and_start(
 
 def test_error_is_near_the_cramer_rao_bound_and_sigma_tells_it() -> None:
     rng = np.random.default_rng(11)
-    heading = 22.5 * np.arange(16)
+    heading = 22.5 * np.arange(16, dtype=float)
     slope = (BEAM.gain_at(0.5 - heading) - BEAM.gain_at(-0.5 - heading)) / 1.0
     bound = 1.0 / np.sqrt(np.sum((slope - slope.mean()) ** 2))
     errors, sigmas = [], []
@@ -120,22 +132,22 @@ FULL = np.arange(0.0, 360.0, 1.5)
 
 
 @pytest.mark.parametrize(
-    ("sweep", "words"),
+    ("sweep", "reason"),
     [
-        (sweep_of(np.empty(0), np.empty(0)), "delivered nothing"),
-        (sweep_of(FULL, np.full(FULL.size, np.nan)), "not a number"),
-        (sweep_of(FULL, heard(YAGI, 10.0, FULL), clipped_samples=60), "overdriven"),
-        (sweep_of(FULL[:4], heard(YAGI, 10.0, FULL[:4])), "directions"),
-        (sweep_of(FULL[:150], heard(YAGI, 10.0, FULL[:150])), "all the way round"),
-        (sweep_of(FULL, np.full(FULL.size, -70.0)), "constant"),
-        (sweep_of(FULL, -70.0 + 0.3 * np.sin(FULL * 7.7)), "does not look like the antenna"),
-        (sweep_of(FULL, -126.0 + 0.3 * np.sin(FULL * 7.7), noise_floor_db=-126.0), "nothing was heard"),
+        (sweep_of(np.empty(0), np.empty(0)), NothingHeardInTurn()),
+        (sweep_of(FULL, np.full(FULL.size, np.nan)), PowerNotNumbers()),
+        (sweep_of(FULL, heard(YAGI, 10.0, FULL), clipped_samples=60), Overdriven(60, 240)),
+        (sweep_of(FULL[:4], heard(YAGI, 10.0, FULL[:4])), TooFewDirections(3, 8)),
+        (sweep_of(FULL[:150], heard(YAGI, 10.0, FULL[:150])), TurnIncomplete(223.5)),
+        (sweep_of(FULL, np.full(FULL.size, -70.0)), ConstantPower()),
+        (sweep_of(FULL, -70.0 + 0.3 * np.sin(FULL * 7.7)), UnlikeAntenna),
+        (sweep_of(FULL, -126.0 + 0.3 * np.sin(FULL * 7.7), noise_floor_db=-126.0), NothingAboveNoise(3.0)),
     ],
 )
-def test_unusable_sweeps_are_rejected_in_the_operators_words(sweep: Sweep, words: str) -> None:
+def test_unusable_sweeps_are_rejected_with_a_reason(sweep: Sweep, reason: Reason | type[Reason]) -> None:
     reading = FINDER.estimate(sweep, YAGI)
     assert not reading.accepted
-    assert words in reading.reason
+    assert isinstance(reading.reason, reason) if isinstance(reason, type) else reading.reason == reason
     assert np.isfinite([reading.bearing_deg, reading.sigma_deg, reading.quality]).all()
 
 
@@ -143,7 +155,7 @@ def test_bearing_inside_an_unheard_arc_is_rejected() -> None:
     heading = np.arange(0.0, 280.0, 2.0)
     reading = FINDER.estimate(sweep_of(heading, heard(BEAM, 320.0, heading)), BEAM)
     assert not reading.accepted
-    assert "gap" in reading.reason
+    assert reading.reason == DirectionInGap(82.0)
 
 
 def test_minimum_quality_is_a_setting() -> None:
@@ -165,4 +177,4 @@ def test_any_numbers_give_a_reading_and_never_a_crash(rows: list[tuple[float, fl
     power = np.array([p for _, p in rows], dtype=float)
     reading = FINDER.estimate(sweep_of(heading, power), YAGI)
     assert np.isfinite([reading.bearing_deg, reading.sigma_deg, reading.quality]).all()
-    assert reading.accepted or reading.reason
+    assert reading.accepted is (reading.reason is None)

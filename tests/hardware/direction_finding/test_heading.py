@@ -6,10 +6,12 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from refusals import refusing
 
 from hardware.direction_finding.heading import HeadingError, declination_deg, estimate_clock_offset, true_heading_deg
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
-from hardware.readings import GeoPoint, HeadingSample, PowerSample
+from hardware.readings import HeadingSample, Place, PowerSample
+from hardware.reasons.antenna import NoMagneticModel
 
 PATTERN = load_pattern(SMALL_YAGI)
 
@@ -25,13 +27,13 @@ def at(year: int) -> float:
 )
 def test_declination_is_the_models(lat: float, lon: float, year: int, declination: float) -> None:
     lon = (lon + 180.0) % 360.0 - 180.0
-    assert declination_deg(GeoPoint(lat, lon), at(year)) == pytest.approx(declination, abs=0.03)
+    assert declination_deg(Place(lat, lon), at(year)) == pytest.approx(declination, abs=0.03)
 
 
 def test_true_heading_wraps_and_dates_without_a_model_are_refused() -> None:
-    place = GeoPoint(-80.0, -120.0)
+    place = Place(-80.0, -120.0)
     assert true_heading_deg(350.0, place, at(2025)) == pytest.approx((350.0 + declination_deg(place, at(2025))) % 360.0)
-    with pytest.raises(HeadingError, match="no magnetic model"):
+    with refusing(NoMagneticModel(1999), HeadingError):
         declination_deg(place, at(1999))
 
 
@@ -45,7 +47,7 @@ def turn(offset_s: float, both_ways: bool) -> tuple[list[PowerSample], list[Head
     power = PATTERN.gain_at(100.0 - nose(times)) + rng.normal(0.0, 1.0, times.size)
     samples = [PowerSample(float(t + offset_s), 868e6, float(p)) for t, p in zip(times, power, strict=True)]
     track = np.arange(-3.0, 27.0, 0.1)
-    return samples, [HeadingSample(float(t), float(nose(np.array(t)) % 360.0), GeoPoint(50, 7)) for t in track]
+    return samples, [HeadingSample(float(t), float(nose(np.array(t)) % 360.0), Place(50, 7)) for t in track]
 
 
 @pytest.mark.parametrize("offset_s", [-0.6, 0.0, 0.37])

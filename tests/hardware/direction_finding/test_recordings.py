@@ -5,14 +5,26 @@ from __future__ import annotations
 import contextlib
 import math
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from refusals import refusing
 
 from hardware.direction_finding.recordings import read_recording
 from hardware.direction_finding.table_file import RecordingError
+from hardware.reasons.table import (
+    CellUnusable,
+    NothingUsable,
+    OtherTagsLeftOut,
+    PulsesOutsideRotations,
+    Quantity,
+    RotationIrregular,
+    RowLeftOut,
+    TagNotHeard,
+)
 
 LAT, LON, AMSL = 35.177966, -111.65683, 2124.4
 HEADER_21 = (
@@ -46,7 +58,7 @@ def pulse(
     return ",".join(cells)
 
 
-def rotation(columns: int = 21, **more: float) -> list[str]:
+def rotation(columns: int = 21, **more: Any) -> list[str]:
     yaws = np.arange(0.0, 360.0, 15.0)
     rows = [
         pulse(yaw, -40.0 - 10.0 * (1 - math.cos(math.radians(yaw - 200.0))), columns=columns, **more) for yaw in yaws
@@ -71,7 +83,7 @@ def test_every_layout_gives_the_same_sweep(tmp_path: Path, columns: int, header:
     (recorded,) = recording.sweeps
     assert recorded.sweep.tag == "4"
     assert recorded.place_known
-    assert (recorded.sweep.position.lat_deg, recorded.sweep.position.lon_deg) == (LAT, LON)
+    assert (recorded.sweep.position.lat, recorded.sweep.position.lon) == (LAT, LON)
     assert recorded.sweep.altitude_amsl_m == pytest.approx(AMSL)
     assert recorded.sweep.frequency_hz == 148_520_230
     assert recorded.sweep.heading_deg == pytest.approx(np.arange(0.0, 360.0, 15.0), abs=0.01)
@@ -100,32 +112,51 @@ def test_several_rotations_and_tags_give_one_sweep_each_of_the_commonest_tag(tmp
     path = write(tmp_path, first + rotation(tag=9) + [pulse(1.0, -30.0)])
     recording = read_recording(path)
     assert [recorded.sweep.tag for recorded in recording.sweeps] == ["4", "9"]
-    assert any("1 pulses of tag 2" in remark for remark in recording.remarks)
-    assert any("outside every rotation" in remark for remark in recording.remarks)
+    assert recording.remarks == (
+        PulsesOutsideRotations(str(path), 1),
+        OtherTagsLeftOut(str(path), 1, "4", 1, ("2",)),
+    )
     assert [recorded.sweep.tag for recorded in read_recording(path, tag="2").sweeps] == ["2"]
-    with pytest.raises(RecordingError, match="tag 77"):
+    with refusing(NothingUsable(str(path), "pulse", TagNotHeard(str(path), 1, "77", ("2", "4"))), RecordingError):
         read_recording(path, tag="77")
 
 
 @pytest.mark.parametrize(
-    ("bad", "words"),
+    ("bad", "column", "cell", "quantity"),
     [
-        ("7,4,148520230,1,2,-9999,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,0,0", "SNR in column 6"),
-        ("7,4,148520230,1,2,oops,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,0,0", 'is "oops"'),
-        ("7,4,148520230,1,2,50,1,1,1,50,-9999,1,1,35,-111,8,0,0,10,0,0", "noise PSD in column 11"),
-        ("7,4,148520230,1,2,50,1,1,1,50,1e-9,1,1,95,-111,8,0,0,10,0,0", "no place on earth"),
-        ("7,4,148520230,1,2,50", "needs 19 columns"),
-        ("12,what,is,this", '"12" is no known kind'),
-        ("7,4,148520230,1,2,50,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,3,4", "both carry an antenna offset"),
+        ("7,4,148520230,1,2,-9999,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,0,0", 6, "-9999", "snr"),
+        ("7,4,148520230,1,2,oops,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,0,0", 6, "oops", "snr"),
+        ("7,4,148520230,1,2,50,1,1,1,50,-9999,1,1,35,-111,8,0,0,10,0,0", 11, "-9999", "noise_psd"),
+        ("7,4,148520230,1,2,50,1,1,1,50,1e-9,1,1,95,-111,8,0,0,10,0,0", 14, "95", "latitude"),
+        ("12,what,is,this", 1, "12", "kind_of_row"),
     ],
 )
-def test_rows_not_understood_are_named_with_their_line(tmp_path: Path, bad: str, words: str) -> None:
+def test_cells_not_understood_are_named_with_their_line(
+    tmp_path: Path, bad: str, column: int, cell: str, quantity: Quantity
+) -> None:
     lines = rotation()
     lines.insert(4, bad)
-    recording = read_recording(write(tmp_path, lines))
-    (remark,) = recording.remarks
-    assert "rotation.csv:5: " in remark
-    assert words in remark
+    path = write(tmp_path, lines)
+    recording = read_recording(path)
+    assert recording.remarks == (CellUnusable(str(path), 5, column, cell, quantity),)
+    assert recording.sweeps[0].sweep.power_db.size == 24
+
+
+@pytest.mark.parametrize(
+    ("bad", "why"),
+    [
+        ("7,4,148520230,1,2,50", "columns"),
+        ("7,4,148520230,1,2,50,1,1,1,50,1e-9,1,1,35,-111,8,0,0,10,3,4", "two_offsets"),
+    ],
+)
+def test_rows_not_understood_are_named_with_their_line(
+    tmp_path: Path, bad: str, why: Literal["columns", "two_offsets"]
+) -> None:
+    lines = rotation()
+    lines.insert(4, bad)
+    path = write(tmp_path, lines)
+    recording = read_recording(path)
+    assert recording.remarks == (RowLeftOut(str(path), 5, why),)
     assert recording.sweeps[0].sweep.power_db.size == 24
 
 
@@ -139,10 +170,13 @@ def test_heartbeat_rows_are_understood_and_are_no_pulses(tmp_path: Path) -> None
 
 def test_unclosed_and_reopened_rotations_are_remarked(tmp_path: Path) -> None:
     lines = rotation()[:-1] + rotation()[:-1]
-    recording = read_recording(write(tmp_path, lines))
+    path = write(tmp_path, lines)
+    recording = read_recording(path)
     assert len(recording.sweeps) == 2
-    assert any("while another is open" in remark for remark in recording.remarks)
-    assert any("never closed" in remark for remark in recording.remarks)
+    assert recording.remarks == (
+        RotationIrregular(str(path), 1, "not_closed"),
+        RotationIrregular(str(path), 26, "not_closed"),
+    )
 
 
 @pytest.mark.parametrize(
@@ -170,18 +204,19 @@ def test_plain_table_with_place_and_time(tmp_path: Path) -> None:
     path.write_text("time_s,lat,lon,heading_deg,power_db\n5,50.1,7.2,0,-50\n6,50.1,7.2,10,-40\n")
     (recorded,) = read_recording(path).sweeps
     assert recorded.place_known
-    assert recorded.sweep.position.lat_deg == pytest.approx(50.1)
+    assert recorded.sweep.position.lat == pytest.approx(50.1)
     assert recorded.sweep.at_s.tolist() == [5.0, 6.0]
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "holds no data"),
-        (b"# only\n\n", "holds no data"),
+        (b"", "holds no rows"),
+        (b"# only\n\n", "holds no rows"),
         (b"\x89PNG\0\0\0\0", "not a text file"),
-        (b"name,colour\na,b\n", "names no heading and power"),
-        (b"a b c\n", "names no heading"),
+        (b"heading_deg,power_db\n", "holds no rows"),
+        (b"name,colour\na,b\n", "cannot be told apart"),
+        (b"a b c\n", "cannot be told apart"),
         (b"10,35,-111,2000\n11,35,-111,2000\n", "no pulse"),
         (b"10,35,-111,2000\n7,4,1,1,1,bad\n11,35,-111,2000\n", "6 columns"),
     ],

@@ -13,11 +13,12 @@ from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
-from hardware.readings import BearingReading, GeoPoint, Sweep
+from hardware.readings import BearingReading, Place, Sweep
+from hardware.reasons.sweep import NothingAboveNoise
 from hardware.sim.turn import turn_once
 from hardware.sim.world import Emitter, RadioLink, Reflector, World
 
-HERE = GeoPoint(50.6, 7.2)
+HERE = Place(50.6, 7.2)
 FREQUENCY_HZ = 868_300_000.0
 FINDER = SparseDirectionFinder()
 
@@ -54,7 +55,7 @@ def test_sigma_is_true_and_least_squares_no_better(condition: Condition) -> None
 def world_sweep(rng: np.random.Generator, distance_m: float, power_dbm: float, reflectors: int) -> tuple[float, Sweep]:
     frame = LocalFrame(HERE)
 
-    def place(bearing: float, away_m: float) -> GeoPoint:
+    def place(bearing: float, away_m: float) -> Place:
         return frame.to_geo(away_m * math.sin(bearing), away_m * math.cos(bearing))
 
     bearing = rng.uniform(0.0, 2.0 * math.pi)
@@ -114,4 +115,4 @@ def test_wave_below_the_noise_is_not_believed() -> None:
     _, sweep = world_sweep(rng, 300.0, -52.0, 0)
     reading = FINDER.estimate(sweep, load_pattern(SMALL_YAGI))
     assert not reading.accepted
-    assert "above the noise floor" in reading.reason
+    assert reading.reason == NothingAboveNoise(3.0)

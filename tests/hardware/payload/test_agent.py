@@ -8,37 +8,43 @@ import math
 import os
 import signal
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from refusals import refusing
 from websockets.asyncio.server import ServerConnection, serve
 
+from hardware.channels import only_carrier
 from hardware.payload.agent import AgentSettings, PayloadAgent
 from hardware.payload.messages import Pong
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.payload.spool import Spool
 from hardware.ports import ReceiverError
-from hardware.readings import PowerSample, Pulses
+from hardware.readings import Channel, PowerSample, Pulses
+from hardware.reasons.channels import CarriersOnly
+from hardware.reasons.payload import NoPayloadConnected, PayloadListening
+from hardware.reasons.receiver import NonsensicalPower, ReceiverUnplugged
 
 TOKEN = "a-token-of-some-length"
 FREQUENCY_HZ = 868_300_000.0
+CARRIER = Channel(FREQUENCY_HZ)
 
 
 class CountingReceiver:
-    """Sample k has power -k/100 dB; a new one counts on from the last."""
+    """Sample k has power -k/100 dB, of each channel in turn; a new one counts on from the last."""
 
     def __init__(self, begin: int = 0, rate_hz: float = 200.0) -> None:
         self.made = begin
         self.rate_hz = rate_hz
-        self.frequency_hz = 0.0
+        self.channels: Sequence[Channel] = ()
         self.fails = 0
 
-    async def open(self, frequency_hz: float) -> None:
-        self.frequency_hz = frequency_hz
+    async def open(self, channels: Sequence[Channel]) -> None:
+        self.channels = channels
 
     async def close(self) -> None: ...
 
@@ -47,9 +53,10 @@ class CountingReceiver:
             await asyncio.sleep(1.0 / self.rate_hz)
             if self.fails:
                 self.fails -= 1
-                raise ReceiverError("unplugged")
+                raise ReceiverError(ReceiverUnplugged())
             self.made += 1
-            yield PowerSample(1000.0 + self.made, self.frequency_hz, -self.made / 100.0)
+            channel = self.channels[self.made % len(self.channels)]
+            yield PowerSample(1000.0 + self.made, channel.frequency_hz, -self.made / 100.0)
 
 
 class Server:
@@ -102,7 +109,7 @@ async def running_agent(
         longest_retry_s=0.1,
     )
     spool = Spool(tmp_path / "samples.sqlite")
-    agent = PayloadAgent(settings, receiver, spool, FREQUENCY_HZ)
+    agent = PayloadAgent(settings, receiver, spool, (CARRIER,))
     task = asyncio.create_task(agent.run())
     try:
         yield agent
@@ -131,7 +138,7 @@ async def test_everything_arrives_once_over_a_link_that_is_cut_again_and_again(t
     radio = CountingReceiver()
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         receiver = PayloadReceiver(server.hub)
-        await receiver.open(FREQUENCY_HZ)
+        await receiver.open([CARRIER])
         heard: list[PowerSample] = []
         collecting = asyncio.create_task(collect(receiver, heard))
         for _ in range(8):
@@ -153,7 +160,7 @@ async def test_agent_restarted_in_mid_sweep_loses_and_doubles_nothing(tmp_path: 
                 await until(server.hub.connected)
                 if collecting is None:
                     receiver = PayloadReceiver(server.hub)
-                    await receiver.open(FREQUENCY_HZ)
+                    await receiver.open([CARRIER])
                     collecting = asyncio.create_task(collect(receiver, heard))
                 await until(lambda radio=radio, made=radio.made: radio.made > made + 40)
             radio = CountingReceiver(radio.made)
@@ -178,7 +185,7 @@ async def test_server_away_and_back_gets_what_was_spooled(tmp_path: Path) -> Non
     async with running_server() as second, running_agent(tmp_path, second.port, CountingReceiver(radio.made)):
         receiver = PayloadReceiver(second.hub)
         subscription = second.hub.subscribe()
-        await receiver.open(FREQUENCY_HZ)
+        await receiver.open([CARRIER])
         got = [numbers([await subscription.get()])[0] for _ in range(60)]
     assert got == list(range(got[0], got[0] + 60))
 
@@ -188,8 +195,9 @@ async def test_receiver_fault_is_told_and_mended(tmp_path: Path) -> None:
     radio.fails = 15
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         states = server.hub.agents
-        await until(lambda: states and "unplugged" in states["payload"].receiver)
+        await until(lambda: states and states["payload"].receiver == ReceiverUnplugged())
         await until(lambda: states["payload"].receiver_ok)
+        assert states["payload"].receiver == PayloadListening(1)
         await until(lambda: states["payload"].clock_offset_s is not None)
         assert abs(states["payload"].clock_offset_s or 1.0) < 0.5
 
@@ -197,7 +205,7 @@ async def test_receiver_fault_is_told_and_mended(tmp_path: Path) -> None:
 def test_a_clock_that_is_set_replaces_the_offset_at_once(tmp_path: Path) -> None:
     clock = {"agent": 1000.0, "server": 1000.2}
     spool = Spool(tmp_path / "samples.sqlite")
-    agent = PayloadAgent(AgentSettings((), TOKEN), CountingReceiver(), spool, FREQUENCY_HZ, lambda: clock["agent"])
+    agent = PayloadAgent(AgentSettings((), TOKEN), CountingReceiver(), spool, (CARRIER,), lambda: clock["agent"])
 
     def offset_after(trip_s: float, set_by_s: float = 0.0) -> float | None:
         sent_s = clock["agent"]
@@ -225,28 +233,26 @@ async def test_samples_the_wire_cannot_carry_are_left_out_and_told(tmp_path: Pat
         subscription = server.hub.subscribe()
         got = [numbers([await subscription.get()])[0] for _ in range(30)]
         states = server.hub.agents
-        await until(lambda: "nonsense" in states["payload"].receiver)
+        await until(lambda: states["payload"].receiver == NonsensicalPower("nan"))
     assert all(number % 5 for number in got)
     assert got == sorted(set(got))
 
 
-async def test_server_tunes_the_payload_and_it_remembers(tmp_path: Path) -> None:
+async def test_server_tunes_the_payload_to_several_channels_and_it_remembers(tmp_path: Path) -> None:
     radio = CountingReceiver()
+    wanted = (Channel(433_920_000.0), Channel(434_100_000.0))
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         receiver = PayloadReceiver(server.hub)
-        await receiver.open(433_920_000.0)
-        sample = await asyncio.wait_for(anext(aiter(receiver.samples())), 10)
-        assert sample.frequency_hz == 433_920_000.0
-    assert Spool(tmp_path / "samples.sqlite").frequency_hz == 433_920_000.0
+        await receiver.open(wanted)
+        stream = aiter(receiver.samples())
+        got = [await asyncio.wait_for(anext(stream), 10) for _ in range(10)]
+        assert {sample.frequency_hz for sample in got} == {433_920_000.0, 434_100_000.0}
+        await until(lambda: server.hub.agents["payload"].receiver == PayloadListening(2))
+    assert Spool(tmp_path / "samples.sqlite").channels == wanted
 
 
 class TagReceiver(CountingReceiver):
     """Hears every third pulse."""
-
-    expected: Pulses | None = None
-
-    def expect(self, pulses: Pulses | None) -> None:
-        self.expected = pulses
 
     async def samples(self) -> AsyncIterator[PowerSample]:
         async for sample in super().samples():
@@ -254,12 +260,11 @@ class TagReceiver(CountingReceiver):
 
 
 async def test_a_tag_is_passed_on_to_the_payload_which_says_what_it_heard_and_missed(tmp_path: Path) -> None:
-    radio, pulses = TagReceiver(), Pulses(0.02, 1.3, 0.03)
+    radio, tag = TagReceiver(), Channel(150e6, Pulses(0.02, 1.3, 0.03))
     async with running_server() as server, running_agent(tmp_path, server.port, radio):
         receiver = PayloadReceiver(server.hub)
-        receiver.expect(pulses)
-        await receiver.open(150e6)
-        await until(lambda: radio.expected == pulses)
+        await receiver.open([tag])
+        await until(lambda: radio.channels == (tag,))
         stream = aiter(receiver.samples())
         got = [await asyncio.wait_for(anext(stream), 10) for _ in range(10)]
     assert [sample.detected for sample in got] == [number % 3 == 0 for number in numbers(got)]
@@ -267,11 +272,14 @@ async def test_a_tag_is_passed_on_to_the_payload_which_says_what_it_heard_and_mi
 
 
 async def test_a_payload_that_finds_no_pulses_says_so(tmp_path: Path) -> None:
-    async with running_server() as server, running_agent(tmp_path, server.port, CountingReceiver()):
-        receiver = PayloadReceiver(server.hub)
-        receiver.expect(Pulses(0.02, 1.3))
-        await receiver.open(150e6)
-        await until(lambda: "carriers only" in server.hub.agents["payload"].receiver)
+    class CarrierReceiver(CountingReceiver):
+        async def open(self, channels: Sequence[Channel]) -> None:
+            await super().open([only_carrier(channels)])
+
+    async with running_server() as server, running_agent(tmp_path, server.port, CarrierReceiver()):
+        await PayloadReceiver(server.hub).open([Channel(150e6, Pulses(0.02, 1.3))])
+        await until(lambda: server.hub.agents["payload"].receiver == CarriersOnly(150e6))
+        assert not server.hub.agents["payload"].receiver_ok
 
 
 async def test_wrong_token_never_gets_in(tmp_path: Path) -> None:
@@ -279,8 +287,8 @@ async def test_wrong_token_never_gets_in(tmp_path: Path) -> None:
         async with running_agent(tmp_path, server.port, CountingReceiver(), token="not-the-right-token"):
             await asyncio.sleep(0.4)
         assert server.hub.agents == {}
-        with pytest.raises(ReceiverError, match="no payload is connected"):
-            await PayloadReceiver(server.hub, connect_within_s=0.1).open(FREQUENCY_HZ)
+        with refusing(NoPayloadConnected(), ReceiverError):
+            await PayloadReceiver(server.hub, connect_within_s=0.1).open([CARRIER])
 
 
 async def test_killed_process_goes_on_where_it_was(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES, PROTOCOL
 from hardware.payload.session import PayloadHub, PayloadSession, Subscription
-from hardware.readings import Pulses
+from hardware.readings import Channel, Pulses
+from hardware.reasons.payload import PayloadListening, PayloadStateUnknown
 
 TOKEN = "a-token-of-some-length"
 
@@ -89,18 +90,17 @@ def test_server_that_forgot_goes_on_where_the_agent_still_has_samples() -> None:
     assert welcome["received_seq"] == 900
 
 
-def test_agents_clock_is_corrected_and_frequency_is_told() -> None:
+def test_agents_clock_is_corrected_and_its_channels_are_told() -> None:
     server = hub()
-    server.tune(433e6)
+    server.tune([Channel(433e6)])
     subscription = server.subscribe()
     session = PayloadSession(server)
     session.receive(hello())
-    assert answers(session)[0]["frequency_hz"] == 433e6
-    server.tune(434e6)
-    assert answers(session) == [{"type": "tune", "frequency_hz": 434e6, "pulses": None}]
-    server.tune(434e6, Pulses(0.02, 1.3, 0.05))
-    (tuned,) = answers(session)
-    assert tuned["pulses"] == {"width_s": 0.02, "period_s": 1.3, "jitter_s": 0.05}
+    carrier = {"frequency_hz": 433e6, "pulses": None}
+    assert answers(session)[0]["channels"] == [carrier]
+    server.tune([Channel(433e6), Channel(150e6, Pulses(0.02, 1.3, 0.05))])
+    tag = {"frequency_hz": 150e6, "pulses": {"width_s": 0.02, "period_s": 1.3, "jitter_s": 0.05}}
+    assert answers(session) == [{"type": "tune", "channels": [carrier, tag]}]
     session.receive(batch(1, 1, offset=3.0))
     assert drained(subscription) == [4.0]
 
@@ -117,40 +117,63 @@ def test_second_connection_of_an_agent_replaces_the_first() -> None:
     assert not server.agents["pi"].connected
 
 
+def status(receiver: object) -> str:
+    return json.dumps(
+        {
+            "type": "status",
+            "receiver": receiver,
+            "receiver_ok": True,
+            "temperature_c": 51.5,
+            "clock_offset_s": 0.02,
+            "round_trip_s": 0.05,
+            "clipped_percent": 2.5,
+            "waiting": 7,
+            "lost": 0,
+        }
+    )
+
+
 def test_status_is_shown() -> None:
     server = hub()
     session = PayloadSession(server)
     session.receive(hello())
-    session.receive(
-        json.dumps(
-            {
-                "type": "status",
-                "receiver": "listening",
-                "receiver_ok": True,
-                "temperature_c": 51.5,
-                "clock_offset_s": 0.02,
-                "round_trip_s": 0.05,
-                "clipped_percent": 2.5,
-                "waiting": 7,
-                "lost": 0,
-            }
-        )
-    )
+    session.receive(status({"code": "payload_listening", "channels": 2}))
     state = server.agents["pi"]
     assert (state.temperature_c, state.waiting, state.clipped_percent, state.receiver_ok) == (51.5, 7, 2.5, True)
     assert state.heard_at_s == 5000.0
+    assert state.receiver == PayloadListening(2)
+
+
+def test_a_state_that_this_server_does_not_know_is_no_reason_to_lose_the_samples() -> None:
+    server = hub()
+    session = PayloadSession(server)
+    session.receive(hello())
+    session.receive(status({"code": "from_the_future", "depth_m": 3.0}))
+    assert server.agents["pi"].receiver == PayloadStateUnknown("from_the_future")
+    session.receive(batch(1, 1))
+    assert not session.refused
+
+
+@pytest.mark.parametrize(("theirs", "behind"), [(PROTOCOL - 1, "payload's software"), (PROTOCOL + 1, "server")])
+def test_another_version_is_told_who_is_behind_in_words_that_it_can_read(theirs: int, behind: str) -> None:
+    session = PayloadSession(hub())
+    session.receive(hello(protocol=theirs))
+    (refusal,) = answers(session)
+    assert refusal["reason"] == (
+        f"The payload speaks version {theirs} of the protocol, the server version {PROTOCOL}. Update the {behind}."
+    )
 
 
 @pytest.mark.parametrize(
     ("messages", "words"),
     [
-        ([batch(1, 1)], "hello must come first"),
+        ([batch(1, 1)], "did not say hello first"),
         ([hello(), hello()], "twice"),
-        ([hello(protocol=9)], "update the payload"),
+        ([hello(protocol=9)], "Update the server"),
         (["x" * (MAXIMUM_MESSAGE_BYTES + 1)], "longer than"),
         ([hello(), '{"type":"samples","first_seq":1,"oldest_seq":1,"clock_offset_s":null,"samples":[]}'], "samples"),
-        ([hello(), batch(1, 1).replace("-60.0", "NaN")], "not understood"),
-        ([hello(), batch(1, 1).replace("-60.0", "1e999")], "not understood"),
+        ([hello(), batch(1, 1).replace("-60.0", "NaN")], "was not understood"),
+        ([hello(), batch(1, 1).replace("-60.0", "1e999")], "was not understood"),
         ([hello(), batch(0, 1)], "first_seq"),
     ],
 )

@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.payload.spool import Spool, SpoolError
-from hardware.readings import PowerSample
+from hardware.readings import Channel, PowerSample, Pulses
+
+CHANNELS = (Channel(433.92e6), Channel(150e6, Pulses(0.02, 1.3)))
 
 
 def sample(k: int) -> PowerSample:
@@ -20,12 +22,12 @@ def sample(k: int) -> PowerSample:
 def test_reopening_keeps_everything_and_numbers_go_on(tmp_path: Path) -> None:
     spool = Spool(tmp_path / "samples.sqlite")
     spool.append([sample(k) for k in range(5)])
-    spool.frequency_hz = 433.92e6
+    spool.channels = CHANNELS
     stream = spool.stream
     spool.close()
     again = Spool(tmp_path / "samples.sqlite")
     assert again.stream == stream
-    assert again.frequency_hz == 433.92e6
+    assert again.channels == CHANNELS
     assert again.after(0, 10) == [(k + 1, sample(k)) for k in range(5)]
     again.forget(5)
     assert again.first_seq() == 6

@@ -9,6 +9,7 @@ import pytest
 
 from hardware.clock import WallClock
 from hardware.ports import ReceiverError
+from hardware.readings import Channel
 from hardware.sdr.device import receiver_from
 from hardware.sdr.rtl_tcp import SET_FREQUENCY
 
@@ -25,7 +26,7 @@ async def test_rtl_tcp_is_opened_where_its_name_says() -> None:
 
     listening = await asyncio.start_server(greet, "127.0.0.1", 0)
     receiver = receiver_from(f"rtl_tcp://127.0.0.1:{listening.sockets[0].getsockname()[1]}", WallClock())
-    await receiver.open(433_920_000.0)
+    await receiver.open([Channel(433_920_000.0)])
     assert await tuned == pytest.approx(433_920_000, abs=150_000)
     await receiver.close()
     listening.close()
@@ -35,7 +36,7 @@ async def test_rtl_tcp_is_opened_where_its_name_says() -> None:
     ("name", "told"),
     [
         ("rtl_tcp://", "names no host"),
-        ("rtl_tcp://host:port", "no number"),
+        ("rtl_tcp://host:port", "not a number"),
         ("rtl_tcp:host", "not understood"),
         ("soapy:", "not understood"),
         ("soapy:serial=1", "names no driver"),

@@ -9,6 +9,7 @@ import pytest
 
 from hardware.iq import IqBlock
 from hardware.ports import ReceiverError
+from hardware.readings import Channel
 from hardware.sdr.receiver import IqReceiver
 
 RATE_HZ = 10_000.0
@@ -38,7 +39,7 @@ class LosingSource:
 
 async def hear(every: int) -> int:
     receiver = IqReceiver(LosingSource(every))
-    await receiver.open(868e6)
+    await receiver.open([Channel(868e6)])
     return len([sample async for sample in receiver.samples()])
 
 

@@ -13,7 +13,9 @@ from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
-from hardware.readings import GeoPoint
+from hardware.readings import Place
+from hardware.reasons.iq_recording import HeadingsOfOtherLength, StrongestUsed
+from hardware.reasons.table import CellUnusable
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_rotation, read_sweeps
 from hardware.sdr.sigmf_file import Azimuth, write_sigmf
@@ -21,7 +23,7 @@ from hardware.sdr.sigmf_file import Azimuth, write_sigmf
 RATE_HZ = 12_000.0
 CENTRE_HZ = 148_500_000.0
 START_S = 1_780_000_000.0
-PLACE = GeoPoint(50.0, 7.0)
+PLACE = Place(50.0, 7.0)
 
 
 def turn_iq(bearing_deg: float, offset_hz: float = 2000.0, seconds: float = 12.0, seed: int = 1) -> np.ndarray:
@@ -33,7 +35,7 @@ def turn_iq(bearing_deg: float, offset_hz: float = 2000.0, seconds: float = 12.0
     return (10.0 ** ((gain_db - 20.0) / 20.0) * np.exp(2j * np.pi * offset_hz * t) + noise).astype(np.complex64)
 
 
-def annotations(seconds: float = 12.0, every_s: float = 0.1) -> list[Azimuth]:
+def azimuths_of_turn(seconds: float = 12.0, every_s: float = 0.1) -> list[Azimuth]:
     count = int(every_s * RATE_HZ)
     return [
         Azimuth(int(t * RATE_HZ), count, float(30.0 * (t + every_s / 2.0) % 360.0))
@@ -57,7 +59,7 @@ def bearing_of(recording: Recording) -> float:
 @pytest.mark.parametrize("offset_hz", [2000.0, -4500.0, 0.0])
 def test_annotated_turn_gives_its_bearing_wherever_the_carrier_lies(tmp_path: Path, offset_hz: float) -> None:
     iq = turn_iq(123.0, offset_hz)
-    path = write_sigmf(tmp_path / "turn", iq, RATE_HZ, CENTRE_HZ, START_S, annotations(), PLACE)
+    path = write_sigmf(tmp_path / "turn", iq, RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn(), PLACE)
     recording = read_rotation(path)
     assert bearing_of(recording) == pytest.approx(123.0, abs=1.0)
     (recorded,) = recording.sweeps
@@ -66,7 +68,8 @@ def test_annotated_turn_gives_its_bearing_wherever_the_carrier_lies(tmp_path: Pa
     assert recorded.sweep.position == PLACE
     assert recorded.sweep.frequency_hz == pytest.approx(CENTRE_HZ + offset_hz, abs=10.0)
     assert recorded.sweep.at_s[0] == pytest.approx(START_S, abs=0.2)
-    assert "strongest signal" in recording.remarks[0]
+    assert isinstance(recording.remarks[0], StrongestUsed)
+    assert recording.remarks[0].frequency_hz == pytest.approx(CENTRE_HZ + offset_hz, abs=10.0)
 
 
 @pytest.mark.parametrize("begin_s", [0.0, START_S])
@@ -81,14 +84,16 @@ def test_headings_of_a_table_are_matched_by_time(tmp_path: Path, begin_s: float)
 
 
 def test_an_archive_is_read_like_its_two_files(tmp_path: Path) -> None:
-    path = write_sigmf(tmp_path / "turn", turn_iq(77.0), RATE_HZ, CENTRE_HZ, START_S, annotations())
-    made = sigmf.fromfile(str(path)).archive(str(tmp_path / "packed.sigmf"))
+    path = write_sigmf(tmp_path / "turn", turn_iq(77.0), RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn())
+    recording = sigmf.fromfile(str(path))
+    assert isinstance(recording, sigmf.SigMFFile)
+    made = recording.archive(str(tmp_path / "packed.sigmf"))
     assert bearing_of(read_rotation(made)) == bearing_of(read_rotation(path))
 
 
 def test_a_turn_in_steps_has_a_capture_a_step(tmp_path: Path) -> None:
     step_s, steps = 1.5, 24
-    gains = load_pattern(SMALL_YAGI).gain_at(90.0 - 15.0 * np.arange(steps))
+    gains = load_pattern(SMALL_YAGI).gain_at(90.0 - 15.0 * np.arange(steps, dtype=float))
     t = np.arange(int(step_s * RATE_HZ)) / RATE_HZ
     rng = np.random.default_rng(2)
     tone = np.exp(2j * np.pi * 1000.0 * t)
@@ -125,13 +130,17 @@ def test_rows_of_the_headings_that_are_not_understood_are_named(tmp_path: Path) 
     headings = table(tmp_path / "nose.csv")
     headings.write_text(headings.read_text() + "\nnonsense,here\n12.0,nan\n")
     recording = read_rotation(path, iq=IqReading(headings, CENTRE_HZ + 2000.0))
-    assert [remark.rsplit("nose.csv", 1)[1][:4] for remark in recording.remarks] == [":132", ":133"]
+    assert recording.remarks == (
+        CellUnusable(str(headings), 132, 1, "nonsense", "time"),
+        CellUnusable(str(headings), 133, 2, "nan", "heading"),
+    )
 
 
 def test_a_wrong_sample_rate_is_suspected_aloud(tmp_path: Path) -> None:
     path = write_sigmf(tmp_path / "turn", turn_iq(200.0), 2 * RATE_HZ, CENTRE_HZ, START_S)
     recording = read_rotation(path, iq=IqReading(table(tmp_path / "nose.csv")))
-    assert any("sample rate (24000 Hz) right?" in remark for remark in recording.remarks)
+    (doubt,) = (remark for remark in recording.remarks if isinstance(remark, HeadingsOfOtherLength))
+    assert doubt.sample_rate_hz == 24000.0
 
 
 def broken(path: Path, **changes: object) -> Path:
@@ -144,7 +153,7 @@ def broken(path: Path, **changes: object) -> Path:
 
 @pytest.mark.parametrize("rate", [0, -5.0, "fast", 1e-3])
 def test_rates_that_cannot_be_are_refused(tmp_path: Path, rate: object) -> None:
-    path = write_sigmf(tmp_path / "turn", turn_iq(0.0, seconds=1.0), RATE_HZ, CENTRE_HZ, START_S, annotations(1.0))
+    path = write_sigmf(tmp_path / "turn", turn_iq(0.0, seconds=1.0), RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn(1.0))
     with pytest.raises(RecordingError, match=r"rate|fit"):
         read_rotation(broken(path, sample_rate=rate))
 
@@ -158,14 +167,14 @@ def test_silence_noise_and_numbers_that_are_none_are_refused(tmp_path: Path) -> 
     for name, iq, words in (
         ("zeros", np.zeros(size, np.complex64), "every sample is zero"),
         ("noise", noise, "nothing stands 10 dB above the noise"),
-        ("nan", poisoned, "1 samples are no numbers, the first after 0.50 s"),
+        ("nan", poisoned, "1 sample is not a number, the first after 0.50 s"),
     ):
-        path = write_sigmf(tmp_path / name, iq, RATE_HZ, CENTRE_HZ, START_S, annotations(2.0))
+        path = write_sigmf(tmp_path / name, iq, RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn(2.0))
         with pytest.raises(RecordingError, match=words):
             read_rotation(path)
     with pytest.raises(RecordingError, match="is silent at"):
         read_rotation(tmp_path / "noise.sigmf-meta", iq=IqReading(frequency_hz=CENTRE_HZ + 1000.0))
-    with pytest.raises(RecordingError, match="no pulse was heard"):
+    with pytest.raises(RecordingError, match="No pulse was heard"):
         read_rotation(
             tmp_path / "noise.sigmf-data", iq=IqReading(frequency_hz=CENTRE_HZ, pulses=PulseSetting(0.02, 0.5))
         )
@@ -173,19 +182,19 @@ def test_silence_noise_and_numbers_that_are_none_are_refused(tmp_path: Path) -> 
 
 def test_missing_parts_are_named(tmp_path: Path) -> None:
     path = write_sigmf(tmp_path / "turn", turn_iq(0.0, seconds=1.0), RATE_HZ, CENTRE_HZ, START_S)
-    with pytest.raises(RecordingError, match="does not tell where the antenna pointed"):
+    with pytest.raises(RecordingError, match="does not state antenna:azimuth_angle"):
         read_rotation(path)
-    with pytest.raises(RecordingError, match=r"does not fit into"):
+    with pytest.raises(RecordingError, match="does not hold"):
         read_rotation(
-            write_sigmf(tmp_path / "b", turn_iq(0.0, seconds=1.0), RATE_HZ, CENTRE_HZ, START_S, annotations(1.0)),
+            write_sigmf(tmp_path / "b", turn_iq(0.0, seconds=1.0), RATE_HZ, CENTRE_HZ, START_S, azimuths_of_turn(1.0)),
             iq=IqReading(frequency_hz=CENTRE_HZ + 50_000.0),
         )
-    with pytest.raises(RecordingError, match="the headings run from"):
+    with pytest.raises(RecordingError, match="The headings run from"):
         read_rotation(path, iq=IqReading(table(tmp_path / "late.csv", 500.0)))
-    with pytest.raises(RecordingError, match="names another data file"):
+    with pytest.raises(RecordingError, match="core:dataset cannot be used"):
         read_rotation(broken(write_sigmf(tmp_path / "c", turn_iq(0.0), RATE_HZ, CENTRE_HZ, START_S), dataset="../x"))
     path.with_suffix(".sigmf-data").unlink()
-    with pytest.raises(RecordingError, match=r"turn.sigmf-data is missing"):
+    with pytest.raises(RecordingError, match=r"lacks its file turn.sigmf-data"):
         read_rotation(path)
-    with pytest.raises(RecordingError, match=r"gone.sigmf-meta is missing"):
+    with pytest.raises(RecordingError, match=r"lacks its file gone.sigmf-meta"):
         read_rotation(tmp_path / "gone.sigmf-data")

@@ -12,7 +12,7 @@ from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.sweep import assemble_sweep
 from hardware.ports import ReceiverError
-from hardware.readings import GeoPoint, HeadingSample
+from hardware.readings import Channel, HeadingSample, Place
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.sigmf_file import write_sigmf
 from hardware.sdr.sigmf_playback import SigmfSource
@@ -33,10 +33,10 @@ def rotation_iq(bearing_deg: float, seconds: float = 12.0) -> np.ndarray:
 async def test_recorded_rotation_gives_its_bearing(tmp_path: Path) -> None:
     path = write_sigmf(tmp_path / "rotation", rotation_iq(123.0), RATE_HZ, CENTRE_HZ, START_S)
     receiver = IqReceiver(SigmfSource(path))
-    await receiver.open(CENTRE_HZ + 2000.0)
+    await receiver.open([Channel(CENTRE_HZ + 2000.0)])
     heard = [sample async for sample in receiver.samples()]
     assert heard[0].at_s == pytest.approx(START_S + 0.025, abs=1e-3)
-    place = GeoPoint(50.0, 7.0)
+    place = Place(50.0, 7.0)
     headings = [HeadingSample(START_S + t, 30.0 * t % 360.0, place) for t in np.arange(0.0, 12.5, 0.1)]
     sweep = assemble_sweep(heard, headings, frequency_hz=CENTRE_HZ, altitude_amsl_m=0.0)
     reading = SparseDirectionFinder().estimate(sweep, load_pattern(SMALL_YAGI))
@@ -46,8 +46,8 @@ async def test_recorded_rotation_gives_its_bearing(tmp_path: Path) -> None:
 
 async def test_recording_of_another_frequency_is_refused(tmp_path: Path) -> None:
     path = write_sigmf(tmp_path / "rotation", rotation_iq(0.0, 0.2), RATE_HZ, CENTRE_HZ, START_S)
-    with pytest.raises(ReceiverError, match="was recorded at"):
-        await IqReceiver(SigmfSource(path)).open(433e6)
+    with pytest.raises(ReceiverError, match="was made at"):
+        await IqReceiver(SigmfSource(path)).open([Channel(433e6)])
 
 
 @pytest.mark.parametrize("missing", ["core:sample_rate", "core:frequency"])

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from hardware.ports import ReceiverError
+from hardware.readings import Channel
 from hardware.sdr.receiver import IqReceiver
 from hardware.sdr.soapy import SoapySource
 
@@ -123,7 +124,7 @@ def device(monkeypatch: pytest.MonkeyPatch) -> type[FakeDevice]:
 
 
 async def hear(receiver: IqReceiver, count: int) -> list[Any]:
-    await receiver.open(868e6)
+    await receiver.open([Channel(868e6)])
     heard = []
     async for sample in receiver.samples():
         heard.append(sample)
@@ -137,7 +138,7 @@ async def test_absent_module_and_device_strings_that_would_search_are_clear_erro
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "SoapySDR", None)
-    with pytest.raises(ReceiverError, match="python3-soapysdr"):
+    with pytest.raises(ReceiverError, match="SoapySDR is not installed"):
         await SoapySource("driver=rtlsdr").open(868e6)
     for text in ("serial=1", "driver=", "xdriver=rtlsdr"):
         with pytest.raises(ReceiverError, match="names no driver"):
@@ -221,7 +222,7 @@ async def test_closing_waits_for_the_read_that_is_under_way(device: type[FakeDev
     ("quirk", "told"),
     [
         ({"channels": 0}, "no receive channel"),
-        ({"frequency": 0.0}, "tuned to 0.0000 MHz"),
+        ({"frequency": 0.0}, "tuned to 0.0 kHz"),
         ({"activate": -5}, "does not start"),
     ],
 )

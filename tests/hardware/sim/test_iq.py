@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from stepped_clock import SteppedClock
 
-from hardware.readings import GeoPoint, Telemetry
-from hardware.sdr.pulses import PulseSetting
+from hardware.readings import Channel, Place, Pulses, Telemetry
 from hardware.sdr.receiver import IqReceiver
 from hardware.sim.iq import SimulatedIq
 from hardware.sim.propagation import Fading
@@ -18,15 +17,15 @@ from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World
 
 FREQUENCY_HZ = 868_300_000.0
-STEADY = World((Emitter(GeoPoint(50.601, 7.2), FREQUENCY_HZ),), fading=Fading(math.inf))
+STEADY = World((Emitter(Place(50.601, 7.2), FREQUENCY_HZ),), fading=Fading(math.inf))
 
 
 def pose(clock: SteppedClock) -> Telemetry:
-    return Telemetry(True, clock.now(), GeoPoint(50.6, 7.2), clock.now(), 100.0, 40.0, 20.0, clock.now())
+    return Telemetry(True, clock.now(), Place(50.6, 7.2), clock.now(), 100.0, 40.0, 20.0, clock.now())
 
 
 async def mean_power(receiver: IqReceiver | SimulatedReceiver, count: int = 30) -> float:
-    await receiver.open(FREQUENCY_HZ)
+    await receiver.open([Channel(FREQUENCY_HZ)])
     heard = []
     async for sample in receiver.samples():
         heard.append(sample.power_db)
@@ -50,7 +49,7 @@ async def test_two_emitters_are_heard_at_once_by_frequency() -> None:
     other = dataclasses.replace(STEADY.emitters[0], frequency_hz=FREQUENCY_HZ + 8000.0, power_dbm=-20.0)
     world = dataclasses.replace(STEADY, emitters=(STEADY.emitters[0], other))
     receiver = IqReceiver(SimulatedIq(world, lambda: pose(clock), clock))
-    await receiver.open(FREQUENCY_HZ, FREQUENCY_HZ + 8000.0)
+    await receiver.open([Channel(FREQUENCY_HZ), Channel(FREQUENCY_HZ + 8000.0)])
     power: dict[float, list[float]] = {}
     async for sample in receiver.samples():
         power.setdefault(sample.frequency_hz, []).append(sample.power_db)
@@ -64,8 +63,8 @@ async def test_pulsed_tag_is_heard_once_a_period() -> None:
     tag = dataclasses.replace(STEADY.emitters[0], pulse_period_s=1.0, pulse_width_s=0.02)
     world = dataclasses.replace(STEADY, emitters=(tag,))
     source = SimulatedIq(world, lambda: pose(clock), clock, sample_rate_hz=12_000.0)
-    receiver = IqReceiver(source, PulseSetting(width_s=0.02, period_s=1.0))
-    await receiver.open(FREQUENCY_HZ)
+    receiver = IqReceiver(source)
+    await receiver.open([Channel(FREQUENCY_HZ, Pulses(0.02, 1.0))])
     times = []
     async for sample in receiver.samples():
         times.append(sample.at_s)

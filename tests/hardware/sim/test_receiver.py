@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from refusals import refusing
 from stepped_clock import SteppedClock
 
 from hardware.direction_finding.estimate import SparseDirectionFinder
@@ -13,12 +14,14 @@ from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.sweep import assemble_sweep
 from hardware.frame import LocalFrame
 from hardware.ports import ReceiverError
-from hardware.readings import GeoPoint, HeadingSample, PowerSample, Pulses, Sweep, Telemetry
+from hardware.readings import Channel, HeadingSample, Place, PowerSample, Pulses, Sweep, Telemetry
+from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
 from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World
 
-HOME = GeoPoint(50.6, 7.2)
+HOME = Place(50.6, 7.2)
 FREQUENCY_HZ = 868_300_000.0
+CARRIER = Channel(FREQUENCY_HZ)
 
 
 class TurningVehicle:
@@ -48,8 +51,8 @@ def world_with_emitter_at(bearing_deg: float, distance_m: float, **changes: obje
     return dataclasses.replace(World((emitter,)), **changes)
 
 
-async def listen(receiver: SimulatedReceiver, seconds: float) -> list[PowerSample]:
-    await receiver.open(FREQUENCY_HZ)
+async def listen(receiver: SimulatedReceiver, seconds: float, channel: Channel = CARRIER) -> list[PowerSample]:
+    await receiver.open([channel])
     heard: list[PowerSample] = []
     async for sample in receiver.samples():
         heard.append(sample)
@@ -101,13 +104,13 @@ async def test_samples_come_at_the_stated_rate_and_in_order() -> None:
 async def test_unplugged_receiver_raises_and_unopened_receiver_says_so() -> None:
     clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(world_with_emitter_at(0.0, 100.0), TurningVehicle(clock).telemetry, clock)
-    with pytest.raises(ReceiverError, match="not open"):
+    with refusing(ReceiverNotOpen(), ReceiverError):
         await anext(receiver.samples())
-    await receiver.open(FREQUENCY_HZ)
+    await receiver.open([CARRIER])
     stream = receiver.samples()
     await anext(stream)
     receiver.unplug()
-    with pytest.raises(ReceiverError, match="unplugged"):
+    with refusing(ReceiverUnplugged(), ReceiverError):
         async for _ in stream:
             pass
 
@@ -116,7 +119,7 @@ async def test_without_an_emitter_in_band_only_noise_is_heard() -> None:
     world = world_with_emitter_at(0.0, 100.0)
     clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock)
-    await receiver.open(FREQUENCY_HZ + 1e6)
+    await receiver.open([Channel(FREQUENCY_HZ + 1e6)])
     stream = receiver.samples()
     heard = [await anext(stream) for _ in range(50)]
     assert all(abs(s.power_db - world.front_end.noise_dbm) < 3.0 for s in heard)
@@ -127,11 +130,29 @@ async def test_a_tag_is_heard_once_a_pulse_and_only_in_its_own_rhythm() -> None:
     tag = dataclasses.replace(world.emitters[0], pulse_period_s=1.3)
     clock = SteppedClock(1_000_000.0)
     receiver = SimulatedReceiver(dataclasses.replace(world, emitters=(tag,)), TurningVehicle(clock).telemetry, clock)
-    receiver.expect(Pulses(0.02, 1.3, 0.03))
-    heard = await listen(receiver, 26.0)
+    heard = await listen(receiver, 26.0, Channel(FREQUENCY_HZ, Pulses(0.02, 1.3, 0.03)))
     assert all(sample.detected for sample in heard)
     assert np.diff([sample.at_s for sample in heard]) == pytest.approx(1.3, abs=1e-6)
-    receiver.expect(Pulses(0.02, 1.7, 0.03))
-    assert not any(sample.detected for sample in await listen(receiver, 10.0))
-    receiver.expect(None)
+    other = await listen(receiver, 10.0, Channel(FREQUENCY_HZ, Pulses(0.02, 1.7, 0.03)))
+    assert not any(sample.detected for sample in other)
     assert len(await listen(receiver, 5.0)) > 90
+
+
+async def test_what_is_heard_at_a_frequency_does_not_depend_on_what_is_heard_beside_it() -> None:
+    world = world_with_emitter_at(60.0, 150.0)
+    tag = dataclasses.replace(world.emitters[0], frequency_hz=150e6, pulse_period_s=1.3)
+    world = dataclasses.replace(world, emitters=(*world.emitters, tag))
+
+    async def heard(*channels: Channel) -> list[float]:
+        clock = SteppedClock(1_000_000.0)
+        receiver = SimulatedReceiver(world, TurningVehicle(clock).telemetry, clock)
+        await receiver.open(channels)
+        powers: list[float] = []
+        async for sample in receiver.samples():
+            if sample.frequency_hz == FREQUENCY_HZ:
+                powers.append(sample.power_db)
+            if len(powers) == 100:
+                break
+        return powers
+
+    assert await heard(CARRIER) == await heard(Channel(150e6, Pulses(0.02, 1.3)), CARRIER)

@@ -7,16 +7,16 @@ import math
 
 import numpy as np
 
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sim.propagation import Fading
 from hardware.sim.turn import turn_once
 from hardware.sim.world import Emitter, FrontEnd, Pose, RadioLink, Reflector, World
 
-HERE = GeoPoint(50.6, 7.2)
+HERE = Place(50.6, 7.2)
 FREQUENCY_HZ = 868_300_000.0
 WORLD = World(
-    (Emitter(GeoPoint(50.601, 7.201), FREQUENCY_HZ),),
-    reflectors=(Reflector(GeoPoint(50.5995, 7.203)),),
+    (Emitter(Place(50.601, 7.201), FREQUENCY_HZ),),
+    reflectors=(Reflector(Place(50.5995, 7.203)),),
     fading=Fading(math.inf),
     front_end=FrontEnd(averages=10**12, jitter_db=0.0),
 )

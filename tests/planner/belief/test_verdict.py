@@ -1,10 +1,19 @@
-"""Mission rule 6: what may be called localized, and what the operator is told otherwise."""
+"""Mission rule 6: what may be called localized, and the reasons why not yet."""
 
 import numpy as np
 import pytest
 
 from planner.belief.grid import fold
 from planner.belief.verdict import best_crossing_angle, distinct_places, points_at, verdict, wedges_meet
+from planner.reasons import (
+    BearingMissesArea,
+    BearingsDisagree,
+    CrossingAngleTooSmall,
+    EstimateContradicted,
+    ExpectedErrorTooLarge,
+    NoBearingYet,
+    TooFewPlaces,
+)
 from planner.types import Bearing, GaussianPrior, LinearMotion, LocalizationRule, Peak, Problem
 
 SIGMA = np.deg2rad(4.0)
@@ -18,19 +27,19 @@ def toward(x, y, error=0.0, **more):
     return Bearing(x, y, float(np.arctan2(TARGET[1] - y, TARGET[0] - x)) + error, SIGMA, **more)
 
 
-def told(bearings, rule=RULE, problem=PROBLEM):
+def judged(bearings, rule=RULE, problem=PROBLEM):
     return verdict(problem, rule, bearings, fold(problem, bearings))
 
 
 def test_two_crossing_bearings_that_agree_are_a_localization():
-    answer = told([toward(160, 110), toward(100, 170)])
+    answer = judged([toward(160, 110), toward(100, 170)])
     assert answer.localized
     assert answer.consistent
     assert answer.reasons == ()
 
 
 def test_without_bearings_nothing_is_claimed():
-    assert told([]).reasons == ("not yet: no bearing taken",)
+    assert judged([]).reasons == (NoBearingYet(),)
 
 
 def test_one_place_is_never_enough_however_small_the_belief():
@@ -42,46 +51,54 @@ def test_one_place_is_never_enough_however_small_the_belief():
         motion=LinearMotion(5.0),
         prior=GaussianPrior(*TARGET, np.diag([1.0, 1.0])),
     )
-    answer = told([toward(160, 110)], problem=narrow)
+    answer = judged([toward(160, 110)], problem=narrow)
     assert not answer.localized
-    assert "one bearing from one place" in answer.reasons[0]
-    again = told([toward(160, 110), toward(161, 110)], problem=narrow)
-    assert "all bearings from one place" in again.reasons[0]
+    assert answer.reasons[0] == TooFewPlaces(bearings=1, places=1, needed_places=2)
+    again = judged([toward(160, 110), toward(161, 110)], problem=narrow)
+    assert again.reasons[0] == TooFewPlaces(bearings=2, places=1, needed_places=2)
 
 
 def test_bearings_from_one_side_are_told_apart_from_crossing_ones():
-    answer = told([toward(160, 60), toward(175, 60)])
+    answer = judged([toward(160, 60), toward(175, 60)])
     assert not answer.localized
-    assert any("both bearings from one side" in reason for reason in answer.reasons)
+    flat = next(reason for reason in answer.reasons if isinstance(reason, CrossingAngleTooSmall))
+    assert 0.0 < flat.crossing_deg < flat.needed_deg == pytest.approx(20.0)
 
 
 def test_a_wide_belief_names_its_expected_error():
-    answer = told([toward(-200, 170), toward(160, -200)])
+    answer = judged([toward(-200, 170), toward(160, -200)])
     assert not answer.localized
-    assert answer.reasons[-1].startswith("not yet: expected error")
+    last = answer.reasons[-1]
+    assert isinstance(last, ExpectedErrorTooLarge)
+    assert last.expected_error_m > last.threshold_m == 10.0
 
 
 def test_inconsistent_bearings_are_never_a_localization():
     answer = verdict(PROBLEM, RULE, [toward(160, 110), toward(100, 170, np.pi)], None)
     assert not answer.localized
     assert not answer.consistent
-    assert "outlier" in answer.reasons[0]
+    assert answer.reasons == (BearingsDisagree(2),)
+
+
+def test_a_single_bearing_past_the_area_contradicts_nothing():
+    answer = verdict(PROBLEM, RULE, [Bearing(350.0, 350.0, 0.0, SIGMA)], None)
+    assert answer.reasons == (BearingMissesArea(),)
 
 
 def test_an_outlier_asks_for_another_look_before_anything_is_claimed():
     modelled = {"outlier_probability": 0.05}
     two = [toward(160, 110, **modelled), toward(100, 170, **modelled)]
     wild = toward(220, 240, 2.0, **modelled)
-    answer = told([*two, wild])
+    answer = judged([*two, wild])
     assert not answer.consistent
     assert not answer.localized
-    assert any("contradict" in reason for reason in answer.reasons)
+    assert EstimateContradicted(contradicting=1, bearings=3) in answer.reasons
 
 
 def test_an_outlier_that_is_clearly_outnumbered_does_not_stop_the_mission():
     modelled = {"outlier_probability": 0.05}
     good = [toward(x, y, **modelled) for x, y in [(160, 110), (100, 170), (200, 200), (120, 220)]]
-    answer = told([*good, toward(220, 240, 2.0, **modelled)])
+    answer = judged([*good, toward(220, 240, 2.0, **modelled)])
     assert answer.localized
     assert not answer.consistent
 
@@ -89,7 +106,7 @@ def test_an_outlier_that_is_clearly_outnumbered_does_not_stop_the_mission():
 def test_an_outlier_into_a_corner_after_one_look_is_not_believed():
     """Two of the thesis' eleven flights failed so: a multipath outlier, the corner of the area, one measurement."""
     outlier = Bearing(280.0, 260.0, np.deg2rad(63.0), SIGMA, outlier_probability=0.05)
-    answer = told([outlier], rule=LocalizationRule(threshold=40.0))
+    answer = judged([outlier], rule=LocalizationRule(threshold=40.0))
     assert not answer.localized
 
 

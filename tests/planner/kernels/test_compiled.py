@@ -1,6 +1,7 @@
 """The compiled kernel does what the readable one says, in every mode, on random problems."""
 
 from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from planner.belief.grid import fold
 from planner.kernels import compiled, reference
 from planner.kernels.model import Outcomes, Tasks, outcomes
+from planner.options import Estimator
 from planner.policy.actions import constrained_actions
 from planner.policy.simulation import simulate
 from planner.sampling import random_paths
@@ -44,8 +46,8 @@ def random_case(seed: int):
     centre = area.mean(axis=0)
     priors = (
         UniformPrior(),
-        GaussianPrior(*centre, np.diag(rng.uniform(8, 60, 2) ** 2)),
-        RingPrior(*centre, rng.uniform(5, 40), rng.uniform(60, 150)),
+        GaussianPrior(centre[0], centre[1], np.diag(rng.uniform(8, 60, 2) ** 2)),
+        RingPrior(centre[0], centre[1], rng.uniform(5, 40), rng.uniform(60, 150)),
     )
     fixed = rng.random() < 0.5
     low, high = area.min(axis=0) - 60, area.max(axis=0) + 60
@@ -56,11 +58,11 @@ def random_case(seed: int):
         measurement_time=float(rng.uniform(1, 40)),
         motion=MOTIONS[rng.integers(len(MOTIONS))],
         flight_area=(rectangle(*low, *high),) if fixed or rng.random() < 0.5 else None,
-        no_fly=(rectangle(*centre, *(centre + 30)),) if fixed and rng.random() < 0.3 else (),
+        no_fly=(rectangle(*np.concatenate((centre, centre + 30))),) if fixed and rng.random() < 0.3 else (),
         standoff=float(rng.choice([0.0, 20.0, 50.0])),
         action_grid=(int(rng.integers(3, 21)), int(rng.integers(3, 21))),
         action_spacing=float(rng.uniform(20, 40)) if fixed else None,
-        estimator=str(rng.choice(["map", "expected_value", "geometric_median"])),
+        estimator=cast(Estimator, str(rng.choice(["map", "expected_value", "geometric_median"]))),
         prior=priors[rng.integers(3)],
     )
     bearings = []
@@ -163,7 +165,7 @@ def test_one_compilation_serves_every_problem():
         case = usable(seed)
         if case is not None:
             both(case, 2, seed)
-    assert len(compiled.rollouts.signatures) == 1
+    assert len(cast(Any, compiled.rollouts).signatures) == 1
 
 
 def test_two_threads_change_nothing():

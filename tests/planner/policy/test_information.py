@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from planner.policy.information import bearing_gradient, bearing_information, known_information
+from planner.policy.information import bearing_gradient, bearing_information, prior_information
 from planner.types import Estimate
 
 
@@ -27,6 +27,6 @@ def test_the_gradient_is_that_of_the_bearing():
 
 def test_a_belief_without_width_has_finite_information():
     narrow = Estimate(0.0, 0.0, np.diag([4.0, 0.0]), expected_rmse=1.0, entropy=0.0)
-    known = known_information(narrow)
+    known = prior_information(narrow)
     assert np.isfinite(known).all()
     np.testing.assert_allclose(known[0, 0], 0.25, rtol=1e-6)

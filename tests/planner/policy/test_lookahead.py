@@ -15,7 +15,6 @@ from planner.policy.lookahead import (
     stationary_course,
 )
 from planner.study.scenarios import scenario
-from planner.types import PlannerError
 
 
 def two_platforms(**changes):
@@ -131,5 +130,5 @@ def test_policy_steps_so_far_and_no_further():
 
 
 def test_refuses_a_course_without_steps():
-    with pytest.raises(PlannerError, match="at least one step"):
+    with pytest.raises(ValueError, match="at least one step"):
         Course(starts=np.zeros((1, 2)), step=1.0, steps=0, target=np.ones(2), sigma=0.1)

@@ -4,13 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refusing
 
 from planner.belief.grid import prior_belief
 from planner.kernels.model import CLOSED_FEATURES
-from planner.policy.rollout import Rollout, RolloutSampler, clock
+from planner.policy.rollout import Rollout, RolloutSampler
 from planner.policy.simulation import simulate
+from planner.reasons import BudgetTooSmall, EveryPlaceRefused, FixedSamplePaths, UnusableNumber
+from planner.selection.sequential_halving import sequential_halving
 from planner.selection.uniform import uniform
-from planner.types import GaussianPrior, LinearMotion, PlannerError, Problem
+from planner.types import GaussianPrior, LinearMotion, Problem
 
 
 def rectangle(x0, y0, x1, y1):
@@ -37,7 +40,8 @@ def sampler(sampling, seed=1, **options):
 
 
 def rollout(rng_seed=1, problem=PROBLEM, **options):
-    policy = Rollout(**{"budget": 600, **options})
+    usual = {"selection": sequential_halving, "sampling": "crn", "base_policy": "ellipse", "budget": 600}
+    policy = Rollout(**usual | options)
     return policy(problem, prior_belief(problem), HOME, np.random.default_rng(rng_seed))
 
 
@@ -69,7 +73,7 @@ def test_every_cost_is_flight_and_measurement_at_least():
 
 def test_places_and_actions_ask_the_same_paths():
     one, two = sampler("crn"), sampler("crn")
-    assert (one.sample(np.arange(3), 0, 30) == two.anywhere(two.places, 0, 30)).all()
+    assert (one.sample(np.arange(3), 0, 30) == two.sample_places(two.places, 0, 30)).all()
 
 
 def test_a_cut_rollout_is_closed_by_the_terminal_value():
@@ -140,17 +144,14 @@ def test_places_without_a_way_are_no_candidates():
 
 
 def test_what_cannot_be_planned_is_said():
-    with pytest.raises(PlannerError, match="budget"):
+    with refusing(BudgetTooSmall):
         rollout(selection=uniform, sampling="deterministic", budget=10)
-    with pytest.raises(PlannerError, match="budget"):
+    with refusing(FixedSamplePaths):
+        rollout(selection=sequential_halving, sampling="deterministic", budget=3600)
+    with refusing(UnusableNumber("budget", "at_least_one", "0")):
         rollout(budget=0)
-    with pytest.raises(PlannerError, match="refused"):
+    with refusing(EveryPlaceRefused()):
         rollout(problem=replace(PROBLEM, action_grid=(1, 1)), without=((150.0, 150.0),))
-
-
-def test_times_are_told_in_minutes_and_seconds():
-    assert clock(59.6) == "1:00"
-    assert clock(130.2) == "2:10"
 
 
 @pytest.mark.parametrize("sampling", ["deterministic", "crn"])

@@ -6,11 +6,10 @@ import pytest
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import prior_belief
-from planner.policy.ahead import PlansAhead
 from planner.policy.information import bearing_information
+from planner.policy.route import RoutePolicy
 from planner.policy.tokekar import Subset, Tree, WorstCase, _ekf
 from planner.study.scenarios import scenario
-from planner.types import PlannerError
 
 
 @pytest.fixture
@@ -82,12 +81,12 @@ def test_tree_finds_the_sequence_whose_worst_case_is_best(case):
 
 
 def test_routes_are_flown_whole():
-    assert isinstance(Subset(), PlansAhead)
-    assert isinstance(Tree(), PlansAhead)
-    assert not isinstance(WorstCase(), PlansAhead)
+    assert isinstance(Subset(), RoutePolicy)
+    assert isinstance(Tree(), RoutePolicy)
+    assert not isinstance(WorstCase(), RoutePolicy)
 
 
 @pytest.mark.parametrize("make", [lambda: Subset(bearings=0), lambda: Tree(depth=0), lambda: Tree(depth=7)])
 def test_refuses_what_cannot_be_searched(make):
-    with pytest.raises(PlannerError):
+    with pytest.raises(ValueError):
         make()

@@ -26,7 +26,7 @@ def test_stands_on_the_minor_axis_at_three_deviations_on_the_platforms_side(plat
     assert (offset @ axes[:, 1]) * ((np.array(platform) - [look.x, look.y]) @ axes[:, 1]) > 0
 
 
-def test_a_forbidden_place_gives_way_to_the_nearest_allowed_one():
+def test_a_forbidden_place_gives_way_to_the_nearest_feasible_one():
     problem = replace(scenario("2").problem, flight_area=(np.array([[0.0, 0], [300, 0], [300, 100], [0, 100]]),))
     belief = prior_belief(problem)
     decision = CautiousGreedy()(problem, belief, (150.0, 0.0))

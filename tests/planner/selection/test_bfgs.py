@@ -1,9 +1,9 @@
 import numpy as np
-import pytest
+from refusals import refusing
 
+from planner.reasons import BudgetTooSmall
 from planner.selection.bfgs import bfgs
 from planner.selection.continuous import Rectangle
-from planner.types import PlannerError
 
 SQUARE = Rectangle(0.0, 0.0, 300.0, 300.0)
 
@@ -41,5 +41,5 @@ def test_always_looks_at_the_same_paths():
 
 
 def test_refuses_less_than_a_gradient():
-    with pytest.raises(PlannerError, match="40 rollouts"):
+    with refusing(BudgetTooSmall(rollouts=39, needed_rollouts=40)):
         bfgs(valley(1, 1), SQUARE, (10, 20), 39)

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import refusing
 
+from planner.reasons import UnusableNumber
 from planner.selection.sequential_halving import sequential_halving
-from planner.types import PlannerError
 
 
 def gaussian_arms(means, sd, rng):
@@ -78,5 +79,5 @@ def test_budget_too_small_for_all_actions_spreads():
 
 @pytest.mark.parametrize(("n_actions", "budget"), [(0, 10), (5, 0)])
 def test_refuses_nothing_to_choose_or_spend(n_actions, budget):
-    with pytest.raises(PlannerError):
+    with refusing(UnusableNumber):
         sequential_halving(lambda a, i, j: np.zeros((len(a), j - i)), n_actions, budget, np.random.default_rng(0))

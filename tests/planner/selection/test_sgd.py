@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
+from refusals import refusing
 
+from planner.reasons import BudgetTooSmall
 from planner.selection.continuous import Rectangle
 from planner.selection.sgd import sgd, step_length
-from planner.types import PlannerError
 
 SQUARE = Rectangle(0.0, 0.0, 300.0, 300.0)
 
@@ -44,5 +45,5 @@ def test_stays_put_where_nothing_slopes():
 
 
 def test_refuses_less_than_a_step():
-    with pytest.raises(PlannerError, match="40 rollouts"):
+    with refusing(BudgetTooSmall(rollouts=39, needed_rollouts=40)):
         sgd(lambda p, i, j: np.ones((len(p), j - i)), SQUARE, (10, 20), 39)

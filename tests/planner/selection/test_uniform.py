@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import refusing
 
+from planner.reasons import UnusableNumber
 from planner.selection.uniform import uniform
-from planner.types import PlannerError
 
 
 def table_sampler(costs, calls=None):
@@ -66,12 +67,12 @@ def test_small_budget_spreads_over_the_actions():
     assert np.isnan(result.means[0])
 
 
-@pytest.mark.parametrize(("n_actions", "budget", "word"), [(0, 10, "no action"), (3, 0, "budget of 0"), (3, -1, "-1")])
-def test_refuses_nothing_to_choose_or_spend(n_actions, budget, word):
-    with pytest.raises(PlannerError, match=word):
+@pytest.mark.parametrize(("n_actions", "budget", "quantity"), [(0, 10, "actions"), (3, 0, "budget"), (3, -1, "budget")])
+def test_refuses_nothing_to_choose_or_spend(n_actions, budget, quantity):
+    with refusing(UnusableNumber(quantity, "at_least_one", str(min(n_actions, budget)))):
         uniform(table_sampler(np.zeros((3, 10))), n_actions, budget, np.random.default_rng(0))
 
 
 def test_refuses_nan_costs():
-    with pytest.raises(PlannerError, match="NaN"):
+    with pytest.raises(ValueError, match="NaN"):
         uniform(table_sampler(np.full((2, 2), np.nan)), 2, 4, np.random.default_rng(0))

@@ -2,13 +2,13 @@ import pytest
 
 from planner.policy.continuous_rollout import ContinuousRollout
 from planner.policy.rollout import Rollout
-from planner.study.cell import PLANNERS, SELECTIONS, Cell, parse_grid
-from planner.types import PlannerError
+from planner.study.cell import PLANNERS, SELECTION_NAMES, Cell, parse_grid
+from planner.study.errors import StudyError
 
 
 def test_every_planner_and_selection_has_a_policy_and_a_name():
     cells = [Cell(planner=name) for name in PLANNERS]
-    cells += [Cell(planner="rollout", selection=name) for name in SELECTIONS]
+    cells += [Cell(planner="rollout", selection=name) for name in SELECTION_NAMES]
     assert len({cell.name() for cell in cells}) == len(cells)
     for cell in cells:
         assert callable(cell.policy())
@@ -52,12 +52,12 @@ def test_only_planners_without_chance_repeat_themselves():
     ],
 )
 def test_refuses_what_is_not_there(wrong):
-    with pytest.raises(PlannerError, match=str(next(iter(wrong.values())))):
+    with pytest.raises(StudyError, match=str(next(iter(wrong.values())))):
         Cell(**wrong)
 
 
 def test_grids():
     assert parse_grid("20x10") == (20, 10)
     for text in ("x", "20x", "0x4", "-1x4", "2x3x4"):
-        with pytest.raises(PlannerError, match="20x20"):
+        with pytest.raises(StudyError, match="20x20"):
             parse_grid(text)

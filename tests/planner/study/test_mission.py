@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planner.policy.ahead import PlansAhead
 from planner.policy.ellipse import ellipse
+from planner.policy.route import RoutePolicy
 from planner.policy.sopt import sopt
 from planner.policy.vander_hook import vander_hook
 from planner.study.mission import fly, opening
@@ -53,7 +53,7 @@ def test_the_first_bearing_of_scenario_1_costs_its_time_only():
 def test_routes_are_flown_whole_before_the_planner_is_asked_again(case):
     asked = []
 
-    class Two(PlansAhead):
+    class Two(RoutePolicy):
         def route(self, problem, belief, platform):
             asked.append(belief.bearings)
             return np.array([[20.0, 20.0], [280.0, 20.0]])

@@ -2,10 +2,10 @@ import pytest
 from matplotlib.image import imread
 
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.figures import FIGURES
 from planner.study.report import cell_of, report
 from planner.study.runner import run_cell
-from planner.types import PlannerError
 
 CELLS = [
     Cell(scenario="1", planner="base"),
@@ -52,5 +52,5 @@ def test_a_cell_survives_its_file(results):
 
 
 def test_an_empty_directory_is_refused(tmp_path):
-    with pytest.raises(PlannerError, match="no study results"):
+    with pytest.raises(StudyError, match="no study results"):
         report(tmp_path, tmp_path / "figures", print)

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.runner import fly_block, run_cell
-from planner.types import PlannerError
 
 CELL = Cell(planner="vander_hook")
 
@@ -62,14 +62,15 @@ def test_processes_change_nothing(tmp_path):
 def test_a_dask_cluster_changes_nothing(tmp_path):
     from distributed import LocalCluster
 
-    with LocalCluster(
+    cluster = LocalCluster(
         n_workers=1,
         threads_per_worker=1,
         processes=False,
         protocol="tcp://",
         host="127.0.0.1",
         dashboard_address="127.0.0.1:0",
-    ) as cluster:
+    )
+    with cluster:
         on_dask = run_cell(CELL, 5, tmp_path / "dask", scheduler=cluster.scheduler_address)
     pd.testing.assert_frame_equal(on_dask, run_cell(CELL, 5, tmp_path / "here"))
 
@@ -79,7 +80,7 @@ def test_a_scheduler_that_does_not_answer_is_named(tmp_path, monkeypatch):
         raise OSError(f"timed out connecting to {address}")
 
     monkeypatch.setattr("distributed.Client", refuse)
-    with pytest.raises(PlannerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
+    with pytest.raises(StudyError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         run_cell(CELL, 3, tmp_path, scheduler="tcp://127.0.0.1:9")
 
 
@@ -92,11 +93,11 @@ def test_rollout_missions_repeat_themselves_with_their_seed():
 
 def test_torn_or_foreign_results_are_refused(tmp_path):
     (tmp_path / f"{CELL.name()}.parquet").write_bytes(b"not parquet")
-    with pytest.raises(PlannerError, match="cannot hold results"):
+    with pytest.raises(StudyError, match="cannot hold results"):
         run_cell(CELL, 1, tmp_path)
 
 
 @pytest.mark.parametrize(("runs", "workers"), [(0, 1), (1, 0)])
 def test_refuses_nothing_to_do(tmp_path, runs, workers):
-    with pytest.raises(PlannerError, match="1 or more"):
+    with pytest.raises(StudyError, match="1 or more"):
         run_cell(CELL, runs, tmp_path, workers=workers)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from planner.study.errors import StudyError
 from planner.study.scenarios import MEASUREMENT_TIMES, SERIES, scenario
-from planner.types import PlannerError
 
 
 @pytest.mark.parametrize("config", MEASUREMENT_TIMES)
@@ -40,7 +40,8 @@ def test_scenario_3_targets_are_uniform_in_area_on_the_ring():
 
 
 def test_the_field_system_has_112_actions():
-    from planner.policy.actions import lattice, may_fly
+    from planner.airspace import may_fly
+    from planner.policy.actions import lattice
 
     problem = scenario("field").problem
     assert may_fly(problem, lattice(problem)).sum() == 112
@@ -50,5 +51,5 @@ def test_the_field_system_has_112_actions():
     ("name", "changes"), [("4", {}), ("2", {"config": "quick"}), ("2", {"measurement_time": -1.0})]
 )
 def test_refuses_what_is_not_there(name, changes):
-    with pytest.raises(PlannerError):
+    with pytest.raises(StudyError):
         scenario(name, **changes)

@@ -2,9 +2,9 @@ import pandas as pd
 import pytest
 
 from planner.study.cell import Cell
+from planner.study.errors import StudyError
 from planner.study.mission import Mission
 from planner.study.store import CODE, COLUMNS, Results, read_results
-from planner.types import PlannerError
 
 CELL = Cell(planner="rollout", budget=500)
 
@@ -43,13 +43,13 @@ def test_all_cells_of_a_directory_are_read_and_told_apart(tmp_path):
 def test_a_file_of_another_kind_is_refused(tmp_path):
     results = Results(tmp_path, CELL)
     pd.DataFrame({"run": [1]}).to_parquet(results.path)
-    with pytest.raises(PlannerError, match="lacks the columns"):
+    with pytest.raises(StudyError, match="lacks the columns"):
         Results(tmp_path, CELL)
 
 
 def test_a_directory_that_cannot_be_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(PlannerError, match="choose another directory"):
+    with pytest.raises(StudyError, match="choose another directory"):
         Results(tmp_path / "file", CELL)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.ardupilot import ArduCopter
 from hardware.sim.autopilot.copter import Wind
@@ -149,7 +150,7 @@ def test_px4_sticks_take_over_auto_modes_by_their_parameter(override: int, takes
 
     assert firmware.move_sticks((0.0, 2.0, 0.0), 0.0) is takes
     run(firmware, 4.0)
-    texts = [message.text for message in firmware.outbox if message.get_type() == "STATUSTEXT"]
+    texts = [message.text for message in firmware.outbox if isinstance(message, mavlink.MAVLink_statustext_message)]
     assert (firmware.mode == "POSCTL") is takes
     assert ("Pilot took over using sticks" in texts) is takes
     assert (firmware.copter.v_east > 1.5) is takes

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hardware.frame import LocalFrame
-from hardware.readings import GeoPoint
+from hardware.readings import Place
 from hardware.sim.autopilot.geodesy import HomeFrame
 
 
@@ -20,8 +20,8 @@ def test_metres_survive_the_way_to_degrees_and_back(lat: float, lon: float, nort
 
 @given(st.floats(-70, 70), st.floats(-179, 179), st.floats(-1000, 1000), st.floats(-1000, 1000))
 def test_it_agrees_with_the_ellipsoids_tangent_plane(lat: float, lon: float, north: float, east: float) -> None:
-    place = GeoPoint(*HomeFrame(lat, lon, 0.0).to_geo(north, east))
-    plane_east, plane_north = LocalFrame(GeoPoint(lat, lon)).to_enu(place)
+    place = Place(*HomeFrame(lat, lon, 0.0).to_geo(north, east))
+    plane_east, plane_north = LocalFrame(Place(lat, lon)).to_enu(place)
 
     assert math.hypot(plane_east - east, plane_north - north) < 0.5
 

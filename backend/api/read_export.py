@@ -1,0 +1,80 @@
+"""An exported journal, read for the page: of any age in, in today's form out. Nothing is stored."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import math
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+from pydantic import TypeAdapter, ValidationError
+
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
+from backend.reasons.request import ExportUnreadable
+from backend.store.exported import ExportedLater, NotExported, export_of_today
+from backend.wire.resources import ExportedMission, Track, TrackFact
+
+router = APIRouter(prefix="/api/recordings", tags=["review"], responses=PROBLEM_RESPONSES)
+
+Row = tuple[str, float, float, float | None, float | None]
+"""As the export writes a point of the track: UTC, latitude, longitude, altitude AMSL (m), heading."""
+TRACKS = TypeAdapter(dict[str, list[Row]])
+
+BODY = {
+    "required": True,
+    "content": {"application/json": {"schema": {"type": "object", "description": "mission.json as it was exported"}}},
+}
+
+
+@router.post("/read", response_model=ExportedMission, openapi_extra={"requestBody": BODY})
+async def read_exported_mission(request: Request) -> Response:
+    """The events and the flown paths of an exported mission, whichever Crossfix exported it."""
+    text = await request.body()
+    return Response(await asyncio.to_thread(_read, text), media_type="application/json")
+
+
+def _read(text: bytes) -> str:
+    """The answer's JSON. Raises ApiProblem."""
+    try:
+        parsed = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ApiProblem(422, ExportUnreadable("not_json")) from error
+    try:
+        exported = export_of_today(parsed)
+        mission = ExportedMission(
+            mission_id=exported["mission_id"],
+            events=exported["events"],
+            tracks=[
+                _track(exported["mission_id"], *path) for path in TRACKS.validate_python(exported["tracks"]).items()
+            ],
+        )
+    except ExportedLater as error:
+        raise ApiProblem(422, ExportUnreadable("later")) from error
+    except (NotExported, ValidationError, RecursionError) as error:
+        raise ApiProblem(422, ExportUnreadable("not_exported")) from error
+    return mission.model_dump_json()
+
+
+def _track(mission_id: Any, craft_id: str, rows: list[Row]) -> Track:
+    points = [
+        TrackFact.model_validate(
+            {
+                "at_utc": at_utc,
+                "lat": lat,
+                "lon": lon,
+                "altitude_amsl_m": _known(altitude_amsl_m),
+                "altitude_relative_m": None,
+                "heading_deg": _known(heading_deg),
+                "battery_percent": None,
+                "mode": None,
+            }
+        )
+        for at_utc, lat, lon, altitude_amsl_m, heading_deg in rows
+        if math.isfinite(lat) and math.isfinite(lon)
+    ]
+    return Track(mission_id=mission_id, craft_id=craft_id, points=points)
+
+
+def _known(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None

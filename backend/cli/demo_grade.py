@@ -1,0 +1,120 @@
+"""How well a simulated mission did: what it claims, against where its emitters stand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from shapely import Point
+from shapely.geometry import shape
+
+from backend.events import (
+    BearingMeasured,
+    BeliefUpdated,
+    Event,
+    MissionDrafted,
+    MissionEnded,
+    PlanChosen,
+    Recorded,
+    SweepRejected,
+)
+from backend.settings import Settings
+from backend.spec import EmitterSpec
+from hardware.frame import LocalFrame
+from hardware.readings import Place
+from planner.reason import text_of
+
+E = TypeVar("E", bound=Event)
+
+
+@dataclass(slots=True)
+class MissionLog:
+    """Every event that the websocket told, in order. holds: why the mission stopped and was resumed."""
+
+    mission_id: str
+    recorded: list[Recorded] = field(default_factory=list[Recorded])
+    holds: list[str] = field(default_factory=list[str])
+
+    def all(self, kind: type[E], emitter_id: str | None = None) -> list[E]:
+        """Of one emitter, or whomever they are about."""
+        events = [r.event for r in self.recorded if isinstance(r.event, kind)]
+        return [event for event in events if emitter_id is None or getattr(event, "emitter_id", None) == emitter_id]
+
+
+def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place]) -> dict[str, Any]:
+    """What `--json` prints. truths: where each emitter stands, by its frequency; empty when that is not known.
+
+    `localized` and `outcome` are the mission's. Errors, bearings and sweeps are those of its first emitter; the others
+    follow in `emitters` when there are several.
+    """
+    ended = log.all(MissionEnded)[-1]
+    emitters = log.all(MissionDrafted)[-1].spec.emitters
+    graded = [_graded(log, emitter, truths.get(emitter.frequency_hz)) for emitter in emitters]
+    name, truth = emitters[0].emitter_id, truths.get(emitters[0].frequency_hz)
+    bearings = log.all(BearingMeasured, name)
+    result = {
+        "localized": ended.outcome == "localized",
+        "error_m": graded[0]["error_m"],
+        "expected_rmse_m": graded[0]["expected_rmse_m"],
+        "in_c95": graded[0]["in_c95"],
+        "bearings": len(bearings),
+        "bearing_errors_deg": [] if truth is None else [_bearing_error(b, truth) for b in bearings],
+        "bearing_sigmas_deg": [b.sigma_deg for b in bearings],
+        "rejected_sweeps": len(log.all(SweepRejected, name)),
+        "mission_time_s": ended.mission_time_s,
+        "plan_ms": [p.plan_ms for p in log.all(PlanChosen) if p.source == "planner"],
+        "database": settings.async_database_url.split(":///", 1)[-1],
+        "outcome": ended.outcome,
+        "reason": text_of(ended.reason),
+        "holds": log.holds,
+        "seed": settings.seed,
+        "world": settings.world,
+        "mission_id": log.mission_id,
+    }
+    return result | ({"emitters": graded} if len(graded) > 1 else {})
+
+
+def _graded(log: MissionLog, emitter: EmitterSpec, truth: Place | None) -> dict[str, Any]:
+    """The last estimate of an emitter against the truth."""
+    beliefs = log.all(BeliefUpdated, emitter.emitter_id)
+    estimate = beliefs[-1].estimate if beliefs else None
+    error_m = in_c95 = None
+    if estimate is not None and truth is not None:
+        error_m = math.hypot(*LocalFrame(truth).to_enu(Place(estimate.lat, estimate.lon)))
+        in_c95 = bool(shape(estimate.c95.model_dump()).covers(Point(truth.lon, truth.lat)))
+    return {
+        "emitter_id": emitter.emitter_id,
+        "frequency_hz": emitter.frequency_hz,
+        "localized": bool(beliefs) and beliefs[-1].localized,
+        "error_m": error_m,
+        "expected_rmse_m": None if estimate is None else estimate.expected_rmse_m,
+        "in_c95": in_c95,
+    }
+
+
+def _bearing_error(measured: BearingMeasured, truth: Place) -> float:
+    """Measured minus true bearing, degrees in [-180, 180)."""
+    east, north = LocalFrame(measured.place).to_enu(truth)
+    return (measured.bearing_deg - math.degrees(math.atan2(east, north)) + 180.0) % 360.0 - 180.0
+
+
+def sentences(result: dict[str, Any]) -> Sequence[str]:
+    """The summary for people: the mission in one line, then an emitter a line when there are several."""
+    seconds = round(result["mission_time_s"])
+    took = f"{seconds // 60}:{seconds % 60:02d}"
+    several = [f"{graded['emitter_id']}: {_how_near(graded)}" for graded in result.get("emitters", [])]
+    if not result["localized"]:
+        return (f"Not localized after {took} and {result['bearings']} bearings: {result['reason']}", *several)
+    return (f"Localized after {took} with {result['bearings']} bearings: {_how_near(result)}", *several)
+
+
+def _how_near(graded: dict[str, Any]) -> str:
+    if graded["expected_rmse_m"] is None:
+        return "no estimate."
+    expected = f"{graded['expected_rmse_m']:.1f} m expected"
+    if graded["error_m"] is None:
+        return f"{expected}."
+    inside = "inside" if graded["in_c95"] else "outside"
+    return f"{graded['error_m']:.1f} m from the emitter, {expected}, {inside} C95."

@@ -1,0 +1,111 @@
+"""The preflight checklist: the vehicle's own checks, the receiver, the specification and safety at the start."""
+
+from __future__ import annotations
+
+import asyncio
+
+from backend.craft.equipment import CraftEquipment
+from backend.craft.listening import Listening, channels_of
+from backend.craft.recent_telemetry import recent
+from backend.craft.safety import Situation, limits_of, start_vetoes
+from backend.events import CheckFact
+from backend.reasons import Reason, carried, checks
+from backend.reasons.refusals import NoHome
+from backend.search.errors import MissionInputError
+from backend.search.planning import lay_out_ways
+from backend.search.task import SearchTask, search_task
+from backend.spec import MissionSpec, Place
+from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
+
+RECEIVER_WALL_S = 3.0
+
+
+def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
+    """The vehicle's home and its height AMSL; where it stands when the autopilot has not said."""
+    amsl = telemetry.home_amsl_m
+    if amsl is None and telemetry.altitude_amsl_m is not None:
+        amsl = telemetry.altitude_amsl_m - (telemetry.altitude_relative_m or 0.0)
+    return telemetry.home or telemetry.position, amsl
+
+
+def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[SearchTask | None, CheckFact]:
+    """The mission's task seen from the vehicle's home, and the line of the checklist that says whether there is one."""
+    home, amsl = home_of(telemetry)
+    if home is None or amsl is None:
+        return None, _fact("area", False, NoHome())
+    try:
+        task = search_task(mission, home, amsl)
+    except MissionInputError as error:
+        return None, _fact("area", False, error.reason)
+    lay_out_ways(task.first)
+    return task, _fact("area", True, checks.RoomToFly(task.fence.area))
+
+
+async def checklist(
+    mission: MissionSpec, equipment: CraftEquipment, listening: Listening | None, antenna: CheckFact | None = None
+) -> tuple[tuple[CheckFact, ...], SearchTask | None]:
+    """All checks, and the task when the specification is sound. listening: that of a running mission, else None.
+
+    antenna: what its check before a known emitter said, when there was one.
+    """
+
+    def situation() -> Situation:
+        return Situation(equipment.vehicle.telemetry(), equipment.clock.now())
+
+    await recent(situation)
+    found = [check_fact(check) for check in await equipment.vehicle.preflight()]
+    task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
+    found.append(sound)
+    if task is not None:
+        vetoes = start_vetoes(limits_of(task), await recent(situation))
+        found += [_fact("safety", False, veto) for veto in vetoes]
+        if not vetoes:
+            found.append(_fact("safety", True, checks.StartAllowed()))
+    found.append(await _receiver(mission, equipment, listening))
+    found.append(_pattern(mission, equipment))
+    found += [] if antenna is None else [antenna]
+    return tuple(found), task
+
+
+async def _receiver(mission: MissionSpec, equipment: CraftEquipment, listening: Listening | None) -> CheckFact:
+    channels = channels_of(mission)
+    works = checks.ReceiverDelivers(len(channels))
+    if listening is not None:
+        trouble = listening.trouble
+        return _fact("receiver", trouble is None, works if trouble is None else trouble)
+    trial = Listening(equipment.receiver, equipment.clock, channels, mission.timers.receiver_silent_s)
+    trial.start()
+    try:
+        unheard = [channel for channel in channels if not await _heard(trial, channel)]
+        if not unheard:
+            return _fact("receiver", True, works)
+        silent = next((channel for channel in unheard if trial.last(channel.frequency_hz) is None), None)
+        if silent is None:
+            return _fact("receiver", False, checks.TagUnheard(unheard[0].frequency_hz), blocking=False)
+        trouble = trial.trouble
+        blocking = silent.pulses is None or trial.state == "lost"
+        return _fact("receiver", False, checks.NoSamples() if trouble is None else trouble, blocking)
+    finally:
+        await trial.stop()
+
+
+async def _heard(trial: Listening, channel: Channel) -> bool:
+    wall_s = RECEIVER_WALL_S + (0.0 if channel.pulses is None else 2.0 * channel.pulses.period_s)
+    return await trial.first_sample(channel.frequency_hz, wall_s)
+
+
+def _pattern(mission: MissionSpec, equipment: CraftEquipment) -> CheckFact:
+    pattern = equipment.pattern
+    for emitter in mission.emitters:
+        other = pattern.other_frequency(emitter.frequency_hz)
+        if other is not None:
+            return _fact("pattern", False, carried(other), blocking=False)
+    return _fact("pattern", True, checks.PatternInUse(pattern.name))
+
+
+def check_fact(check: PreflightCheck) -> CheckFact:
+    return CheckFact(name=check.name, ok=check.ok, reason=carried(check.reason), blocking=check.blocking)
+
+
+def _fact(name: CheckName, ok: bool, reason: Reason, blocking: bool = True) -> CheckFact:
+    return CheckFact(name=name, ok=ok, reason=reason, blocking=blocking)

@@ -1,0 +1,195 @@
+"""What happens to a craft: an operator's orders, facts of the world, finished work, timers, a restart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from backend.commands import ForCraft
+from backend.craft.effects import TimerName
+from backend.events import AntennaFact, BearingMeasured, CheckFact, Link, PlanChosen, SweepRejected
+from backend.reasons import Reason
+from backend.reasons.flight import StepName, WatchBroke
+from backend.spec import Place
+from hardware.authority import Authority
+
+
+@dataclass(frozen=True, slots=True)
+class StartFacts:
+    """What was true when the operator asked to start."""
+
+    checks: tuple[CheckFact, ...]
+    home: Place | None
+    home_amsl_m: float | None
+    software: str
+    antenna: AntennaFact | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CraftOrdered:
+    """An operator's command. objections: vetoes found beforehand (safety of an override, a pilot who has not given
+    control back when it is to be resumed, another mission flying). on_ground: the vehicle says that it stands there."""
+
+    by: str
+    command: ForCraft
+    objections: tuple[Reason, ...] = ()
+    start: StartFacts | None = None
+    on_ground: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SearchChanged:
+    """The search knows more, or something else, than a moment ago: a belief is ready, a bearing came or went."""
+
+
+@dataclass(frozen=True, slots=True)
+class InTheAir:
+    """Take-off finished."""
+
+    place: Place
+    altitude_relative_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """The planner chose. vetoes: what safety has against the choice."""
+
+    choice: PlanChosen
+    vetoes: tuple[Reason, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class NothingToPlan:
+    """No place is left that may be flown to."""
+
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class Arrived:
+    place: Place
+    distance_m: float
+    flight_time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class SweepTaken:
+    """One turn: what it said of each emitter."""
+
+    results: tuple[BearingMeasured | SweepRejected, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WorkFailed:
+    """A piece of work could not be done. in_air: what the vehicle's telemetry says (None: unknown, or on the ground and
+    armed: it may still rise)."""
+
+    step: StepName
+    because: Reason
+    in_air: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class WorkVetoed:
+    """Safety refused a vehicle command right before it was sent."""
+
+    vetoes: tuple[Reason, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AuthorityHeard:
+    """Who flies, as the vehicle link judges it now."""
+
+    authority: Authority
+
+
+@dataclass(frozen=True, slots=True)
+class FailsafeEnded:
+    """The autopilot's own way home ended in a mode of waiting, perhaps by an earlier order. Nothing is sent: it might
+    be a pilot."""
+
+    mode: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinkDown:
+    link: Link
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class LinkUp:
+    link: Link
+    outage_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryLow:
+    """The battery just suffices for the way home and the reserve, or its charge is not known."""
+
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryReported:
+    """The charge is known again, and suffices."""
+
+
+@dataclass(frozen=True, slots=True)
+class HomeReached:
+    """The returning vehicle is above its home."""
+
+
+@dataclass(frozen=True, slots=True)
+class Landed:
+    """The vehicle says it is on the ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimerExpired:
+    name: TimerName
+
+
+@dataclass(frozen=True, slots=True)
+class Broke:
+    """A background task of ours failed."""
+
+    because: WatchBroke
+
+
+@dataclass(frozen=True, slots=True)
+class Restarted:
+    """The server came back, and this is who flies now."""
+
+    authority: Authority
+
+
+@dataclass(frozen=True, slots=True)
+class Abandoned:
+    """Nobody brings this flight back after a restart: another one took its place, or it cannot be read."""
+
+    because: Reason
+
+
+CraftInput = (
+    CraftOrdered
+    | SearchChanged
+    | InTheAir
+    | Planned
+    | NothingToPlan
+    | Arrived
+    | SweepTaken
+    | WorkFailed
+    | WorkVetoed
+    | AuthorityHeard
+    | FailsafeEnded
+    | LinkDown
+    | LinkUp
+    | BatteryLow
+    | BatteryReported
+    | HomeReached
+    | Landed
+    | TimerExpired
+    | Broke
+    | Restarted
+    | Abandoned
+)

@@ -1,0 +1,182 @@
+"""The receiver while a mission runs: opened, drained without pause, and known to be well, silent or gone."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import time
+from collections import deque
+from collections.abc import Sequence
+from typing import Literal
+
+from backend.spec import EmitterSpec, MissionSpec
+from hardware.deadline import Deadline
+from hardware.ports import Clock, Receiver, ReceiverError
+from hardware.readings import Channel, PowerSample, Pulses
+from hardware.reasons import HardwareReason
+from hardware.reasons.channels import FrequencyNotAskedFor
+from hardware.reasons.receiver import ReceiverSilent, ReceiverStreamEnded
+from planner.reason import sentence_of
+
+log = logging.getLogger("crossfix.mission")
+
+KEPT_SAMPLES = 60_000
+REOPEN_S = 1.0
+MISSED_PULSES = 10
+"""This many pulses of a distant tag may be missed."""
+LATE_WALL_S = 2.0
+CATCH_UP_S = 0.005
+"""A receiver that catches up keeps everybody else waiting no longer; a sample a turn of the loop never catches up."""
+
+
+class Listening:
+    """Keeps the last samples of each channel. A receiver that fails is opened again every second until it answers."""
+
+    def __init__(self, receiver: Receiver, clock: Clock, channels: Sequence[Channel], silent_after_s: float) -> None:
+        self._receiver = receiver
+        self._clock = clock
+        self._channels = tuple(channels)
+        self._ears = {channel.frequency_hz: _Ear(channel, silent_after_s) for channel in channels}
+        self._heard_at_s: float | None = None
+        self._quiet_s = 0.0
+        self._fault: HardwareReason | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        self._task = asyncio.create_task(self._listen())
+
+    async def stop(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+            self._task = None
+        await self._receiver.close()
+
+    async def _listen(self) -> None:
+        while True:
+            try:
+                await self._receiver.open(self._channels)
+                others_due = time.monotonic()
+                async for sample in self._receiver.samples():
+                    self._take(sample)
+                    if time.monotonic() > others_due:
+                        await asyncio.sleep(0)
+                        others_due = time.monotonic() + CATCH_UP_S
+                self._fault = ReceiverStreamEnded()
+            except ReceiverError as error:
+                if self._fault is None:
+                    log.warning("receiver: %s", sentence_of(error.reason))
+                self._fault = error.reason
+            await self._clock.sleep(REOPEN_S)
+
+    def _take(self, sample: PowerSample) -> None:
+        ear = self._ears.get(sample.frequency_hz)
+        if ear is None:
+            raise ReceiverError(FrequencyNotAskedFor(sample.frequency_hz))
+        ear.take(sample)
+        self._heard_at_s = self._clock.now()
+        self._quiet_s = 0.0
+        self._fault = None
+
+    @property
+    def state(self) -> Literal["ok", "silent", "off", "lost"]:
+        """Of the receiver: it is well as long as any channel delivers."""
+        if self._task is None:
+            return "off"
+        if self._fault is not None:
+            return "lost"
+        return "silent" if self._quiet_s > min(ear.patience_s for ear in self._ears.values()) else "ok"
+
+    def wait(self, seconds: float) -> None:
+        """So much time went by in which a sample would have been noticed; silence is counted in it."""
+        self._quiet_s += seconds
+
+    @property
+    def trouble(self) -> HardwareReason | None:
+        """What is wrong; None when all is well."""
+        match self.state:
+            case "lost":
+                return self._fault
+            case "silent":
+                return ReceiverSilent(self._quiet_s)
+            case "ok" | "off":
+                return None
+
+    @property
+    def age_s(self) -> float | None:
+        """Since anything was last heard."""
+        return None if self._heard_at_s is None else self._clock.now() - self._heard_at_s
+
+    def last(self, frequency_hz: float) -> PowerSample | None:
+        return self._ears[frequency_hz].last
+
+    def between(self, begin_s: float, end_s: float, frequency_hz: float) -> list[PowerSample]:
+        """A channel's samples taken in [begin_s, end_s], oldest first; pulses that were not heard among them."""
+        found: list[PowerSample] = []
+        for sample in reversed(self._ears[frequency_hz].samples):
+            if sample.at_s < begin_s:
+                break
+            if sample.at_s <= end_s:
+                found.append(sample)
+        return found[::-1]
+
+    async def heard_until(self, at_s: float) -> None:
+        """Wait for every channel's samples of the time before `at_s`: a link or a busy machine brings them late.
+
+        Not for a channel of which nothing new came for as long as it may be silent.
+        """
+        await asyncio.gather(*(self._heard_until(at_s, ear) for ear in self._ears.values()))
+
+    async def _heard_until(self, at_s: float, ear: _Ear) -> None:
+        newest_s = -math.inf
+        silence = Deadline(self._clock, ear.patience_s, LATE_WALL_S)
+        while newest_s < at_s and not silence.passed:
+            if ear.last is not None and ear.last.at_s > newest_s:
+                newest_s = ear.last.at_s
+                silence = Deadline(self._clock, ear.patience_s, LATE_WALL_S)
+            else:
+                await asyncio.sleep(0.02)
+
+    async def first_sample(self, frequency_hz: float, wall_s: float) -> bool:
+        """Whether a carrier's sample or a tag's pulse is heard within that many wall-clock seconds."""
+        try:
+            async with asyncio.timeout(wall_s):
+                await self._ears[frequency_hz].heard.wait()
+        except TimeoutError:
+            return False
+        return True
+
+
+class _Ear:
+    """What was heard of one channel. patience_s: how long it may be silent before that means anything."""
+
+    def __init__(self, channel: Channel, silent_after_s: float) -> None:
+        pulses = channel.pulses
+        self.patience_s = silent_after_s if pulses is None else max(silent_after_s, MISSED_PULSES * pulses.period_s)
+        self.samples: deque[PowerSample] = deque(maxlen=KEPT_SAMPLES)
+        self.heard = asyncio.Event()
+
+    @property
+    def last(self) -> PowerSample | None:
+        return self.samples[-1] if self.samples else None
+
+    def take(self, sample: PowerSample) -> None:
+        self.samples.append(sample)
+        if sample.detected:
+            self.heard.set()
+
+
+def channel_of(emitter: EmitterSpec) -> Channel:
+    """What to listen to for an emitter."""
+    if emitter.kind == "carrier":
+        return Channel(emitter.frequency_hz)
+    return Channel(emitter.frequency_hz, Pulses(emitter.pulse_width_s, emitter.pulse_period_s, emitter.pulse_jitter_s))
+
+
+def channels_of(mission: MissionSpec) -> tuple[Channel, ...]:
+    """One a frequency, in the specification's order: emitters that share one are heard together."""
+    channels: dict[float, Channel] = {}
+    for emitter in mission.emitters:
+        channels.setdefault(emitter.frequency_hz, channel_of(emitter))
+    return tuple(channels.values())

@@ -1,0 +1,377 @@
+"""The craft machine: transition(craft, search, input, at) -> effects. No await, no clock, no input or output.
+
+Every input is answered in every state. The rules that hold throughout (design, section 4): hold and abort act at once
+in every phase of flight; in hold and manual nothing moves until an operator resumes, orders the return or aborts (or,
+in hold, the console-lost timer runs out); a pilot's takeover silences everything.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from backend.craft import orders
+from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, HoldVehicle, Land, ReturnHome, StartTimer
+from backend.craft.inputs import (
+    Abandoned,
+    Arrived,
+    AuthorityHeard,
+    BatteryLow,
+    BatteryReported,
+    Broke,
+    CraftInput,
+    CraftOrdered,
+    FailsafeEnded,
+    HomeReached,
+    InTheAir,
+    Landed,
+    LinkDown,
+    LinkUp,
+    NothingToPlan,
+    Planned,
+    Restarted,
+    SearchChanged,
+    SweepTaken,
+    TimerExpired,
+    WorkFailed,
+    WorkVetoed,
+)
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, pilot_has
+from backend.craft.step import (
+    CraftStep,
+    alert,
+    bring_down,
+    cancel_timers,
+    clear_alerts,
+    clear_failsafe,
+    come_down,
+    go_home,
+    go_on,
+    hold,
+    measure,
+    refuse_flight,
+)
+from backend.events import (
+    AuthorityChanged,
+    BearingMeasured,
+    HoldOrdered,
+    LinkLost,
+    LinkRestored,
+    PlaceReached,
+    ReturnOrdered,
+    SweepRejected,
+    TookOff,
+)
+from backend.reasons import (
+    NotLocalized,
+    NoUsableBearing,
+    OrderedAgainLater,
+    Reason,
+    ReceiverTrouble,
+    flight,
+)
+from backend.reasons.refused import Refused
+from backend.reasons.search import Localized
+from backend.search.effects import Refuse
+from backend.search.state import SearchState
+from hardware.authority import Authority
+
+LANDING_PATIENCE_S = 120.0
+UNSURE_PLACE_M = 5.0
+"""A vehicle that hovers stays within this; what it reports beyond is an alert."""
+
+
+def transition(
+    craft: CraftState, search: SearchState, given: CraftInput, at_s: float
+) -> tuple[CraftState, tuple[CraftEffect, ...]]:
+    """The state after `given`, and what is to be done about it, in order. `at_s`: UTC epoch seconds of the input.
+
+    The new state is the fold of the recorded facts onto the old one.
+    """
+    step = CraftStep(craft, search, at_s)
+    try:
+        _take(step, given)
+    except Refused as refused:
+        step.do(Refuse(refused.reason))
+    return step.craft, tuple(step.effects)
+
+
+def _take(step: CraftStep, given: CraftInput) -> None:
+    craft = step.craft
+    match given:
+        case CraftOrdered():
+            orders.carry_out(step, given)
+        case SearchChanged():
+            _search_changed(step)
+        case InTheAir() | Planned() | NothingToPlan() | Arrived() | SweepTaken():
+            _finished(step, given)
+        case WorkFailed():
+            _failed(step, given)
+        case WorkVetoed(vetoes=vetoes):
+            if craft.phase in AUTOMATIC:
+                refuse_flight(step, vetoes)
+        case Broke(because=because):
+            if craft.engaged and not craft.taken_over:
+                alert(step, "failure", "warning", because)
+                if craft.phase in AUTOMATIC:
+                    hold(step, because)
+        case AuthorityHeard(authority=authority):
+            _authority(step, authority)
+        case FailsafeEnded(mode=mode):
+            if craft.phase in ("hold", *HOMEWARD) and not craft.taken_over:
+                alert(step, "vehicle", "caution", flight.FailsafeStopped(mode))
+        case LinkDown():
+            _link_down(step, given)
+        case LinkUp():
+            _link_up(step, given)
+        case BatteryLow() | BatteryReported() | HomeReached() | Landed():
+            _vehicle(step, given)
+        case TimerExpired():
+            _timer(step, given)
+        case Restarted(authority=authority):
+            _restarted(step, authority)
+        case Abandoned(because=because):
+            if craft.engaged:
+                come_down(step, because, "failed")
+        case _:
+            assert_never(given)
+
+
+def _search_changed(step: CraftStep) -> None:
+    """A bearing from elsewhere changes what is believed, not where the craft is on its way to."""
+    phase = step.craft.phase
+    if phase == "planning" or (phase == "waiting" and step.craft.chosen is None):
+        go_on(step, flight.Proceeds("belief"))
+    elif phase in ("flying", "measuring", "waiting") and step.search.localized:
+        go_home(step, Localized())
+
+
+def _finished(step: CraftStep, given: InTheAir | Planned | NothingToPlan | Arrived | SweepTaken) -> None:
+    """The result of work counts only in the phase that asked for it."""
+    craft = step.craft
+    match given:
+        case InTheAir() if craft.phase == "taking_off":
+            step.record(
+                TookOff(craft_id=craft.craft_id, place=given.place, altitude_relative_m=given.altitude_relative_m)
+            )
+            go_on(step, flight.Proceeds("climb"))
+        case Planned(choice=choice, vetoes=vetoes) if craft.phase == "planning":
+            if vetoes:
+                refuse_flight(step, vetoes)
+            else:
+                step.record(choice.model_copy(update={"place_number": step.search.place_number + 1}))
+                go_on(step, flight.Proceeds("plan"))
+        case NothingToPlan(because=because) if craft.phase == "planning":
+            go_home(step, NotLocalized(because, step.search.not_yet))
+        case Arrived() if craft.phase == "flying":
+            step.record(
+                PlaceReached(
+                    craft_id=craft.craft_id,
+                    place_number=craft.place_number,
+                    place=given.place,
+                    distance_m=given.distance_m,
+                    flight_time_s=given.flight_time_s,
+                )
+            )
+            measure(step, flight.Proceeds("flight"))
+        case SweepTaken(results=results) if craft.phase == "measuring":
+            _swept(step, results)
+        case _:
+            return
+
+
+def _swept(step: CraftStep, results: tuple[BearingMeasured | SweepRejected, ...]) -> None:
+    """A place is done when an emitter was heard there, or when it was tried often enough."""
+    bearings = [result for result in results if isinstance(result, BearingMeasured)]
+    rejected = [result for result in results if isinstance(result, SweepRejected)]
+    for result in (*bearings, *rejected):
+        step.record(result)
+    for bearing in bearings[:1]:
+        _doubt_place(step, bearing)
+    because: Reason = rejected[0].reason if rejected else flight.Proceeds("bearing")
+    if bearings:
+        go_on(step, flight.Proceeds("bearing"))
+    elif step.craft.chosen is None:
+        go_on(step, NoUsableBearing(because, again=False))
+    else:
+        measure(step, NoUsableBearing(because, again=True))
+
+
+def _doubt_place(step: CraftStep, bearing: BearingMeasured) -> None:
+    if bearing.drift_m > UNSURE_PLACE_M:
+        alert(step, "place", "caution", flight.PlaceUnsure(bearing.place_number, bearing.drift_m))
+    else:
+        clear_alerts(step, "place")
+
+
+def _failed(step: CraftStep, given: WorkFailed) -> None:
+    phase, way_home = step.craft.phase, given.step in ("return", "land")
+    if not step.craft.engaged or step.craft.taken_over:
+        return
+    unheard = "vehicle" in step.craft.links_down and (way_home or given.step == "hold")
+    alert(step, "failure", "warning", OrderedAgainLater(given.because) if unheard else given.because)
+    if phase == "taking_off" and given.step == "take_off" and given.in_air is False:
+        step.do(CancelWork())
+        come_down(step, given.because, "failed")
+    elif phase in AUTOMATIC or (phase in HOMEWARD and way_home and not (unheard or step.comes_by_itself)):
+        hold(step, given.because)
+
+
+def _authority(step: CraftStep, heard: Authority) -> None:
+    """Somebody else flies, or the same one differently. Nothing is sent; only an operator takes control back."""
+    craft, before = step.craft, step.craft.authority
+    if not craft.engaged or kept_of(heard) == kept_of(before):
+        return
+    taken = pilot_has(heard) and not craft.taken_over
+    if taken:
+        step.do(CancelWork())
+        cancel_timers(step)
+    step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
+    if taken:
+        clear_failsafe(step)
+        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
+        alert(step, "pilot", "caution", reason)
+        step.go("manual", reason)
+    elif heard.who == "failsafe" and before.who != "failsafe" and craft.phase in AUTOMATIC | {"hold"}:
+        step.do(CancelWork())
+        silent = "link_lost" if "vehicle" in craft.links_down else "silence"
+        _failsafe_flies(step, flight.FailsafeFlies(silent))
+
+
+def kept_of(authority: Authority) -> tuple[object, ...]:
+    """What of it is a fact to keep: the bookkeeping of each command is not."""
+    return authority.who, authority.taken_by, authority.given_back, authority.perhaps_failsafe, authority.mode
+
+
+def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
+    alert(step, "vehicle", "caution", reason)
+    step.go("hold", reason)
+
+
+def _link_down(step: CraftStep, given: LinkDown) -> None:
+    craft = step.craft
+    if not craft.engaged or given.link in craft.links_down:
+        return
+    step.record(LinkLost(craft_id=craft.craft_id, link=given.link, reason=given.because))
+    match given.link:
+        case "vehicle":
+            alert(step, "vehicle", "warning", given.because)
+            if craft.phase in AUTOMATIC:
+                step.do(CancelWork())
+                step.go("hold", given.because)
+        case "receiver":
+            reason = ReceiverTrouble(given.because)
+            alert(step, "receiver", "caution", reason)
+            if craft.phase == "measuring":
+                hold(step, reason)
+        case "payload":
+            alert(step, "payload", "caution", given.because)
+        case "console":
+            timers = step.search.mission.timers
+            step.do(StartTimer("console_hold", timers.console_lost_hold_s))
+            step.do(StartTimer("console_return", timers.console_lost_return_s))
+        case _:
+            assert_never(given.link)
+
+
+def _link_up(step: CraftStep, given: LinkUp) -> None:
+    craft = step.craft
+    if not craft.engaged or given.link not in craft.links_down:
+        return
+    step.record(LinkRestored(craft_id=craft.craft_id, link=given.link, outage_s=given.outage_s))
+    clear_alerts(step, given.link)
+    if given.link == "console":
+        step.do(CancelTimer("console_hold"))
+        step.do(CancelTimer("console_return"))
+    elif given.link == "vehicle" and not craft.taken_over:
+        _heard_again(step)
+
+
+def _heard_again(step: CraftStep) -> None:
+    """What was ordered last is ordered again: the vehicle may not have heard it."""
+    craft = step.craft
+    if craft.phase in HOMEWARD:
+        clear_alerts(step, "failure")
+        bring_down(step, Land() if craft.phase == "landing" else ReturnHome())
+    elif craft.phase == "hold" and step.comes_by_itself:
+        alert(step, "vehicle", "caution", flight.FailsafeFlies("link_lost"))
+    elif craft.phase == "hold":
+        step.do(HoldVehicle())
+
+
+def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
+    phase = step.craft.phase
+    match given:
+        case BatteryLow(because=because) if phase in AUTOMATIC or phase in ("hold", "manual"):
+            alert(step, "battery", "warning", because)
+            if phase in AUTOMATIC:
+                step.record(ReturnOrdered(craft_id=step.craft.craft_id, by=None, reason=because))
+                go_home(step, because)
+        case BatteryReported():
+            clear_alerts(step, "battery")
+        case HomeReached() if phase == "returning":
+            step.go("landing", flight.Proceeds("way_home"))
+            step.do(StartTimer("landing", LANDING_PATIENCE_S))
+        case Landed() if phase in HOMEWARD:
+            come_down(step, step.craft.return_reason or flight.Proceeds("way_home"))
+        case Landed() if phase == "manual":
+            come_down(step, flight.Landed("manual"))
+        case Landed() if phase == "hold" or (phase in AUTOMATIC and phase != "taking_off"):
+            _on_the_ground(step)
+        case _:
+            return
+
+
+def _on_the_ground(step: CraftStep) -> None:
+    """Not by our order (a failsafe's doing, or a return from before a restart). What was found is kept."""
+    if step.search.localized or step.search.stage == "ended":
+        step.do(CancelWork())
+        come_down(step, flight.Landed("localized" if step.search.localized else "hold"))
+        return
+    reason = flight.Landed("hold")
+    if step.craft.phase in AUTOMATIC:
+        reason = flight.Landed("automatic")
+        step.do(CancelWork())
+        step.go("hold", reason)
+    if all(raised.topic != "ground" for raised in step.craft.open_alerts):
+        clear_failsafe(step)
+        alert(step, "ground", "warning", reason)
+
+
+def _timer(step: CraftStep, given: TimerExpired) -> None:
+    phase, craft_id = step.craft.phase, step.craft.craft_id
+    match given.name:
+        case "console_hold" if phase in AUTOMATIC:
+            reason = flight.NoConsole("hold")
+            step.record(HoldOrdered(craft_id=craft_id, by=None, reason=reason))
+            alert(step, "console", "warning", reason)
+            hold(step, reason)
+        case "console_return" if phase in AUTOMATIC or phase == "hold":
+            reason = flight.NoConsole("return")
+            step.record(ReturnOrdered(craft_id=craft_id, by=None, reason=reason))
+            go_home(step, reason)
+        case "landing" if phase == "landing":
+            bring_down(step, Land())
+        case _:
+            return
+
+
+def _restarted(step: CraftStep, heard: Authority) -> None:
+    """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
+    craft = step.craft
+    if not craft.engaged:
+        return
+    clear_alerts(step, "vehicle", "receiver", "console", "payload")
+    if kept_of(heard) != kept_of(craft.authority):
+        step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
+    if craft.taken_over:
+        return
+    if pilot_has(heard):
+        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
+        alert(step, "pilot", "caution", reason)
+        step.go("manual", reason)
+    elif heard.who == "failsafe":
+        ordered = craft.phase in HOMEWARD
+        _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
+    else:
+        step.do(HoldVehicle())
+        step.go("hold", flight.BackAfterRestart())

@@ -1,0 +1,134 @@
+"""One measurement: turn on the spot, listen to all emitters, make a sweep of each and find its direction."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from dataclasses import dataclass
+from itertools import cycle
+from uuid import uuid4
+
+import numpy as np
+
+from backend.craft.equipment import CraftEquipment
+from backend.craft.listening import Listening
+from backend.craft.sweep_turns import turn_and_listen
+from backend.events import BearingMeasured, CraftSource, SweepRejected
+from backend.reasons import carried
+from backend.search.sweep_facts import Taken, rejected, sweep_fact
+from backend.spec import EmitterSpec, MissionSpec
+from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
+from hardware.ports import ReceiverError, VehicleError
+from hardware.readings import PowerSample, Sweep
+from hardware.reasons.receiver import NothingHeardInTurn
+from hardware.reasons.sweep import NoPulseHeard
+from hardware.reasons.vehicle import PositionLost
+
+PROGRESS_S = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """sweep None: the power could not be made into one. fact: what to record."""
+
+    sweep_id: str
+    sweep: Sweep | None
+    fact: BearingMeasured | SweepRejected
+
+
+async def measure(
+    equipment: CraftEquipment,
+    mission: MissionSpec,
+    mission_id: str,
+    listening: Listening,
+    place_number: int,
+    attempt: int,
+) -> tuple[Measured, ...]:
+    """One result an emitter. Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all."""
+    ordered_s = equipment.clock.now()
+    progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, ordered_s))
+    try:
+        began_s, ended_s = await turn_and_listen(equipment, mission, listening)
+    finally:
+        progress.cancel()
+        await asyncio.gather(progress, return_exceptions=True)
+    heard = {
+        emitter.emitter_id: listening.between(began_s, ended_s, emitter.frequency_hz) for emitter in mission.emitters
+    }
+    pulsed = any(emitter.kind == "pulsed" for emitter in mission.emitters)
+    if not any(heard.values()) and not (pulsed and listening.state == "ok"):
+        raise ReceiverError(NothingHeardInTurn())
+    taken_s = equipment.clock.now() - ordered_s
+    return tuple(
+        [
+            await _result(
+                equipment, mission, emitter, heard[emitter.emitter_id], place_number, attempt, began_s, taken_s
+            )
+            for emitter in mission.emitters
+        ]
+    )
+
+
+async def _result(
+    equipment: CraftEquipment,
+    mission: MissionSpec,
+    emitter: EmitterSpec,
+    samples: list[PowerSample],
+    place_number: int,
+    attempt: int,
+    began_s: float,
+    taken_s: float,
+) -> Measured:
+    sweep_id = str(uuid4())
+    taken = Taken(emitter.emitter_id, CraftSource(craft_id=equipment.craft_id), sweep_id, place_number, attempt)
+    telemetry = equipment.vehicle.telemetry()
+    try:
+        sweep = assemble_sweep(
+            [sample for sample in samples if sample.detected],
+            equipment.vehicle.headings(began_s - 1.0),
+            frequency_hz=emitter.frequency_hz,
+            altitude_amsl_m=math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m,
+            position=None,
+            tag=emitter.label,
+        )
+    except SweepError as error:
+        if telemetry.position is None:
+            raise VehicleError(PositionLost()) from error
+        unheard = emitter.kind == "pulsed" and not any(sample.detected for sample in samples)
+        reason = NoPulseHeard() if unheard else carried(error.reason)
+        return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason))
+    reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
+    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s))
+
+
+async def _show_progress(
+    equipment: CraftEquipment,
+    mission: MissionSpec,
+    mission_id: str,
+    listening: Listening,
+    place_number: int,
+    began_s: float,
+) -> None:
+    """The running sweep to whoever watches: antenna heading and power so far, of each emitter in turn."""
+    offset = equipment.pattern.offset_to_nose_deg
+    emitters = cycle(mission.emitters)
+    while True:
+        await equipment.clock.sleep(PROGRESS_S)
+        await asyncio.sleep(0.05)
+        headings = equipment.vehicle.headings(began_s)
+        emitter = next(emitters)
+        found = listening.between(began_s, equipment.clock.now(), emitter.frequency_hz)
+        samples = [s for s in found if s.detected]
+        if len(headings) < 2 or not samples:
+            continue
+        nose = np.unwrap(np.array([h.heading_deg for h in headings]), period=360.0)
+        at = np.interp([s.at_s for s in samples], [h.at_s for h in headings], nose)
+        equipment.publisher.sweep_progress(
+            mission_id,
+            equipment.craft_id,
+            emitter.emitter_id,
+            place_number,
+            [float(h) for h in (at + offset) % 360.0],
+            [s.power_db for s in samples],
+            turned_deg(nose),
+        )

@@ -1,0 +1,242 @@
+"""The craft machine's answers to an operator's orders. Pure; see machine.py for how a step is built."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from backend.commands import Abort, Accept, Hold, Override, Resume, Return, SetAutomatic, Start, Veto
+from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, ReturnHome, TakeControl
+from backend.craft.inputs import CraftOrdered
+from backend.craft.state import AUTOMATIC, HOMEWARD
+from backend.craft.step import (
+    CraftStep,
+    cancel_timers,
+    clear_alerts,
+    clear_failsafe,
+    go_on,
+    record_vetoes,
+    take_off,
+)
+from backend.events import (
+    AbortOrdered,
+    AuthorityChanged,
+    AutomaticChanged,
+    HoldOrdered,
+    MissionStarted,
+    PlanChosen,
+    PlanVetoed,
+    PreflightChecked,
+    ResumeOrdered,
+    ReturnOrdered,
+)
+from backend.reasons import PreflightFailed, refusals
+from backend.reasons.flight import Ordered
+from backend.reasons.refused import Refused
+from backend.reasons.safety import NoLink, PilotControls
+from hardware.authority import OperatorTookControl, authority_after
+
+
+def carry_out(step: CraftStep, given: CraftOrdered) -> None:
+    """Raises Refused, after the facts that led to it were recorded."""
+    command = given.command
+    match command:
+        case Start():
+            _start(step, given)
+        case Hold():
+            _hold(step, given)
+        case Resume():
+            _resume(step, given)
+        case Return():
+            _return(step, given)
+        case Abort():
+            _abort(step, given)
+        case Override():
+            _override(step, given, command)
+        case Accept():
+            if step.craft.phase != "waiting":
+                raise Refused(refusals.NoProposedPlace())
+            go_on(step, Ordered("accept", given.by), accepted=True)
+        case Veto():
+            _veto(step, given)
+        case SetAutomatic(automatic=automatic):
+            _set_automatic(step, given, automatic)
+        case _:
+            assert_never(command)
+
+
+def _start(step: CraftStep, given: CraftOrdered) -> None:
+    search, facts = step.search, given.start
+    if search.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    if step.craft.engaged:
+        raise Refused(refusals.AlreadyStarted())
+    if facts is None:
+        raise Refused(refusals.VehicleUnknown())
+    failed = [check for check in facts.checks if check.blocking and not check.ok]
+    step.record(PreflightChecked(passed=not failed, checks=list(facts.checks)))
+    if failed:
+        raise Refused(PreflightFailed(failed[0].name, failed[0].reason))
+    _refuse_objections(step, given)
+    if facts.home is None or facts.home_amsl_m is None:
+        raise Refused(refusals.NoHome())
+    step.record(
+        MissionStarted(
+            craft_id=step.craft.craft_id,
+            by=given.by,
+            home=facts.home,
+            home_amsl_m=facts.home_amsl_m,
+            software=facts.software,
+            antenna=facts.antenna,
+        )
+    )
+    _take_control(step, given.by)
+    go_on(step, Ordered("start", given.by))
+
+
+def _hold(step: CraftStep, given: CraftOrdered) -> None:
+    """On an ended search, too: a vehicle of ours in the air is never out of reach."""
+    _refuse_out_of_reach(step)
+    step.do(CancelWork())
+    _take_from_failsafe(step, given.by)
+    step.do(HoldVehicle())
+    step.record(HoldOrdered(craft_id=step.craft.craft_id, by=given.by, reason=None))
+    step.go("hold", Ordered("hold", given.by))
+
+
+def _resume(step: CraftStep, given: CraftOrdered) -> None:
+    craft, search = step.craft, step.search
+    _refuse_not_started(step)
+    if search.stage == "ended" and craft.phase != "manual":
+        raise Refused(refusals.MissionOver())
+    if craft.phase not in ("hold", "manual"):
+        raise Refused(refusals.NotHeld())
+    if "vehicle" in craft.links_down:
+        raise Refused(NoLink())
+    _refuse_objections(step, given)
+    step.record(ResumeOrdered(craft_id=craft.craft_id, by=given.by))
+    _take_control(step, given.by)
+    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground")
+    step.do(CancelTimer("console_hold"))
+    step.do(CancelTimer("console_return"))
+    reason = Ordered("resume", given.by)
+    if search.stage == "ended":
+        step.do(HoldVehicle())
+        step.go("hold", reason)
+    elif given.on_ground and not search.localized:
+        take_off(step, reason)
+    else:
+        go_on(step, reason)
+
+
+def _return(step: CraftStep, given: CraftOrdered) -> None:
+    _refuse_out_of_reach(step)
+    if step.craft.phase == "landing":
+        raise Refused(refusals.LandingAlready())
+    step.do(CancelWork())
+    _take_from_failsafe(step, given.by)
+    step.record(ReturnOrdered(craft_id=step.craft.craft_id, by=given.by, reason=None))
+    step.go("returning", Ordered("return", given.by))
+    step.do(ReturnHome())
+
+
+def _abort(step: CraftStep, given: CraftOrdered) -> None:
+    """The search is over at once; the craft comes home, held first."""
+    _refuse_not_started(step)
+    if step.search.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    reason = Ordered("abort", given.by)
+    step.do(CancelWork())
+    _take_from_failsafe(step, given.by)
+    if not step.craft.taken_over:
+        step.do(ReturnHome(hold_first=True))
+    step.record(AbortOrdered(craft_id=step.craft.craft_id, by=given.by))
+    if not step.craft.taken_over:
+        step.go("returning", reason)
+    cancel_timers(step)
+    step.do(LeaveSearch(reason, "aborted"))
+
+
+def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
+    craft = step.craft
+    _refuse_not_started(step)
+    if step.search.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    if craft.taken_over:
+        raise Refused(PilotControls())
+    if craft.phase in HOMEWARD:
+        raise Refused(refusals.OnTheWayHome())
+    _refuse_objections(step, given)
+    in_the_way = craft.phase in AUTOMATIC and craft.took_off
+    if in_the_way:
+        step.do(CancelWork())
+    number = step.search.place_number + 1 if craft.chosen is None or craft.attempt > 0 else craft.place_number
+    step.record(
+        PlanChosen(
+            craft_id=craft.craft_id,
+            place_number=max(number, 1),
+            place=command.place,
+            source="operator",
+            reason=Ordered("override", given.by),
+            expected_time_s=None,
+            time_90_s=None,
+            candidates=[],
+            rollouts=0,
+            plan_ms=0.0,
+            by=given.by,
+        )
+    )
+    if in_the_way:
+        go_on(step, Ordered("override", given.by))
+
+
+def _veto(step: CraftStep, given: CraftOrdered) -> None:
+    craft = step.craft
+    if craft.chosen is None or craft.phase not in ("waiting", "flying", "hold"):
+        raise Refused(refusals.NoProposedPlace())
+    if craft.phase == "flying":
+        step.do(CancelWork())
+        step.do(HoldVehicle())
+    step.record(PlanVetoed(craft_id=craft.craft_id, place=craft.chosen.place, by=given.by))
+    if craft.phase != "hold":
+        go_on(step, Ordered("veto", given.by))
+
+
+def _set_automatic(step: CraftStep, given: CraftOrdered, automatic: bool) -> None:
+    if step.search.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    step.record(AutomaticChanged(craft_id=step.craft.craft_id, automatic=automatic, by=given.by))
+    if step.craft.phase == "waiting" and automatic:
+        go_on(step, Ordered("automatic", given.by))
+
+
+def _take_from_failsafe(step: CraftStep, by: str) -> None:
+    """An explicit deed, as resuming is; a pilot's own control is never taken by it."""
+    if step.craft.authority.who == "failsafe":
+        _take_control(step, by)
+        clear_failsafe(step)
+
+
+def _take_control(step: CraftStep, by: str) -> None:
+    """A fact at once: an order that comes before the vehicle has answered must not meet the pilot of before."""
+    before = step.craft.authority
+    after = authority_after(before, OperatorTookControl())
+    if after != before:
+        step.record(AuthorityChanged(craft_id=step.craft.craft_id, authority=after, by=by))
+    step.do(TakeControl())
+
+
+def _refuse_not_started(step: CraftStep) -> None:
+    if not step.craft.engaged:
+        raise Refused(refusals.NotStarted() if step.search.stage in ("draft", "ready") else refusals.MissionOver())
+
+
+def _refuse_out_of_reach(step: CraftStep) -> None:
+    _refuse_not_started(step)
+    if step.craft.taken_over:
+        raise Refused(PilotControls())
+
+
+def _refuse_objections(step: CraftStep, given: CraftOrdered) -> None:
+    record_vetoes(step, given.objections)
+    for reason in given.objections:
+        raise Refused(reason)

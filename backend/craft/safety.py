@@ -1,0 +1,225 @@
+"""Pure vetoes between the planner, the operator and the vehicle.
+
+Every rule answers with reasons. They are asked before the start, on every chosen place, and again right before every
+command that moves the vehicle. Order: the first veto is the one to show.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shapely import LineString, Point
+from shapely.geometry.base import BaseGeometry
+
+from backend.reasons import Reason, safety
+from backend.reasons.safety import What
+from backend.search.area import EDGE_TOLERANCE_M, FAR_M
+from backend.search.task import SearchTask
+from hardware.frame import LocalFrame
+from hardware.readings import Place, Telemetry
+
+POSITION_STALE_S = 3.0
+BATTERY_STALE_S = 30.0
+LANDING_S = 60.0
+NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
+"""Battery a second in the air until it has been measured: twenty minutes from full to empty."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
+
+    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m.
+    """
+
+    frame: LocalFrame
+    fence: BaseGeometry
+    no_fly: tuple[BaseGeometry, ...]
+    minimum_altitude_relative_m: float
+    maximum_altitude_relative_m: float
+    home_amsl_m: float
+    reserve_percent: float
+    battery_telemetry: bool
+    speed_m_s: float
+    measurement_time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """The vehicle as last heard, and how fast its battery drains (percent a second of flight).
+
+    heard_since_s: when it was heard again after its link had been lost.
+    """
+
+    telemetry: Telemetry
+    now_s: float
+    drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
+    heard_since_s: float = -math.inf
+
+    @property
+    def position_age_s(self) -> float:
+        """Infinite while no position was heard."""
+        at = self.telemetry.position_at_s
+        return math.inf if at is None else self.now_s - at
+
+    @property
+    def battery_unreported_s(self) -> float:
+        """So long the vehicle was heard without its battery's charge; the silence of a lost link is not counted."""
+        heard, battery = self.telemetry.heard_at_s, self.telemetry.battery_at_s
+        return 0.0 if heard is None or battery is None else heard - max(battery, self.heard_since_s)
+
+
+def battery_to_return_percent(limits: Limits, position: Place, drain_percent_s: float) -> float:
+    """Charge that the flight home from `position` and the landing take, reserve not included."""
+    east, north = limits.frame.to_enu(position)
+    return drain_percent_s * (math.hypot(east, north) / limits.speed_m_s + LANDING_S)
+
+
+def limits_of(task: SearchTask) -> Limits:
+    flight = task.mission.flight
+    return Limits(
+        frame=task.frame,
+        fence=task.fence,
+        no_fly=task.no_fly,
+        minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
+        maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
+        home_amsl_m=task.home_amsl_m,
+        reserve_percent=flight.reserve_battery_percent,
+        battery_telemetry=flight.battery_telemetry,
+        speed_m_s=flight.speed_m_s,
+        measurement_time_s=task.mission.sensor.measurement_time_s,
+    )
+
+
+def vehicle_vetoes(situation: Situation) -> tuple[Reason, ...]:
+    """Is there a vehicle that may be commanded at all?"""
+    telemetry, age = situation.telemetry, situation.position_age_s
+    authority = telemetry.authority
+    found: list[Reason] = []
+    if authority.who == "failsafe":
+        found.append(safety.FailsafeActs(telemetry.mode or ""))
+    elif authority.who == "pilot":
+        found.append(safety.PilotControls())
+    if not telemetry.connected:
+        found.append(safety.NoLink())
+    if telemetry.position is None or math.isinf(age):
+        found.append(safety.NoPosition())
+    elif age > POSITION_STALE_S:
+        found.append(safety.PositionOld(age))
+    return tuple(found)
+
+
+def resume_vetoes(telemetry: Telemetry) -> tuple[Reason, ...]:
+    """May an operator resume? Not before a pilot has given the vehicle back: any command would take it from them."""
+    authority = telemetry.authority
+    if authority.who != "pilot" or authority.given_back:
+        return ()
+    return (safety.NotGivenBack(telemetry.mode or authority.mode or ""),)
+
+
+def battery_vetoes(
+    limits: Limits, situation: Situation, flight_s: float = 0.0, end: Place | None = None
+) -> tuple[Reason, ...]:
+    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?
+
+    A charge that is not known is no charge, unless the mission says that the vehicle has no battery telemetry.
+    """
+    telemetry = situation.telemetry
+    end = end or telemetry.position
+    if telemetry.battery_percent is None:
+        return (safety.BatteryUnknown(),) if limits.battery_telemetry else ()
+    if end is None:
+        return ()
+    if situation.battery_unreported_s > BATTERY_STALE_S:
+        return (safety.BatterySilent(),)
+    left = telemetry.battery_percent - situation.drain_percent_s * flight_s
+    needed = battery_to_return_percent(limits, end, situation.drain_percent_s)
+    if left - needed >= limits.reserve_percent:
+        return ()
+    return (safety.BatteryShort(telemetry.battery_percent, left, needed, limits.reserve_percent),)
+
+
+def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
+    """May a mission take off from where the vehicle stands? Who flew it before is no matter once it is disarmed."""
+    telemetry = situation.telemetry
+    by_hand = telemetry.armed is False
+    found = [v for v in vehicle_vetoes(situation) if not (by_hand and isinstance(v, safety.PilotControls))]
+    found += battery_vetoes(limits, situation, limits.measurement_time_s)
+    if telemetry.in_air:
+        found.append(safety.AlreadyInAir())
+    if telemetry.position is not None:
+        found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "vehicle_stands")
+    return tuple(found)
+
+
+def staying_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
+    """May a vehicle in the air go on within these limits from where it is, and come home?"""
+    found = _area_vetoes(limits, (0.0, 0.0), "home")
+    if situation.telemetry.position is not None:
+        found += _area_vetoes(limits, limits.frame.to_enu(situation.telemetry.position), "vehicle")
+    return tuple(found)
+
+
+def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
+    """May the vehicle turn on the spot for one measurement?"""
+    return (*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s))
+
+
+def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tuple[Reason, ...]:
+    """May anything fly at `place` at all, wherever the vehicle is?"""
+    found: list[Reason] = []
+    relative = altitude_amsl_m - limits.home_amsl_m
+    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
+    if not low - 0.5 <= relative <= high + 0.5:
+        found.append(safety.AltitudeOutside(relative, low, high))
+    at = limits.frame.to_enu(place)
+    if math.hypot(*at) > FAR_M:
+        return (*found, safety.TooFarFromHome(math.hypot(*at), FAR_M))
+    found += _area_vetoes(limits, at, "place")
+    near = min((zone.distance(Point(at)) for zone in limits.no_fly), default=math.inf)
+    if near < EDGE_TOLERANCE_M and not any(isinstance(veto, safety.InsideNoFly) for veto in found):
+        found.append(safety.NearNoFly(near, EDGE_TOLERANCE_M))
+    return tuple(found)
+
+
+def place_vetoes(
+    limits: Limits,
+    situation: Situation,
+    place: Place,
+    altitude_amsl_m: float,
+    way: Sequence[tuple[float, float]] = (),
+) -> tuple[Reason, ...]:
+    """May the vehicle fly to `place` and measure there? `way`: points in between, m ENU; straight without them."""
+    standing = standing_vetoes(limits, place, altitude_amsl_m)
+    found: list[Reason] = [*vehicle_vetoes(situation), *standing]
+    position = situation.telemetry.position
+    if position is not None and not any(isinstance(veto, safety.TooFarFromHome) for veto in standing):
+        path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
+        if not found:
+            found += _path_vetoes(limits, path)
+        flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
+        found += battery_vetoes(limits, situation, flight_s, place)
+    return tuple(found)
+
+
+def _area_vetoes(limits: Limits, at: tuple[float, float], what: What) -> list[Reason]:
+    point = Point(at)
+    found: list[Reason] = []
+    beyond = limits.fence.distance(point)
+    if beyond > EDGE_TOLERANCE_M:
+        found.append(safety.OutsideFence(what, beyond))
+    if any(zone.contains(point) for zone in limits.no_fly):
+        found.append(safety.InsideNoFly(what))
+    return found
+
+
+def _path_vetoes(limits: Limits, path: LineString) -> list[Reason]:
+    found: list[Reason] = []
+    if not limits.fence.buffer(EDGE_TOLERANCE_M).covers(path):
+        found.append(safety.WayLeavesFence())
+    flown = path.difference(Point(path.coords[0]).buffer(EDGE_TOLERANCE_M))
+    if any(flown.intersection(zone).length > 0.0 for zone in limits.no_fly):
+        found.append(safety.WayCrossesNoFly())
+    return found

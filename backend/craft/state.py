@@ -1,0 +1,159 @@
+"""What one craft does for a mission at one moment: a fold of the mission's facts, and nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from backend.events import (
+    AbortOrdered,
+    AlertCleared,
+    AlertRaised,
+    AreaChanged,
+    AuthorityChanged,
+    AutomaticChanged,
+    BearingExcluded,
+    BearingMeasured,
+    CraftSource,
+    Event,
+    FlightStarted,
+    Link,
+    LinkLost,
+    LinkRestored,
+    MissionDrafted,
+    MissionEdited,
+    MissionStarted,
+    Phase,
+    PhaseChanged,
+    PlanChosen,
+    PlanVetoed,
+    ServerRestarted,
+    SweepRejected,
+    SweepStarted,
+    TookOff,
+)
+from backend.reasons import Reason
+from backend.search.state import OpenAlert
+from backend.spec import Place
+from hardware.authority import NOBODY, Authority
+
+AUTOMATIC: frozenset[Phase] = frozenset({"taking_off", "planning", "waiting", "flying", "measuring"})
+HOMEWARD: frozenset[Phase] = frozenset({"returning", "landing"})
+
+
+@dataclass(frozen=True, slots=True)
+class CraftState:
+    """engaged: it was started for this mission and is not down since. searching: nor was it aborted.
+
+    chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
+    or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
+    from the specification. return_reason: why it is on its way home.
+    """
+
+    craft_id: str
+    phase: Phase = "ground"
+    phase_reason: Reason | None = None
+    engaged: bool = False
+    searching: bool = False
+    automatic: bool = True
+    maximum_retakes: int = 2
+    took_off: bool = False
+    chosen: PlanChosen | None = None
+    accepted: bool = False
+    attempt: int = 0
+    place_number: int = 0
+    avoid: tuple[Place, ...] = ()
+    return_reason: Reason | None = None
+    authority: Authority = NOBODY
+    links_down: frozenset[Link] = frozenset()
+    open_alerts: tuple[OpenAlert, ...] = ()
+    alerts_raised: int = 0
+
+    @property
+    def taken_over(self) -> bool:
+        return pilot_has(self.authority)
+
+    @property
+    def flies_by_itself(self) -> bool:
+        """Automatic control moves the vehicle, or is about to."""
+        return self.phase in AUTOMATIC or self.phase in HOMEWARD
+
+
+def pilot_has(authority: Authority) -> bool:
+    """A pilot has control, and no operator has taken it back since; after their landing, too."""
+    return authority.taken_by is not None and authority.who != "failsafe"
+
+
+def evolve(state: CraftState, event: Event) -> CraftState:
+    """The state after one fact of the mission."""
+    owner = getattr(event, "craft_id", None)
+    if owner is not None and owner != state.craft_id:
+        return state
+    match event:
+        case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
+            return replace(state, automatic=spec.flight.automatic, maximum_retakes=spec.sensor.maximum_retakes)
+        case AreaChanged():
+            return replace(state, chosen=None, accepted=False, avoid=())
+        case MissionStarted():
+            return replace(state, engaged=True, searching=True)
+        case PhaseChanged(after=after, reason=reason):
+            back = reason if after == "returning" else state.return_reason
+            up = after != "ground"
+            return replace(
+                state,
+                phase=after,
+                phase_reason=reason,
+                return_reason=back,
+                engaged=state.engaged and up,
+                searching=state.searching and up,
+            )
+        case TookOff():
+            return replace(state, took_off=True)
+        case AutomaticChanged(automatic=automatic):
+            return replace(state, automatic=automatic)
+        case AbortOrdered():
+            return replace(state, searching=False)
+        case AuthorityChanged(authority=authority):
+            return replace(state, authority=authority)
+        case LinkLost(link=link):
+            return replace(state, links_down=state.links_down | {link})
+        case LinkRestored(link=link):
+            return replace(state, links_down=state.links_down - {link})
+        case ServerRestarted():
+            return replace(state, links_down=frozenset())
+        case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=str()):
+            alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
+            return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
+        case AlertCleared(alert_id=alert_id):
+            return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
+        case _:
+            return _evolve_place(state, event)
+
+
+def _evolve_place(state: CraftState, event: Event) -> CraftState:
+    """The place in hand: chosen, flown to, measured at, given up."""
+    match event:
+        case PlanChosen(place_number=number, source=source):
+            return replace(state, chosen=event, place_number=number, accepted=source == "operator", attempt=0)
+        case PlanVetoed(place=place):
+            return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, place))
+        case FlightStarted():
+            return replace(state, accepted=True)
+        case SweepStarted(attempt=attempt):
+            return replace(state, attempt=attempt)
+        case SweepRejected(attempt=attempt, place=place) if _ours(state, event):
+            if state.chosen is None:  # the same turn heard another emitter: this one is not to be sought here again
+                return replace(state, avoid=(*state.avoid, place))
+            if attempt <= state.maximum_retakes:
+                return state
+            return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
+        case BearingMeasured() if _ours(state, event):
+            return replace(state, chosen=None, accepted=False, avoid=())
+        case BearingExcluded() if state.phase == "waiting":
+            return replace(state, chosen=None)
+        case _:
+            return state
+
+
+def _ours(state: CraftState, event: SweepRejected | BearingMeasured) -> bool:
+    """Only a craft's own sweep is done with its place: a bearing from elsewhere takes no destination from it."""
+    return isinstance(event.source, CraftSource) and event.source.craft_id == state.craft_id

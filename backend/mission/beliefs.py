@@ -1,0 +1,59 @@
+"""Folds bearings into beliefs beside everything else: one emitter at a time each, the newest request wins."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+
+from backend.search.inputs import BeliefReady
+from backend.search.state import EmitterState
+from backend.search.task import SearchTask
+from planner.belief.grid import GridBelief
+from planner.types import PlannerError
+
+log = logging.getLogger("crossfix.mission")
+
+
+class Beliefs:
+    """give: takes a finished belief."""
+
+    def __init__(self, task: SearchTask, give: Callable[[BeliefReady], object]) -> None:
+        self._task = task
+        self._give = give
+        self._running: dict[str, asyncio.Task[None]] = {}
+        self._newest: dict[str, GridBelief] = {}
+
+    def adopt(self, task: SearchTask) -> None:
+        """What was believed in the old area is no belief of the new one."""
+        self._task = task
+        self._newest.clear()
+
+    def update(self, emitter: EmitterState) -> None:
+        running = self._running.pop(emitter.emitter_id, None)
+        if running is not None:
+            running.cancel()
+        self._running[emitter.emitter_id] = asyncio.create_task(self._fold(emitter))
+
+    async def _fold(self, emitter: EmitterState) -> None:
+        localization = self._task.emitters[emitter.emitter_id]
+        try:
+            fact, belief = await asyncio.to_thread(localization.belief_fact, emitter.bearings)
+        except PlannerError as error:
+            log.error("the belief about %s cannot be computed: %s", emitter.emitter_id, error)
+            return
+        self._newest[emitter.emitter_id] = belief
+        self._give(BeliefReady(emitter.bearing_ids, fact))
+
+    def newest(self, emitter_id: str) -> tuple[GridBelief, list[tuple[float, float]]] | None:
+        """The last belief computed, and its corners (lon, lat): SW, SE, NE, NW."""
+        belief = self._newest.get(emitter_id)
+        if belief is None:
+            return None
+        return belief, self._task.emitters[emitter_id].corners_lon_lat(belief)
+
+    async def close(self) -> None:
+        tasks = list(self._running.values())
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)

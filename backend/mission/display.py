@@ -1,0 +1,65 @@
+"""What is shown beside the facts: telemetry of every craft ten times a second, the status once."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+
+from backend.craft.equipment import CraftEquipment
+from backend.craft.listening import channels_of
+from backend.craft.safety import battery_to_return_percent
+from backend.mission.equipment import MissionEquipment
+from backend.mission.flights import Flights
+from backend.ports import CraftStatus, Status
+
+TELEMETRY_S = 0.1
+TICKS_A_STATUS = 10
+
+
+@dataclass(slots=True)
+class Display:
+    equipment: MissionEquipment
+    flights: Flights
+
+    async def run(self) -> None:
+        """Seconds of the wall, until cancelled."""
+        publisher, clock = self.equipment.publisher, self.equipment.clock
+        tick = 0
+        while True:
+            for craft in self.equipment.crafts.values():
+                publisher.telemetry(craft.craft_id, craft.vehicle.telemetry(), clock.now())
+            if tick % TICKS_A_STATUS == 0:
+                publisher.status(self.status())
+            tick += 1
+            await asyncio.sleep(TELEMETRY_S)
+
+    def status(self) -> Status:
+        active = self.flights.active
+        failing = active is not None and active.outbox.failing
+        return Status(
+            mission_id=None if active is None else active.mission_id,
+            phase=None if active is None else active.state.phase,
+            crafts=tuple(self._craft(craft) for craft in self.equipment.crafts.values()),
+            database="lost" if failing else self.equipment.database(),
+        )
+
+    def _craft(self, craft: CraftEquipment) -> CraftStatus:
+        active, runner = self.flights.active, self.flights.craft(craft.craft_id)
+        if active is None or runner is None:
+            return CraftStatus(craft.craft_id, None, "ground", "off", None, None, None)
+        situation = runner.watch.situation()
+        heard = [runner.listening.last(channel.frequency_hz) for channel in channels_of(active.state.search.mission)]
+        last = max((sample for sample in heard if sample is not None), key=lambda sample: sample.at_s, default=None)
+        position = situation.telemetry.position
+        needed = None
+        if position is not None:
+            needed = battery_to_return_percent(runner.limits, position, situation.drain_percent_s)
+        return CraftStatus(
+            craft_id=craft.craft_id,
+            mission_id=active.mission_id,
+            phase=active.state.crafts[craft.craft_id].phase,
+            receiver=runner.listening.state,
+            receiver_power_db=None if last is None else last.power_db,
+            receiver_age_s=runner.listening.age_s,
+            battery_to_return_percent=needed,
+        )

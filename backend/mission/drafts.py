@@ -1,0 +1,111 @@
+"""Missions before they fly, and what is brought in beside a flight: drafted, edited, checked, given recordings."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from dataclasses import dataclass
+from uuid import uuid4
+
+from backend.craft.antenna_check import check_by_hand
+from backend.craft.checklist import checklist
+from backend.events import AntennaChecked, BeliefUpdated, MissionDrafted, PreflightChecked, Recorded
+from backend.mission.equipment import MissionEquipment
+from backend.mission.flights import Flights
+from backend.mission.records import Records
+from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable
+from backend.search.area import centre_of
+from backend.search.errors import MissionConflict
+from backend.search.importing import Upload, import_facts, imported_before
+from backend.search.inputs import BearingsArrived, Edited, PreflightDone
+from backend.search.task import search_task
+from backend.spec import MissionSpec, Place
+
+log = logging.getLogger("crossfix.mission")
+
+
+@dataclass(slots=True)
+class Drafts:
+    equipment: MissionEquipment
+    records: Records
+    flights: Flights
+
+    async def create(self, spec: MissionSpec, by: str) -> str:
+        """Draft a mission. Raises MissionInputError when the specification makes no sense."""
+        await asyncio.to_thread(_check_spec, spec)
+        mission_id = str(uuid4())
+        await self.records.append(mission_id, [MissionDrafted(spec=spec)])
+        log.info("mission %s drafted by %s", mission_id, by)
+        return mission_id
+
+    async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
+        """Raises MissionNotFound, MissionConflict once it has started, MissionInputError."""
+        await asyncio.to_thread(_check_spec, spec)
+        async with self.records.lock(mission_id):
+            state, _ = await self.records.load(mission_id)
+            if state.search.stage not in ("draft", "ready"):
+                raise MissionConflict(NotEditable())
+            await self.records.give(mission_id, state, Edited(spec))
+            await self.records.settle_beliefs(mission_id)
+        log.info("mission %s edited by %s", mission_id, by)
+
+    async def preflight(self, mission_id: str, craft_id: str | None = None) -> PreflightChecked:
+        """Run the checklist of a craft and record it. Raises MissionNotFound, KeyError for an unknown craft."""
+        craft = self.equipment.first if craft_id is None else self.equipment.crafts[craft_id]
+        async with self.records.lock(mission_id):
+            runner = self.flights.running(mission_id)
+            search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
+            listening = self.flights.listening(craft.craft_id)
+            checks, _ = await checklist(search.mission, craft, listening, search.antenna)
+            await self.flights.give(mission_id, PreflightDone(checks))
+        return PreflightChecked(passed=all(c.ok or not c.blocking for c in checks), checks=list(checks))
+
+    async def check_antenna(self, mission_id: str, emitter: Place | float, wait_s: float, by: str) -> AntennaChecked:
+        """Turn the vehicle by hand before an emitter at a known place or bearing; the result stays in the checklist.
+
+        Raises MissionNotFound, MissionConflict while anything flies, MissionInputError.
+        """
+        async with self.flights.starting:
+            if self.flights.active is not None:
+                raise MissionConflict(MissionFlies())
+            state, _ = await self.records.load(mission_id)
+            if state.search.stage not in ("draft", "ready"):
+                raise MissionConflict(AlreadyStarted())
+            checked = await check_by_hand(self.equipment.first, state.search.mission, emitter, wait_s, by)
+            async with self.records.lock(mission_id):
+                await self.records.append(mission_id, [checked])
+        return checked
+
+    async def import_recording(self, mission_id: str, upload: Upload, by: str) -> tuple[list[Recorded], bool]:
+        """Bring recorded sweeps into a mission, in flight too: its facts about them, and whether they were there
+        before.
+
+        All or nothing. Raises MissionNotFound, MissionInputError.
+        """
+        equipment, craft = self.equipment, self.equipment.first
+        async with self.records.lock(mission_id):
+            recorded = await self.records.read(mission_id)
+            before = imported_before(recorded, upload.recording_id)
+            if before:
+                return before, True
+            runner = self.flights.running(mission_id)
+            search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
+            found = await asyncio.to_thread(import_facts, mission_id, search, upload, craft.finder, craft.pattern, by)
+            for kept in found.sweeps:
+                await equipment.journal.save_sweep(
+                    mission_id, kept.sweep_id, None, kept.emitter_id, kept.place_number, 1, kept.sweep
+                )
+            if runner is None:
+                await self.records.append(mission_id, found.facts)
+            else:
+                bearings = tuple(fact for fact in found.facts if not isinstance(fact, BeliefUpdated))
+                await self.flights.give(mission_id, BearingsArrived(bearings))
+            new = imported_before(await self.records.read(mission_id), upload.recording_id)
+        log.info("mission %s: %s imported by %s", mission_id, upload.filename, by)
+        return new, False
+
+
+def _check_spec(spec: MissionSpec) -> None:
+    """Raises MissionInputError when the areas make no sense, wherever the vehicle is: a mission may be planned far from
+    it, or hold recordings only. Preflight refuses to fly it there."""
+    search_task(spec, centre_of(spec.area), 0.0)

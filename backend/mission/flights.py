@@ -1,0 +1,227 @@
+"""The missions in the air: started, commanded, brought back after a restart, let go when their craft are down.
+
+A craft flies for one mission at a time. Commands are idempotent by their id, across restarts too: the answers are
+facts.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from dataclasses import dataclass, field
+
+from backend import commands
+from backend.commands import CommandReply, CommandRequest
+from backend.craft.checklist import checklist
+from backend.craft.equipment import CraftEquipment
+from backend.craft.inputs import Abandoned, StartFacts
+from backend.craft.listening import Listening
+from backend.craft.runner import CraftRunner
+from backend.craft.safety import resume_vetoes
+from backend.mission.effects import Effect, Reply
+from backend.mission.equipment import MissionEquipment
+from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
+from backend.mission.records import Records
+from backend.mission.runner import MissionRunner
+from backend.mission.state import MissionState
+from backend.reasons import Interrupted, Reason
+from backend.reasons.refusals import AnotherMissionFlies, MissionOver
+from backend.search.antenna import antenna_fact
+from backend.search.errors import MissionInputError
+from backend.search.inputs import SearchOver
+from backend.search.other_area import task_or_reason
+from backend.search.planning import lay_out_ways
+from backend.search.task import search_task
+
+log = logging.getLogger("crossfix.mission")
+
+
+@dataclass(slots=True)
+class Flights:
+    """active: the mission in the air, None when all craft are down. starting: held while one is started, or while
+    something needs that none is."""
+
+    equipment: MissionEquipment
+    records: Records
+    active: MissionRunner | None = None
+    starting: asyncio.Lock = field(default_factory=asyncio.Lock)
+    _tasks: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
+
+    def running(self, mission_id: str) -> MissionRunner | None:
+        """The runner of this mission, None when it does not fly."""
+        runner = self.active
+        if runner is None or runner.mission_id != mission_id or runner.state.search.started_at_s is None:
+            return None
+        return runner
+
+    def craft(self, craft_id: str) -> CraftRunner | None:
+        """The runner of this craft, None when it flies for no mission."""
+        return None if self.active is None else self.active.crafts.get(craft_id)
+
+    def listening(self, craft_id: str) -> Listening | None:
+        craft = self.craft(craft_id)
+        return None if craft is None else craft.listening
+
+    async def give(self, mission_id: str, given: Input) -> int | None:
+        """To a mission, whether it flies or not. The last seq, None without a fact. Raises MissionNotFound."""
+        runner = self.running(mission_id)
+        if runner is not None:
+            runner.give(given)
+            await runner.outbox.flushed()
+            return runner.outbox.last_seq
+        state, _ = await self.records.load(mission_id)
+        _, seq = await self.records.give(mission_id, state, given)
+        return seq
+
+    # Commands
+
+    async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
+        """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
+        runner = self.running(mission_id)
+        if runner is not None and isinstance(request.command, commands.ChangeArea):
+            task = await asyncio.to_thread(task_or_reason, runner.state.search, request.command.search)
+            runner = self.running(mission_id)
+            if runner is not None:
+                asked = runner.change_area(str(request.command_id), by, request.command, task)
+                return await _answered(runner, request, asked)
+        if runner is not None:
+            return await _in_flight(runner, request, by)
+        async with self.records.lock(mission_id):
+            runner = self.running(mission_id)
+            if runner is not None:
+                return await _in_flight(runner, request, by)
+            return await self._on_the_ground(mission_id, request, by)
+
+    async def _on_the_ground(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
+        state, last_seq = await self.records.load(mission_id)
+        command_id = str(request.command_id)
+        match request.command:
+            case commands.Start() as start if state.search.stage in ("draft", "ready"):
+                if command_id not in state.answered:
+                    return await self._start(mission_id, state, last_seq, request, start, by)
+            case _:
+                pass
+        over = (MissionOver(),) if state.search.stage == "ended" else ()
+        contexts = {craft_id: Context(over) for craft_id in state.crafts}
+        given = Commanded(command_id, by, request.command, contexts)
+        asked, seq = await self.records.give(mission_id, state, given)
+        if isinstance(request.command, commands.ExcludeBearing):
+            await self.records.settle_beliefs(mission_id)
+        return _reply(request, asked, seq or last_seq)
+
+    async def _start(
+        self,
+        mission_id: str,
+        state: MissionState,
+        last_seq: int,
+        request: CommandRequest,
+        command: commands.Start,
+        by: str,
+    ) -> CommandReply:
+        craft = self.equipment.crafts.get(command.craft_id or self.equipment.first.craft_id)
+        if craft is None:
+            asked, seq = await self.records.give(mission_id, state, Commanded(str(request.command_id), by, command))
+            return _reply(request, asked, seq or last_seq)
+        async with self.starting:
+            objections: tuple[Reason, ...] = ()
+            if self.active is not None:
+                objections = (AnotherMissionFlies(self.active.state.search.mission.name),)
+            checks, task = await checklist(
+                state.search.mission, craft, self.listening(craft.craft_id), state.search.antenna
+            )
+            home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
+            software, antenna = self.equipment.software, antenna_fact(craft.pattern)
+            start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna)
+            objections += resume_vetoes(craft.vehicle.telemetry())
+            contexts = {craft.craft_id: Context(objections, start)}
+            given = Commanded(str(request.command_id), by, command, contexts)
+            if task is None or objections:
+                asked, seq = await self.records.give(mission_id, state, given)
+                return _reply(request, asked, seq or last_seq)
+            runner = MissionRunner(mission_id, state, last_seq, task, self.equipment)
+            self.active = runner
+            runner.join(craft)
+            asked = runner.give(given)
+            if runner.state.search.started_at_s is None:
+                self.active = None
+                await runner.close()
+            else:
+                self._fly(runner)
+                await runner.outbox.flushed()
+            return _reply(request, asked, runner.outbox.last_seq)
+
+    def _fly(self, runner: MissionRunner) -> None:
+        runner.begin()
+        self._tasks.append(asyncio.create_task(self._let_go(runner)))
+
+    async def _let_go(self, runner: MissionRunner) -> None:
+        """When a mission's craft are down, the next may start."""
+        await runner.finished.wait()
+        await runner.close()
+        if self.active is runner:
+            self.active = None
+
+    # Life
+
+    async def recover(self) -> None:
+        """Bring back what was in the air when the server went away: in hold, unless somebody else flies it."""
+        unfinished = await self.equipment.journal.unfinished()
+        for mission_id in unfinished[:-1]:
+            await self._close_interrupted(mission_id, Interrupted("later_mission"))
+        if unfinished:
+            await self._recover(unfinished[-1])
+
+    async def _recover(self, mission_id: str) -> None:
+        state, last_seq = await self.records.load(mission_id)
+        search = state.search
+        if search.home is None or not state.engaged:
+            return
+        try:
+            task = search_task(search.mission, search.home, search.home_amsl_m)
+        except MissionInputError as error:
+            log.error("mission %s: %s", mission_id, error)
+            await self._close_interrupted(mission_id, Interrupted("unreadable"))
+            return
+        await asyncio.to_thread(lay_out_ways, task.first)
+        runner = self.active = MissionRunner(mission_id, state, last_seq, task, self.equipment)
+        for craft in state.engaged:
+            known: CraftEquipment | None = self.equipment.crafts.get(craft.craft_id)
+            if known is not None:
+                known.vehicle.restore(craft.authority)
+                runner.join(known)
+        runner.give(ServerCameBack())
+        runner.recover()
+        self._fly(runner)
+        log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
+
+    async def _close_interrupted(self, mission_id: str, why: Interrupted) -> None:
+        """What no craft of ours flies any more is over, and says so in the list of missions."""
+        state, _ = await self.records.load(mission_id)
+        for craft in state.engaged:
+            await self.give(mission_id, ToCraft(craft.craft_id, Abandoned(why)))
+        await self.give(mission_id, SearchOver(why, "failed"))
+        log.error("mission %s is closed as interrupted: %s", mission_id, why.because)
+
+    async def close(self) -> None:
+        """Stops watching; each vehicle goes on with what it was ordered, and its own failsafe acts."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        if self.active is not None:
+            await self.active.close()
+            self.active = None
+
+
+async def _in_flight(runner: MissionRunner, request: CommandRequest, by: str) -> CommandReply:
+    """At once: what moves or stops the vehicle is under way before the journal is waited for."""
+    return await _answered(runner, request, runner.command(str(request.command_id), by, request.command))
+
+
+async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:
+    await runner.outbox.flushed()
+    return _reply(request, asked, runner.outbox.last_seq)
+
+
+def _reply(request: CommandRequest, asked: tuple[Effect, ...], seq: int) -> CommandReply:
+    answer = next(effect for effect in asked if isinstance(effect, Reply))
+    return CommandReply(command_id=request.command_id, accepted=answer.reason is None, reason=answer.reason, seq=seq)

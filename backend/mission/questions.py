@@ -1,0 +1,80 @@
+"""What if: the expected time by way of a place, another search area, a mission not flown yet. Nothing is recorded."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from backend.craft.checklist import home_of
+from backend.craft.safety import limits_of, standing_vetoes, staying_vetoes
+from backend.mission.equipment import MissionEquipment
+from backend.mission.flights import Flights
+from backend.mission.records import Records
+from backend.reasons import Reason
+from backend.reasons.refusals import MissionDoesNotFly
+from backend.search.area import centre_of
+from backend.search.errors import MissionConflict
+from backend.search.forecast import Forecast, Preview, forecast, preview
+from backend.search.other_area import Outlook, outlook, task_in
+from backend.search.state import SearchState
+from backend.search.task import SearchTask, search_task
+from backend.spec import MissionSpec, Place, SearchArea
+
+
+@dataclass(slots=True)
+class Questions:
+    equipment: MissionEquipment
+    records: Records
+    flights: Flights
+
+    async def expected_time(self, mission_id: str, place: Place) -> Forecast:
+        """The expected time to localization when a craft measured at this place next. Raises MissionNotFound."""
+        runner = self.flights.running(mission_id)
+        search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
+        task = runner.task if runner else self._task(search)
+        craft = next(iter(runner.crafts.values())) if runner else None
+        start = task.home if craft is None else craft.equipment.vehicle.telemetry().position or task.home
+
+        def vetoes(where: Place, way: Sequence[tuple[float, float]]) -> tuple[Reason, ...]:
+            if craft is not None:
+                return craft.work.vetoes_against(where, way)
+            return standing_vetoes(limits_of(task), where, task.altitude_at(where))
+
+        emitter = (*search.wanted, *search.emitters.values())[0]
+        return await asyncio.to_thread(
+            forecast, task.emitters[emitter.emitter_id], emitter.bearings, start, place, vetoes
+        )
+
+    async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:
+        """What to expect of another search area now, and what forbids to change to it.
+
+        Raises MissionNotFound, MissionConflict unless the mission flies, MissionInputError.
+        """
+        runner = self.flights.running(mission_id)
+        if runner is None:
+            await self.records.load(mission_id)
+            raise MissionConflict(MissionDoesNotFly())
+        search, crafts = runner.state.search, tuple(runner.crafts.values())
+        task = await asyncio.to_thread(task_in, search, area)
+        limits = limits_of(task)
+        vetoes = tuple(veto for craft in crafts for veto in staying_vetoes(limits, craft.watch.situation()))
+        positions = [craft.equipment.vehicle.telemetry().position for craft in crafts]
+        here = next((position for position in positions if position is not None), task.home)
+        return await asyncio.to_thread(outlook, search, task, here, self.equipment.threads), vetoes
+
+    async def preview(self, spec: MissionSpec) -> Preview:
+        """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
+        home, home_amsl_m = self._home_for(spec)
+        task = await asyncio.to_thread(search_task, spec, home, home_amsl_m)
+        start = self.equipment.first.vehicle.telemetry().position or task.home
+        return await asyncio.to_thread(preview, task.first, start, self.equipment.threads)
+
+    def _task(self, search: SearchState) -> SearchTask:
+        if search.home is not None:
+            return search_task(search.mission, search.home, search.home_amsl_m)
+        return search_task(search.mission, *self._home_for(search.mission))
+
+    def _home_for(self, spec: MissionSpec) -> tuple[Place, float]:
+        home, amsl = home_of(self.equipment.first.vehicle.telemetry())
+        return home or centre_of(spec.area), amsl or 0.0

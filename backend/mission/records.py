@@ -1,0 +1,75 @@
+"""Missions as the journal has them: read, folded, and written to while none of their craft flies."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Sequence
+
+from backend.events import Event, Recorded
+from backend.mission.effects import Effect
+from backend.mission.inputs import Input
+from backend.mission.machine import transition
+from backend.mission.state import MissionState, fold
+from backend.ports import Journal, Publisher
+from backend.search.area import corner_of
+from backend.search.effects import Record
+from backend.search.errors import MissionInputError, MissionNotFound
+from backend.search.localization import localization
+from hardware.ports import Clock
+from planner.types import PlannerError
+
+log = logging.getLogger("crossfix.mission")
+
+
+class Records:
+    """One lock a mission: whoever reads a state to change it holds that."""
+
+    def __init__(self, journal: Journal, publisher: Publisher, clock: Clock) -> None:
+        self._journal = journal
+        self._publisher = publisher
+        self._clock = clock
+        self._locks: dict[str, asyncio.Lock] = {}
+
+    def lock(self, mission_id: str) -> asyncio.Lock:
+        return self._locks.setdefault(mission_id, asyncio.Lock())
+
+    async def read(self, mission_id: str) -> list[Recorded]:
+        """Raises MissionNotFound."""
+        recorded = await self._journal.read(mission_id)
+        if not recorded:
+            raise MissionNotFound(mission_id)
+        return recorded
+
+    async def load(self, mission_id: str) -> tuple[MissionState, int]:
+        """The state, and the number of the last fact. Raises MissionNotFound."""
+        recorded = await self.read(mission_id)
+        return fold(recorded), recorded[-1].seq
+
+    async def give(self, mission_id: str, state: MissionState, given: Input) -> tuple[tuple[Effect, ...], int | None]:
+        """A mission that does not fly: only its facts and its answer matter. The last seq, None without a fact."""
+        _, asked = transition(state, given, self._clock.now())
+        return asked, await self.append(mission_id, [e.event for e in asked if isinstance(e, Record)])
+
+    async def append(self, mission_id: str, events: Sequence[Event]) -> int | None:
+        """The last seq, None without an event."""
+        if not events:
+            return None
+        recorded = await self._journal.append(mission_id, events)
+        self._publisher.events(recorded)
+        return recorded[-1].seq
+
+    async def settle_beliefs(self, mission_id: str) -> None:
+        """On the ground nobody folds the beliefs when bearings come or go, or the area under them changes."""
+        search = (await self.load(mission_id))[0].search
+        for emitter in search.emitters.values():
+            if emitter.belief_current or not emitter.measured:
+                continue
+            home = search.home or corner_of(search.mission.area)
+            try:
+                task = await asyncio.to_thread(localization, search.mission, home, emitter.emitter_id)
+                belief, _ = await asyncio.to_thread(task.belief_fact, emitter.bearings)
+            except (MissionInputError, PlannerError) as error:
+                log.warning("mission %s: no belief can be made of its bearings: %s", mission_id, error)
+                continue
+            await self.append(mission_id, [belief])

@@ -1,0 +1,129 @@
+"""What search, craft and mission need of the rooms above them: the journal keeps facts, the publisher shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+from backend.events import Event, MissionPhase, Phase, Recorded
+from hardware.readings import Sweep, Telemetry
+from planner.belief.grid import GridBelief
+from planner.reason import ReasonedError
+
+ReceiverState = Literal["ok", "silent", "off", "lost"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackPoint:
+    """One thinned point of the flown track (2 Hz)."""
+
+    at_s: float
+    lat_deg: float
+    lon_deg: float
+    altitude_amsl_m: float
+    altitude_relative_m: float
+    heading_deg: float | None
+    battery_percent: float | None
+    mode: str | None
+
+
+class JournalUnavailable(ReasonedError, RuntimeError):
+    """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
+
+
+class FactRefused(ReasonedError, ValueError):
+    """The journal will never take this: the fact makes no sense, or another writer has used its place."""
+
+
+class Journal(Protocol):
+    """Append-only facts. `append` returns only when they are durable; nothing is published before that."""
+
+    async def append(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        """All or none. Raises JournalUnavailable (try again), FactRefused (never)."""
+        ...
+
+    async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
+        """For a person to look at: facts that were refused. They are counted and block nothing."""
+        ...
+
+    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]: ...
+
+    async def save_sweep(
+        self,
+        mission_id: str,
+        sweep_id: str,
+        craft_id: str | None,
+        emitter_id: str,
+        place_number: int,
+        attempt: int,
+        sweep: Sweep,
+    ) -> None:
+        """craft_id None: an import's. Raises JournalUnavailable, FactRefused (then it was kept aside)."""
+        ...
+
+    async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None: ...
+
+    async def unfinished(self) -> list[str]:
+        """Missions that were started and have not ended, or whose craft still flies: what a restart must bring back."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class CraftStatus:
+    """What a craft does now, and the health of its parts. mission_id None: it flies for none."""
+
+    craft_id: str
+    mission_id: str | None
+    phase: Phase
+    receiver: ReceiverState
+    receiver_power_db: float | None
+    receiver_age_s: float | None
+    battery_to_return_percent: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """Once a second beside the facts: the mission that flies, if one does, and every craft there is."""
+
+    mission_id: str | None
+    phase: MissionPhase | None
+    crafts: tuple[CraftStatus, ...]
+    database: Literal["ok", "slow", "lost"]
+
+
+class Publisher(Protocol):
+    """Shows facts and newest-wins values to whoever watches; never blocks, never raises for a slow client."""
+
+    def events(self, recorded: Sequence[Recorded]) -> None: ...
+
+    def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None: ...
+
+    def sweep_progress(
+        self,
+        mission_id: str,
+        craft_id: str,
+        emitter_id: str,
+        place_number: int,
+        heading_deg: list[float],
+        power_db: list[float],
+        turned_deg: float,
+    ) -> None: ...
+
+    def belief(
+        self,
+        mission_id: str,
+        emitter_id: str,
+        seq: int,
+        bearings: int,
+        belief: GridBelief,
+        corners_lon_lat: list[tuple[float, float]],
+    ) -> None:
+        """seq: of its BeliefUpdated, shown right before. corners_lon_lat: SW, SE, NE, NW of the grid's outer edge."""
+        ...
+
+    def status(self, status: Status) -> None: ...
+
+    def watchers(self) -> int:
+        """How many consoles watch now (for the console-lost timers)."""
+        ...

@@ -1,0 +1,80 @@
+"""The page's English: every reason's words by its code, as the classes have them.
+
+`python -m backend.reasons.catalogue FILE` writes it, `--check FILE` fails when FILE is not what the classes say.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import get_args, get_type_hints
+
+from backend.reasons import ReasonUnion
+from planner.reason import Reason as AnyReason
+
+HEAD = """\
+// English for every reason, generated from the classes: `make codegen` writes it.
+import type { ReasonTable } from "./reasons";
+
+export const reasonsEn: ReasonTable = {
+"""
+LINE = 140
+"""As wide as the page's formatter makes a line."""
+KEPT_ON_LINE = ("text",)
+"""Keys so short that the formatter never begins a new line after them."""
+
+
+def reason_classes() -> tuple[type[AnyReason], ...]:
+    """Every class of the union, in its order."""
+    union, _ = get_args(ReasonUnion.__value__)
+    return get_args(union)
+
+
+def code_of(reason: type[AnyReason]) -> str:
+    (code,) = get_args(get_type_hints(reason)["code"])
+    return code
+
+
+def english_table() -> str:
+    """TypeScript, formatted as the page's formatter would."""
+    entries = (
+        f"  {code_of(reason)}: {{\n"
+        f"{_entry('text', reason.english.text)}{_entry('remedy', reason.english.remedy)}"
+        "  },\n"
+        for reason in reason_classes()
+    )
+    return f"{HEAD}{''.join(entries)}}};\n"
+
+
+def _entry(key: str, words: str) -> str:
+    literal = _literal(words)
+    line = f"    {key}: {literal},\n"
+    return line if key in KEPT_ON_LINE or len(line) <= LINE + 1 else f"    {key}:\n      {literal},\n"
+
+
+def _literal(words: str) -> str:
+    """In the quotes that need fewer escapes."""
+    double = json.dumps(words, ensure_ascii=False)
+    if words.count('"') <= words.count("'"):
+        return double
+    return "'" + double[1:-1].replace('\\"', '"').replace("'", "\\'") + "'"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description="Write the page's English for every reason, or check that it is current."
+    )
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    text = english_table()
+    if not arguments.check:
+        arguments.file.write_text(text)
+    elif not arguments.file.exists() or arguments.file.read_text() != text:
+        sys.exit(f"{arguments.file} is not what the classes say: run `make codegen` and commit the result")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""What the checklist says of a line that is fine, or of equipment that is not ready."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+
+@dataclass(frozen=True, slots=True)
+class RoomToFly:
+    area_m2: float
+    code: Literal["room_to_fly"] = "room_to_fly"
+    english: ClassVar[Words] = Words("There are {area_m2} to fly in.")
+
+
+@dataclass(frozen=True, slots=True)
+class StartAllowed:
+    code: Literal["start_allowed"] = "start_allowed"
+    english: ClassVar[Words] = Words("Fence, battery and position allow the start.")
+
+
+@dataclass(frozen=True, slots=True)
+class ReceiverDelivers:
+    channels: int
+    code: Literal["receiver_delivers"] = "receiver_delivers"
+    english: ClassVar[Words] = Words("The receiver delivers samples on {channels|channel|channels}.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoSamples:
+    code: Literal["no_samples"] = "no_samples"
+    english: ClassVar[Words] = Words(
+        "The receiver delivers no samples.", "Check that it is plugged in and not in use by another program."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TagUnheard:
+    frequency_hz: float
+    code: Literal["tag_unheard"] = "tag_unheard"
+    english: ClassVar[Words] = Words(
+        "The receiver works, but hears no pulse of the tag at {frequency_hz}.",
+        "Bring the tag nearer, or accept that it is out of range here.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PatternInUse:
+    name: str
+    code: Literal["pattern_in_use"] = "pattern_in_use"
+    english: ClassVar[Words] = Words("The antenna pattern is {name}.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoVehicleYet:
+    """address: where it is looked for."""
+
+    address: str
+    code: Literal["no_vehicle_yet"] = "no_vehicle_yet"
+    english: ClassVar[Words] = Words(
+        "No vehicle has answered on {address} yet.", "Switch it on and check its link and address."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectingBroke:
+    """A fault of ours; the log has the traceback."""
+
+    address: str
+    code: Literal["connecting_broke"] = "connecting_broke"
+    english: ClassVar[Words] = Words("Connecting to {address} failed inside Crossfix and is tried again.")
+
+
+CheckReason = (
+    RoomToFly | StartAllowed | ReceiverDelivers | NoSamples | TagUnheard | PatternInUse | NoVehicleYet | ConnectingBroke
+)

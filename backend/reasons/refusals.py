@@ -1,0 +1,170 @@
+"""Why a command is not carried out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+
+@dataclass(frozen=True, slots=True)
+class NotStarted:
+    code: Literal["not_started"] = "not_started"
+    english: ClassVar[Words] = Words("The mission has not started.", "Start it first.")
+
+
+@dataclass(frozen=True, slots=True)
+class AlreadyStarted:
+    code: Literal["already_started"] = "already_started"
+    english: ClassVar[Words] = Words("The mission has started already.", "Draft a new one to fly again.")
+
+
+@dataclass(frozen=True, slots=True)
+class MissionOver:
+    code: Literal["mission_over"] = "mission_over"
+    english: ClassVar[Words] = Words("The mission has ended.", "Draft a new one.")
+
+
+@dataclass(frozen=True, slots=True)
+class NotHeld:
+    code: Literal["not_held"] = "not_held"
+    english: ClassVar[Words] = Words("The mission is not held.")
+
+
+@dataclass(frozen=True, slots=True)
+class LandingAlready:
+    code: Literal["landing_already"] = "landing_already"
+    english: ClassVar[Words] = Words("The vehicle is landing at home already.", "Hold stops the landing.")
+
+
+@dataclass(frozen=True, slots=True)
+class OnTheWayHome:
+    code: Literal["on_the_way_home"] = "on_the_way_home"
+    english: ClassVar[Words] = Words("The vehicle is on its way home.", "Hold and resume first, to go on searching.")
+
+
+@dataclass(frozen=True, slots=True)
+class OnTheGround:
+    code: Literal["on_the_ground"] = "on_the_ground"
+    english: ClassVar[Words] = Words("The vehicle is on the ground.")
+
+
+@dataclass(frozen=True, slots=True)
+class AreaOnlyInHold:
+    code: Literal["area_only_in_hold"] = "area_only_in_hold"
+    english: ClassVar[Words] = Words("The search area can only be changed in hold.", "Hold, then change it.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoProposedPlace:
+    code: Literal["no_proposed_place"] = "no_proposed_place"
+    english: ClassVar[Words] = Words("No place is proposed.", "Wait for the planner's next place.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoSuchBearing:
+    code: Literal["no_such_bearing"] = "no_such_bearing"
+    english: ClassVar[Words] = Words("This mission has no such bearing.", "Reload the page.")
+
+
+@dataclass(frozen=True, slots=True)
+class BearingExcludedAlready:
+    code: Literal["bearing_excluded_already"] = "bearing_excluded_already"
+    english: ClassVar[Words] = Words("The bearing is excluded already.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoSuchAlert:
+    code: Literal["no_such_alert"] = "no_such_alert"
+    english: ClassVar[Words] = Words("There is no such open alert.", "It may have cleared by itself.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoSuchCraft:
+    craft_id: str
+    code: Literal["no_such_craft"] = "no_such_craft"
+    english: ClassVar[Words] = Words("No craft {craft_id} flies for this mission.", "Reload the page.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoSuchEmitter:
+    emitter_id: str
+    code: Literal["no_such_emitter"] = "no_such_emitter"
+    english: ClassVar[Words] = Words("This mission looks for no emitter {emitter_id}.", "Reload the page.")
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleUnknown:
+    code: Literal["vehicle_unknown"] = "vehicle_unknown"
+    english: ClassVar[Words] = Words("Nothing is known of the vehicle.", "Connect the vehicle and ask again.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoHome:
+    code: Literal["no_home"] = "no_home"
+    english: ClassVar[Words] = Words("The vehicle's home is not known yet.", "Wait for a GPS fix.")
+
+
+@dataclass(frozen=True, slots=True)
+class AnotherMissionFlies:
+    name: str
+    code: Literal["another_mission_flies"] = "another_mission_flies"
+    english: ClassVar[Words] = Words(
+        "Another mission is still flying: {name}.", "End it and let the vehicle land first."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoMission:
+    mission_id: str
+    code: Literal["no_mission"] = "no_mission"
+    english: ClassVar[Words] = Words("There is no mission {mission_id}.", "Look at the list of missions.")
+
+
+@dataclass(frozen=True, slots=True)
+class NotEditable:
+    code: Literal["not_editable"] = "not_editable"
+    english: ClassVar[Words] = Words(
+        "The mission has started and can no longer be edited.",
+        "In hold, change its search area; or draft a new mission.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MissionFlies:
+    """The antenna is checked on the ground only."""
+
+    code: Literal["mission_flies"] = "mission_flies"
+    english: ClassVar[Words] = Words("A mission is flying.", "Check the antenna when the vehicle is down.")
+
+
+@dataclass(frozen=True, slots=True)
+class MissionDoesNotFly:
+    code: Literal["mission_does_not_fly"] = "mission_does_not_fly"
+    english: ClassVar[Words] = Words("The mission is not flying.", "Edit the draft, or draft a new mission.")
+
+
+RefusalReason = (
+    NotStarted
+    | AlreadyStarted
+    | MissionOver
+    | NotHeld
+    | LandingAlready
+    | OnTheWayHome
+    | OnTheGround
+    | AreaOnlyInHold
+    | NoProposedPlace
+    | NoSuchBearing
+    | BearingExcludedAlready
+    | NoSuchAlert
+    | NoSuchCraft
+    | NoSuchEmitter
+    | VehicleUnknown
+    | NoHome
+    | AnotherMissionFlies
+    | NoMission
+    | NotEditable
+    | MissionFlies
+    | MissionDoesNotFly
+)

@@ -1,0 +1,265 @@
+"""What is wrong with a request, or with the server that got it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+NothingKind = Literal["mission", "page", "belief", "sweep", "map", "overlay", "file", "recording", "craft", "scene"]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldMissing:
+    code: Literal["field_missing"] = "field_missing"
+    english: ClassVar[Words] = Words("It is missing.")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldUnknown:
+    code: Literal["field_unknown"] = "field_unknown"
+    english: ClassVar[Words] = Words("There is no such field.")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOutOfRange:
+    """bound: what it is compared with."""
+
+    relation: Literal["greater_than", "greater_than_equal", "less_than", "less_than_equal"]
+    bound: float
+    code: Literal["field_out_of_range"] = "field_out_of_range"
+    english: ClassVar[Words] = Words(
+        "It must be {relation?greater_than=greater than|greater_than_equal=at least|less_than=less than"
+        "|less_than_equal=at most} {bound}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FieldWrongLength:
+    """Of a text (characters) or a list (items)."""
+
+    relation: Literal["least", "most"]
+    length: int
+    code: Literal["field_wrong_length"] = "field_wrong_length"
+    english: ClassVar[Words] = Words("It must have {relation?least=at least|most=at most} {length|item|items}.")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldNotOneOf:
+    """expected: the values there are, as pydantic lists them."""
+
+    expected: str
+    code: Literal["field_not_one_of"] = "field_not_one_of"
+    english: ClassVar[Words] = Words("It must be one of {expected}.")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldInvalid:
+    """message: of the validator, in English."""
+
+    message: str
+    code: Literal["field_invalid"] = "field_invalid"
+    english: ClassVar[Words] = Words("It is not valid: {message}.")
+
+
+@dataclass(frozen=True, slots=True)
+class RequestInvalid:
+    """field: path into the request of the first fault, empty for the whole. faults: how many there are."""
+
+    field: str
+    faults: int
+    code: Literal["request_invalid"] = "request_invalid"
+    english: ClassVar[Words] = Words(
+        "The request is not valid: {faults|field is|fields are} wrong, first {field}.",
+        "Correct the named fields and send it again.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NothingThere:
+    what: NothingKind
+    which: str
+    code: Literal["nothing_there"] = "nothing_there"
+    english: ClassVar[Words] = Words(
+        "There is no {what?mission=mission|page=page|belief=belief|sweep=sweep|map=map|overlay=overlay|file=file"
+        "|recording=recording|craft=craft|scene=scene} {which}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class HttpRefused:
+    """phrase: the status in words, in English."""
+
+    status: int
+    phrase: str
+    code: Literal["http_refused"] = "http_refused"
+    english: ClassVar[Words] = Words("The request was refused ({status}): {phrase}.")
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTooLarge:
+    most_bytes: int
+    code: Literal["body_too_large"] = "body_too_large"
+    english: ClassVar[Words] = Words(
+        "A request may have at most {most_bytes}.", "Simplify the geometry, or split the file."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownHost:
+    host: str
+    code: Literal["unknown_host"] = "unknown_host"
+    english: ClassVar[Words] = Words(
+        "This server does not go by the name {host}.",
+        "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignOrigin:
+    origin: str
+    code: Literal["foreign_origin"] = "foreign_origin"
+    english: ClassVar[Words] = Words(
+        "A page of {origin} may not command this server.", "Use the page that this server serves."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SamplesNotStored:
+    place_number: int
+    code: Literal["samples_not_stored"] = "samples_not_stored"
+    english: ClassVar[Words] = Words(
+        "The power samples of place {place_number} were not stored, so no other antenna can hear them.",
+        "Ask with another bearing error, share of wrong bearings or planner: these need no samples.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class HalfGiven:
+    """Two fields that go together, of which one is missing."""
+
+    pair: Literal["place", "pulses"]
+    code: Literal["half_given"] = "half_given"
+    english: ClassVar[Words] = Words(
+        "{pair?place=A place needs both latitude and longitude|pulses=A pulsed tag needs both its pulse width and its "
+        "period}.",
+        "Give both, or neither.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TooManyFiles:
+    files: int
+    code: Literal["too_many_files"] = "too_many_files"
+    english: ClassVar[Words] = Words(
+        "{files|file is|files are} more than one recording.", "Upload one file, or meta, data and headings."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TwoRecordings:
+    first: str
+    second: str
+    code: Literal["two_recordings"] = "two_recordings"
+    english: ClassVar[Words] = Words(
+        "The files {first} and {second} are two recordings.", "Upload them one after the other."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class IqOptionsUnused:
+    file: str
+    code: Literal["iq_options_unused"] = "iq_options_unused"
+    english: ClassVar[Words] = Words(
+        "Frequency and pulses are looked for in IQ only; the powers of {file} are taken as they are."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ExportUnreadable:
+    """What was sent cannot be read as an exported mission. later: a later Crossfix exported it."""
+
+    fault: Literal["not_json", "not_exported", "later"]
+    code: Literal["export_unreadable"] = "export_unreadable"
+    english: ClassVar[Words] = Words(
+        "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported"
+        "|later=was exported by a later Crossfix}.",
+        "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UploadBrokeOff:
+    code: Literal["upload_broke_off"] = "upload_broke_off"
+    english: ClassVar[Words] = Words("The upload broke off; nothing was kept.", "Upload the file again.")
+
+
+@dataclass(frozen=True, slots=True)
+class NoPayloadExpected:
+    code: Literal["no_payload_expected"] = "no_payload_expected"
+    english: ClassVar[Words] = Words(
+        "This server takes no samples from a payload.",
+        "Start it with CROSSFIX_PAYLOAD_TOKENS, a list of the tokens its payloads may show.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownToken:
+    code: Literal["unknown_token"] = "unknown_token"
+    english: ClassVar[Words] = Words(
+        "The server does not know this token.",
+        "Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TooManyScenes:
+    code: Literal["too_many_scenes"] = "too_many_scenes"
+    english: ClassVar[Words] = Words("Too many 3D views are open.", "Close one in another tab.")
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSilent:
+    code: Literal["scene_silent"] = "scene_silent"
+    english: ClassVar[Words] = Words("The 3D server does not answer.", "Load the view again.")
+
+
+@dataclass(frozen=True, slots=True)
+class ServerBroke:
+    """incident: the same id is in the server's log."""
+
+    incident: str
+    code: Literal["server_broke"] = "server_broke"
+    english: ClassVar[Words] = Words(
+        "The request could not be carried out because of a fault in the server (incident {incident}).",
+        "The mission goes on. Try again; if it happens again, report the incident with the server's log.",
+    )
+
+
+RequestReason = (
+    FieldMissing
+    | FieldUnknown
+    | FieldOutOfRange
+    | FieldWrongLength
+    | FieldNotOneOf
+    | FieldInvalid
+    | RequestInvalid
+    | NothingThere
+    | HttpRefused
+    | BodyTooLarge
+    | UnknownHost
+    | ForeignOrigin
+    | SamplesNotStored
+    | HalfGiven
+    | TooManyFiles
+    | TwoRecordings
+    | IqOptionsUnused
+    | ExportUnreadable
+    | UploadBrokeOff
+    | NoPayloadExpected
+    | UnknownToken
+    | TooManyScenes
+    | SceneSilent
+    | ServerBroke
+)

@@ -1,0 +1,188 @@
+"""What safety has against a start, a place or a command: the vetoes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+What = Literal["vehicle_stands", "vehicle", "home", "place"]
+_WHAT = "{what?vehicle_stands=The vehicle stands|vehicle=The vehicle is|home=Home is|place=The place is}"
+
+
+@dataclass(frozen=True, slots=True)
+class FailsafeActs:
+    mode: str
+    code: Literal["failsafe_acts"] = "failsafe_acts"
+    english: ClassVar[Words] = Words("The autopilot acts by itself: {mode}.", "Hold or resume first.")
+
+
+@dataclass(frozen=True, slots=True)
+class PilotControls:
+    code: Literal["pilot_controls"] = "pilot_controls"
+    english: ClassVar[Words] = Words(
+        "The pilot has control: nothing is sent to the vehicle.", "Resume when the pilot has given control back."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NotGivenBack:
+    """mode: the pilot's, in which the vehicle still is."""
+
+    mode: str
+    code: Literal["not_given_back"] = "not_given_back"
+    english: ClassVar[Words] = Words(
+        "The pilot has not given control back: the vehicle is still in {mode}.",
+        "The pilot selects HOLD (PX4) or BRAKE or GUIDED (ArduPilot) on the transmitter, then resume.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoLink:
+    code: Literal["no_link"] = "no_link"
+    english: ClassVar[Words] = Words(
+        "The link to the vehicle is lost.", "Wait until the vehicle answers again; its own failsafe acts meanwhile."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoPosition:
+    code: Literal["no_position"] = "no_position"
+    english: ClassVar[Words] = Words("The vehicle has no position.", "Wait for a GPS fix.")
+
+
+@dataclass(frozen=True, slots=True)
+class PositionOld:
+    age_s: float
+    code: Literal["position_old"] = "position_old"
+    english: ClassVar[Words] = Words("The vehicle's position is {age_s:1} old.", "Wait until telemetry arrives again.")
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryUnknown:
+    code: Literal["battery_unknown"] = "battery_unknown"
+    english: ClassVar[Words] = Words(
+        "The vehicle does not report its battery.",
+        "Set up the battery monitor, or say in the mission that this vehicle reports no battery.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BatterySilent:
+    code: Literal["battery_silent"] = "battery_silent"
+    english: ClassVar[Words] = Words("The battery's charge is no longer reported.", "Check the battery monitor.")
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryShort:
+    """left_percent: after what is planned; needed_percent: for the way home; reserve_percent: of the mission."""
+
+    charge_percent: float
+    left_percent: float
+    needed_percent: float
+    reserve_percent: float
+    code: Literal["battery_short"] = "battery_short"
+    english: ClassVar[Words] = Words(
+        "Battery at {charge_percent}: {left_percent} would be left, the way home takes {needed_percent} "
+        "and the reserve is {reserve_percent}.",
+        "Return home and change the battery.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AltitudeOutside:
+    """All relative to home."""
+
+    altitude_relative_m: float
+    lowest_relative_m: float
+    highest_relative_m: float
+    code: Literal["altitude_outside"] = "altitude_outside"
+    english: ClassVar[Words] = Words(
+        "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",
+        "Change the mission's altitude or its band.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TooFarFromHome:
+    distance_m: float
+    most_m: float
+    code: Literal["too_far_from_home"] = "too_far_from_home"
+    english: ClassVar[Words] = Words(
+        "The place is {distance_m} from home, more than {most_m}.", "Choose a place nearer to home."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AlreadyInAir:
+    code: Literal["already_in_air"] = "already_in_air"
+    english: ClassVar[Words] = Words("The vehicle is already in the air.", "Land it; a mission starts on the ground.")
+
+
+@dataclass(frozen=True, slots=True)
+class OutsideFence:
+    what: What
+    beyond_m: float
+    code: Literal["outside_fence"] = "outside_fence"
+    english: ClassVar[Words] = Words(
+        _WHAT + " {beyond_m} outside the fence.",
+        "{what?place=Choose a place inside, or widen the fence.|*=Draw the fence around the vehicle and its home.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class InsideNoFly:
+    what: What
+    code: Literal["inside_no_fly"] = "inside_no_fly"
+    english: ClassVar[Words] = Words(
+        _WHAT + " inside a no-fly zone.",
+        "{what?place=Choose a place outside the zone.|*=Draw the no-fly zones beside the vehicle and its home.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NearNoFly:
+    near_m: float
+    least_m: float
+    code: Literal["near_no_fly"] = "near_no_fly"
+    english: ClassVar[Words] = Words(
+        "The place is {near_m:1} from a no-fly zone, and a hovering vehicle wanders.",
+        "Choose a place {least_m} or more from the zone.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WayLeavesFence:
+    code: Literal["way_leaves_fence"] = "way_leaves_fence"
+    english: ClassVar[Words] = Words("The way there leaves the fence.", "Fly by way of a place in between.")
+
+
+@dataclass(frozen=True, slots=True)
+class WayCrossesNoFly:
+    code: Literal["way_crosses_no_fly"] = "way_crosses_no_fly"
+    english: ClassVar[Words] = Words("The way there crosses a no-fly zone.", "Fly by way of a place beside the zone.")
+
+
+BATTERY = (BatteryUnknown, BatterySilent, BatteryShort)
+"""Vetoes for which the answer is to go home."""
+
+SafetyReason = (
+    FailsafeActs
+    | PilotControls
+    | NotGivenBack
+    | NoLink
+    | NoPosition
+    | PositionOld
+    | BatteryUnknown
+    | BatterySilent
+    | BatteryShort
+    | AltitudeOutside
+    | TooFarFromHome
+    | AlreadyInAir
+    | OutsideFence
+    | InsideNoFly
+    | NearNoFly
+    | WayLeavesFence
+    | WayCrossesNoFly
+)

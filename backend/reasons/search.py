@@ -1,0 +1,198 @@
+"""What is wrong with an area or a specification, what a search found, and what an import left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+SweepValue = Literal["bearing", "sigma", "quality", "altitude", "drift"]
+Geometry = Literal["area", "fence", "no_fly", "confidence_region"]
+_WHAT = "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region}"
+
+
+@dataclass(frozen=True, slots=True)
+class AreaEmpty:
+    what: Geometry
+    code: Literal["area_empty"] = "area_empty"
+    english: ClassVar[Words] = Words(_WHAT + " is empty.", "Draw at least three corners.")
+
+
+@dataclass(frozen=True, slots=True)
+class TooFewCorners:
+    what: Geometry
+    code: Literal["too_few_corners"] = "too_few_corners"
+    english: ClassVar[Words] = Words(_WHAT + " has fewer than three different corners.", "Draw at least three.")
+
+
+@dataclass(frozen=True, slots=True)
+class TooManyCorners:
+    what: Geometry
+    most: int
+    code: Literal["too_many_corners"] = "too_many_corners"
+    english: ClassVar[Words] = Words(_WHAT + " has more than {most} corners.", "Simplify it.")
+
+
+@dataclass(frozen=True, slots=True)
+class OutlineUnusable:
+    what: Geometry
+    fault: Literal["crosses_itself", "hole_outside", "not_simple"]
+    code: Literal["outline_unusable"] = "outline_unusable"
+    english: ClassVar[Words] = Words(
+        _WHAT + " {fault?crosses_itself=has an outline that crosses itself|hole_outside=has a hole outside its outline"
+        "|not_simple=is not a simple polygon}.",
+        "Move the corners so that no two edges cross.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AreaTooSmall:
+    area_m2: float
+    least_m2: float
+    code: Literal["area_too_small"] = "area_too_small"
+    english: ClassVar[Words] = Words("The area has only {area_m2}.", "Draw at least {least_m2}.")
+
+
+@dataclass(frozen=True, slots=True)
+class AreaTooWide:
+    width_m: float
+    most_m: float
+    code: Literal["area_too_wide"] = "area_too_wide"
+    english: ClassVar[Words] = Words("The area is {width_m} wide.", "Search at most {most_m} at a time.")
+
+
+@dataclass(frozen=True, slots=True)
+class AreaTooFar:
+    distance_m: float
+    code: Literal["area_too_far"] = "area_too_far"
+    english: ClassVar[Words] = Words(
+        "The area is {distance_m} away from the vehicle.",
+        "Draw the area where the vehicle is, or carry the vehicle there.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class HeadingsAskew:
+    """All bearings of a source disagree with the others by about one angle, clockwise; nothing is claimed."""
+
+    offset_deg: float
+    std_error_deg: float
+    code: Literal["headings_askew"] = "headings_askew"
+    english: ClassVar[Words] = Words(
+        "All bearings seem to be off by the same angle, about {offset_deg} ± {std_error_deg}: the place found may be "
+        "wrong.",
+        "Check compass and antenna mounting; a single wrong place can look the same.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Localized:
+    code: Literal["localized"] = "localized"
+    english: ClassVar[Words] = Words("Localized: the expected error is below the threshold.")
+
+
+@dataclass(frozen=True, slots=True)
+class LocalizedAgainst:
+    """against: bearings that do not point at the place claimed; the claim stands against them (decision 12)."""
+
+    against: int
+    bearings: int
+    code: Literal["localized_against"] = "localized_against"
+    english: ClassVar[Words] = Words(
+        "Localized: the expected error is below the threshold; it stands against {against} of "
+        "{bearings|bearing|bearings}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingTooLong:
+    sweeps: int
+    most: int
+    code: Literal["recording_too_long"] = "recording_too_long"
+    english: ClassVar[Words] = Words("The recording holds {sweeps} sweeps.", "Import at most {most} at once.")
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingWithoutPlace:
+    file: str
+    code: Literal["recording_without_place"] = "recording_without_place"
+    english: ClassVar[Words] = Words("The file {file} does not say where it was recorded.", "Name the place beside it.")
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingTooFar:
+    distance_m: float
+    code: Literal["recording_too_far"] = "recording_too_far"
+    english: ClassVar[Words] = Words(
+        "The recording was taken {distance_m} from the mission's area.",
+        "Import it into a mission whose area is around it, or name the right place.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ImportRemark:
+    """What was changed about a recorded sweep when it was imported."""
+
+    file: str
+    about: Literal["place_replaced", "altitude_unknown"]
+    code: Literal["import_remark"] = "import_remark"
+    english: ClassVar[Words] = Words(
+        "{about?place_replaced=The place that was named replaces the one in"
+        "|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class OtherFrequency:
+    file: str
+    recorded_hz: float
+    wanted_hz: float
+    code: Literal["other_frequency"] = "other_frequency"
+    english: ClassVar[Words] = Words(
+        "The file {file} was recorded at {recorded_hz}; the mission looks for {wanted_hz}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SweepIncomplete:
+    """unknown: what of the sweep is not a number."""
+
+    unknown: tuple[SweepValue, ...]
+    code: Literal["sweep_incomplete"] = "sweep_incomplete"
+    english: ClassVar[Words] = Words(
+        "Of this sweep these values are unknown: "
+        "{unknown?bearing=bearing|sigma=sigma|quality=quality|altitude=altitude|drift=drift}.",
+        "Take the sweep again.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class QualityTooLow:
+    """Cosine similarity of sweep and pattern, [0, 1]."""
+
+    quality: float
+    wanted: float
+    code: Literal["quality_too_low"] = "quality_too_low"
+    english: ClassVar[Words] = Words("The quality {quality:2} is below {wanted:2}.", "Take the sweep again.")
+
+
+SearchReason = (
+    AreaEmpty
+    | TooFewCorners
+    | TooManyCorners
+    | OutlineUnusable
+    | AreaTooSmall
+    | AreaTooWide
+    | AreaTooFar
+    | HeadingsAskew
+    | Localized
+    | LocalizedAgainst
+    | RecordingTooLong
+    | RecordingWithoutPlace
+    | RecordingTooFar
+    | ImportRemark
+    | OtherFrequency
+    | SweepIncomplete
+    | QualityTooLow
+)

@@ -1,0 +1,114 @@
+"""What is wrong with the database, its spool, or a fact that is to be stored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+
+@dataclass(frozen=True, slots=True)
+class DatabaseSilent:
+    """detail: what its driver says."""
+
+    detail: str
+    code: Literal["database_silent"] = "database_silent"
+    english: ClassVar[Words] = Words(
+        "The database does not answer: {detail}.",
+        "Check that it is running; what happens meanwhile is kept in the spool on the disk.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DatabaseSlow:
+    answer_s: float
+    code: Literal["database_slow"] = "database_slow"
+    english: ClassVar[Words] = Words("The database's last answer took {answer_s:1}.", "Look at its load and its disk.")
+
+
+@dataclass(frozen=True, slots=True)
+class DiskLow:
+    free_bytes: int
+    code: Literal["disk_low"] = "disk_low"
+    english: ClassVar[Words] = Words("Only {free_bytes} are left on the disk.", "Free some space.")
+
+
+@dataclass(frozen=True, slots=True)
+class NothingStores:
+    """database, spool: what keeps each from storing."""
+
+    database: str
+    spool: str
+    code: Literal["nothing_stores"] = "nothing_stores"
+    english: ClassVar[Words] = Words(
+        "The database is away ({database}) and the spool cannot be written ({spool}).",
+        "Free space on the disk, and bring the database back.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FactUnfit:
+    """by: whose rule it breaks."""
+
+    by: Literal["journal", "database"]
+    detail: str
+    code: Literal["fact_unfit"] = "fact_unfit"
+    english: ClassVar[Words] = Words(
+        "{by?journal=This makes no sense and cannot be stored|database=The database refuses this}: {detail}."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenElsewhere:
+    """Another writer has used the place of event `seq`, or left a gap before it."""
+
+    mission_id: str
+    seq: int
+    code: Literal["written_elsewhere"] = "written_elsewhere"
+    english: ClassVar[Words] = Words(
+        "Event {seq} of mission {mission_id} does not follow what is stored: another server writes to it.",
+        "Let only one server use this database.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DatabaseUnfit:
+    """The server cannot start on it."""
+
+    database: str
+    detail: str
+    code: Literal["database_unfit"] = "database_unfit"
+    english: ClassVar[Words] = Words(
+        "The database {database} cannot be used: {detail}.",
+        "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class AnotherServer:
+    path: str
+    code: Literal["another_server"] = "another_server"
+    english: ClassVar[Words] = Words(
+        "Another server uses {path}.", "Stop it, or start this one with another --data-dir."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignSpool:
+    path: str
+    code: Literal["foreign_spool"] = "foreign_spool"
+    english: ClassVar[Words] = Words("What lies at {path} is not a journal spool.", "Move it away and start again.")
+
+
+StorageReason = (
+    DatabaseSilent
+    | DatabaseSlow
+    | DiskLow
+    | NothingStores
+    | FactUnfit
+    | WrittenElsewhere
+    | DatabaseUnfit
+    | AnotherServer
+    | ForeignSpool
+)

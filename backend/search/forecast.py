@@ -1,0 +1,85 @@
+"""What a place would cost, and what a mission may look like before take-off. Synchronous and pure; call in a thread."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from backend.events import BearingMeasured, CandidateFact
+from backend.reasons import Reason, carried
+from backend.search.localization import Localization
+from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of_ten, way_to
+from backend.spec import Place
+from planner.types import PlannerError
+
+Vetoes = Callable[[Place, Sequence[tuple[float, float]]], tuple[Reason, ...]]
+"""What safety has against flying to a place by way of points in between (m ENU)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """reason: why the vehicle may not go there now (the times may still be known), None when it may.
+
+    mean_s: mean time until localized by way of the place; p90_s: not exceeded in at least 90 % of the rollouts and
+    never below the mean. None: unknown.
+    """
+
+    place: Place
+    reason: Reason | None
+    mean_s: float | None
+    std_error_s: float | None
+    p90_s: float | None
+    rollouts: int
+
+
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """Where a mission would measure first and how long it may take. times_s: sampled times until localized."""
+
+    start: Place
+    first_place: Place
+    reason: Reason
+    mean_s: float | None
+    p90_s: float | None
+    times_s: list[float]
+    candidates: list[CandidateFact]
+    rollouts: int
+    plan_ms: float
+
+
+def forecast(
+    task: Localization, measured: Sequence[BearingMeasured], platform: Place, place: Place, vetoes: Vetoes
+) -> Forecast:
+    """From `platform`; `vetoes` is asked about the place and the way there."""
+    start, end = (task.frame.to_enu(p) for p in (platform, place))
+    cost = cost_of(task, task.planning_belief(task.planner_bearings(measured)), measured, start, end)
+    against = vetoes(place, _way(task, start, end))
+    reason = against[0] if against else cost.reason
+    return Forecast(place, reason, cost.mean_s, cost.std_error_s, cost.p90_s, cost.rollouts)
+
+
+def _way(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:
+    try:
+        return way_to(task, start, end)[:-1]
+    except PlannerError:
+        return []
+
+
+def preview(task: Localization, start: Place, threads: int) -> Preview:
+    """Plan the first place from the prior. Raises PlannerError when no place may be flown to."""
+    began = time.perf_counter()
+    belief = task.planning_belief(())
+    decision = decide(task, belief, (), task.frame.to_enu(start), threads=threads)
+    times = decision.times
+    return Preview(
+        start=start,
+        first_place=task.place(decision.x, decision.y),
+        reason=carried(decision.reason),
+        mean_s=float(times.mean()) if len(times) else None,
+        p90_s=in_nine_of_ten(times),
+        times_s=[float(t) for t in times],
+        candidates=candidate_facts(task, decision),
+        rollouts=decision.rollouts,
+        plan_ms=1e3 * (time.perf_counter() - began),
+    )

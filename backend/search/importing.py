@@ -1,0 +1,169 @@
+"""Recorded sweeps brought into a mission: the facts that a flown sweep would have left.
+
+Pure, apart from the time it takes: call it off the event loop. Nothing is stored here, so nothing is half-imported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from uuid import NAMESPACE_URL, uuid5
+
+from backend.events import BearingMeasured, Event, ImportSource, Recorded, RecordingImported
+from backend.reasons import Reason, carried
+from backend.reasons import search as reasons
+from backend.reasons.refusals import NoSuchEmitter
+from backend.search.antenna import antenna_fact
+from backend.search.area import centre_of, corner_of
+from backend.search.errors import MissionInputError
+from backend.search.localization import localization
+from backend.search.state import SearchState, evolve
+from backend.search.sweep_facts import Taken, sweep_fact
+from backend.spec import EmitterSpec, MissionSpec
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.recordings import RecordedSweep, Recording, mounted
+from hardware.frame import LocalFrame
+from hardware.ports import DirectionFinder
+from hardware.readings import Place, Sweep
+
+FAR_M = 50_000.0
+"""A sweep taken further from the area belongs to another mission."""
+MOST_SWEEPS = 200
+CLOCK_S = 1e8
+"""Times from here on are UTC epoch seconds; smaller ones count from somewhere in the recording."""
+OTHER_FREQUENCY = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Upload:
+    """recording_id: tells whether the same was imported before. place, at_s: as the operator names them, before the
+    file's own; at_s UTC epoch seconds of the first sample. offset_deg: of the antenna to the nose. emitter_id
+    None: the first one."""
+
+    recording_id: str
+    filename: str
+    recording: Recording
+    place: Place | None = None
+    at_s: float | None = None
+    offset_deg: float | None = None
+    emitter_id: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class KeptSweep:
+    """Raw samples to store beside the facts."""
+
+    sweep_id: str
+    emitter_id: str
+    place_number: int
+    sweep: Sweep
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """facts: to append together. sweeps: to store before them; storing one twice changes nothing."""
+
+    facts: tuple[Event, ...]
+    sweeps: tuple[KeptSweep, ...]
+
+
+def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Recorded]:
+    """The import of the same recording and the facts of its sweeps; empty when there was none."""
+    for record in recorded:
+        if isinstance(record.event, RecordingImported) and record.event.recording_id == recording_id:
+            ours = set(record.event.sweep_ids)
+            return [record, *(r for r in recorded if getattr(r.event, "sweep_id", None) in ours)]
+    return []
+
+
+def import_facts(
+    mission_id: str, state: SearchState, upload: Upload, finder: DirectionFinder, pattern: AntennaPattern, by: str
+) -> Import:
+    """Bearing or rejection of every sweep, and the belief after each bearing. Raises MissionInputError."""
+    mission, recording = state.mission, upload.recording
+    if len(recording.sweeps) > MOST_SWEEPS:
+        raise MissionInputError(reasons.RecordingTooLong(len(recording.sweeps), MOST_SWEEPS), "file")
+    emitter = _emitter(mission, upload.emitter_id)
+    remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
+    first_s = float(recording.sweeps[0].sweep.at_s[0])
+    began_s = upload.at_s if upload.at_s is not None else (first_s if first_s >= CLOCK_S else None)
+    shift_s = 0.0 if began_s is None else began_s - first_s
+    prepared = [_prepared(recorded, mission, emitter, upload, shift_s, remarks) for recorded in recording.sweeps]
+    sweep_ids = [str(uuid5(NAMESPACE_URL, f"{mission_id}/{upload.recording_id}/{k}")) for k in range(len(prepared))]
+    facts: list[Event] = [
+        RecordingImported(
+            emitter_id=emitter.emitter_id,
+            recording_id=upload.recording_id,
+            filename=upload.filename,
+            by=by,
+            recorded_at_utc=None if began_s is None else datetime.fromtimestamp(began_s, UTC),
+            sweep_ids=sweep_ids,
+            remarks=remarks,
+            antenna=antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg)),
+        )
+    ]
+    task = localization(mission, state.home or corner_of(mission.area), emitter.emitter_id)
+    source = ImportSource(recording_id=upload.recording_id)
+    kept: list[KeptSweep] = []
+    number = max([state.place_number, *(b.place_number for b in state.measured)])
+    for sweep_id, recorded, sweep in zip(sweep_ids, recording.sweeps, prepared, strict=True):
+        number += 1
+        kept.append(KeptSweep(sweep_id, emitter.emitter_id, number, sweep))
+        reading = finder.estimate(sweep, mounted(pattern, recorded, upload.offset_deg))
+        taken = Taken(emitter.emitter_id, source, sweep_id, number, attempt=1)
+        fact = sweep_fact(taken, mission.sensor, sweep, reading, measurement_time_s=None)
+        facts.append(fact)
+        state = evolve(state, fact, began_s or 0.0)
+        if isinstance(fact, BearingMeasured):
+            belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
+            facts.append(belief)
+    return Import(tuple(facts), tuple(kept))
+
+
+def _emitter(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
+    try:
+        return mission.emitters[0] if emitter_id is None else mission.emitter(emitter_id)
+    except KeyError as error:
+        raise MissionInputError(NoSuchEmitter(emitter_id or ""), "emitter_id") from error
+
+
+def _prepared(
+    recorded: RecordedSweep,
+    mission: MissionSpec,
+    emitter: EmitterSpec,
+    upload: Upload,
+    shift_s: float,
+    remarks: list[Reason],
+) -> Sweep:
+    """The sweep with place, time and frequency as they are to be stored."""
+    sweep = recorded.sweep
+    if upload.place is not None:
+        place = upload.place
+        if recorded.place_known:
+            remarks.append(reasons.ImportRemark(upload.filename, "place_replaced"))
+    elif recorded.place_known:
+        place = sweep.position
+    else:
+        raise MissionInputError(reasons.RecordingWithoutPlace(upload.filename), "lat")
+    _refuse_far(place, mission)
+    if sweep.frequency_hz > 0 and abs(sweep.frequency_hz / emitter.frequency_hz - 1.0) > OTHER_FREQUENCY:
+        remarks.append(reasons.OtherFrequency(upload.filename, sweep.frequency_hz, emitter.frequency_hz))
+    altitude = sweep.altitude_amsl_m if math.isfinite(sweep.altitude_amsl_m) else 0.0
+    if altitude == 0.0:
+        remarks.append(reasons.ImportRemark(upload.filename, "altitude_unknown"))
+    return replace(
+        sweep,
+        position=place,
+        at_s=sweep.at_s + shift_s,
+        altitude_amsl_m=altitude,
+        frequency_hz=sweep.frequency_hz or emitter.frequency_hz,
+    )
+
+
+def _refuse_far(place: Place, mission: MissionSpec) -> None:
+    east, north = LocalFrame(centre_of(mission.area)).to_enu(place)
+    away_m = math.hypot(east, north)
+    if not away_m <= FAR_M:
+        raise MissionInputError(reasons.RecordingTooFar(away_m), "lat")

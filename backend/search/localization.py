@@ -1,0 +1,242 @@
+"""From a search's specification and facts about one emitter to the planner's words, and back.
+
+The belief is the fold of the counted bearings in the order they were taken, so a stored mission rebuilds it bit by bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from shapely import Polygon as ShapelyPolygon
+from shapely import unary_union
+
+from backend import spec
+from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
+from backend.reasons import Reason, carried
+from backend.reasons.search import HeadingsAskew
+from backend.search import area
+from backend.search.area import EDGE_TOLERANCE_M
+from backend.search.errors import MissionInputError
+from backend.spec import MissionSpec
+from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
+from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
+from hardware.readings import Place
+from planner.belief.estimate import confidence_region
+from planner.belief.grid import GridBelief, digest, prior_belief, update
+from planner.belief.verdict import verdict
+from planner.types import (
+    Bearing,
+    Estimate,
+    FullMotion,
+    GaussianPrior,
+    InconsistentBearings,
+    LinearConstantMotion,
+    LinearMotion,
+    LocalizationRule,
+    Motion,
+    Peak,
+    PlannerError,
+    Prior,
+    Problem,
+    Ring,
+    RingPrior,
+    UniformPrior,
+)
+
+DOUBT = 0.05
+"""Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
+
+FOLDS_KEPT = 64
+"""Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
+
+KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
+"""The planner's places and ways stay so far off no-fly zones: a little more than safety asks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Localization:
+    """The task of localizing one emitter, in the planner's words. The frame's origin is the home at the start."""
+
+    mission: MissionSpec
+    emitter_id: str
+    frame: LocalFrame
+    problem: Problem
+    prior: GridBelief
+    rule: LocalizationRule
+    _folds: dict[tuple[Bearing, ...], GridBelief] = field(
+        default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
+    )
+
+    @property
+    def home(self) -> Place:
+        return self.frame.origin
+
+    def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
+        """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
+        return tuple(self._bearing(fact) for fact in measured)
+
+    def _bearing(self, fact: BearingMeasured) -> Bearing:
+        east, north = self.frame.to_enu(fact.place)
+        return Bearing(
+            x=east,
+            y=north,
+            angle=compass_to_angle(fact.bearing_deg),
+            sigma=math.radians(fact.sigma_deg),
+            outlier_probability=self.mission.sensor.outlier_probability,
+            peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
+        )
+
+    def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
+        """None when the bearings have no common point and none may be an outlier."""
+        try:
+            return self._folded(tuple(bearings))
+        except InconsistentBearings:
+            return None
+
+    def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
+        """Bearing by bearing, in order: what was folded for one bearing less is gone on from."""
+        if not bearings:
+            return self.prior
+        found = self._folds.get(bearings)
+        if found is None:
+            found = update(self._folded(bearings[:-1]), bearings[-1])
+            if len(self._folds) >= FOLDS_KEPT:
+                self._folds.clear()
+            self._folds[bearings] = found
+        return found
+
+    def planning_belief(self, bearings: Sequence[Bearing]) -> GridBelief:
+        """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart."""
+        found = self.belief(bearings)
+        if found is not None:
+            return found
+        doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)
+        return self._folded(tuple(doubted))
+
+    def belief_fact(self, measured: Sequence[BearingMeasured]) -> tuple[BeliefUpdated, GridBelief]:
+        """The fact to record, and the belief to show and to plan with."""
+        bearings = self.planner_bearings(measured)
+        folded = self.belief(bearings)
+        said = verdict(self.problem, self.rule, bearings, folded)
+        offset = self.heading_offset(measured)
+        doubt = offset if offset is not None and offset.significant else None
+        shown = self.planning_belief(bearings) if folded is None else folded
+        askew = () if doubt is None else (HeadingsAskew(doubt.offset_deg, doubt.std_error_deg),)
+        not_yet: list[Reason] = [*(carried(reason) for reason in said.reasons), *askew]
+        fact = BeliefUpdated(
+            emitter_id=self.emitter_id,
+            bearings=len(bearings),
+            estimate=None if folded is None or said.estimate is None else self._estimate_fact(folded, said.estimate),
+            consistent=said.consistent,
+            localized=said.localized and doubt is None,
+            not_yet=not_yet,
+            contradicting=[measured[index].bearing_id for index in said.against],
+            heading_offset_deg=None if doubt is None else doubt.offset_deg,
+            heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
+            digest=digest(shown),
+        )
+        return fact, shown
+
+    def heading_offset(self, measured: Sequence[BearingMeasured]) -> HeadingOffset | None:
+        """What the bearings are off by together, judged by what their sigmas hold besides the heading's share."""
+        places = np.array([self.frame.to_enu(b.place) for b in measured]).reshape(-1, 2)
+        bearing = np.array([b.bearing_deg for b in measured])
+        own = np.sqrt([max(b.sigma_deg**2 - b.heading_sigma_deg**2, 0.0) for b in measured])
+        return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
+
+    def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:
+        place = self.frame.to_geo(spread.x, spread.y)
+        region = confidence_region(belief)
+        variances, directions = np.linalg.eigh(spread.covariance)
+        minor, major = np.sqrt(np.maximum(variances, 0.0))
+        axis = math.atan2(directions[1, 1], directions[0, 1])
+        return EstimateFact(
+            lat=place.lat,
+            lon=place.lon,
+            expected_rmse_m=spread.expected_rmse,
+            c95=self.polygon(region),
+            c95_area_m2=ShapelyPolygon(region).area,
+            major_axis_m=float(major),
+            minor_axis_m=float(minor),
+            major_axis_deg=angle_to_compass(axis) % 180.0,
+        )
+
+    def polygon(self, ring: Ring) -> spec.Polygon:
+        """Ring in ENU to GeoJSON, closed."""
+        return spec.Polygon(coordinates=[self.frame.to_lon_lat(np.vstack([ring, ring[:1]]))])
+
+    def corners_lon_lat(self, belief: GridBelief) -> list[tuple[float, float]]:
+        """SW, SE, NE, NW of the grid's outer edge."""
+        west, south, east, north = belief.bounds
+        return self.frame.to_lon_lat(np.array([(west, south), (east, south), (east, north), (west, north)]))
+
+    def place(self, x: float, y: float) -> Place:
+        point = self.frame.to_geo(x, y)
+        return point
+
+
+def localization(mission: MissionSpec, home: Place, emitter_id: str | None = None) -> Localization:
+    """The task as seen from `home`. emitter_id None: the first emitter.
+
+    Raises MissionInputError when the specification makes no sense there.
+    """
+    frame = LocalFrame(home)
+    target = area.target_area(mission, frame)
+    area.check_reach(target)
+    fence, zones = area.fence(mission, target, frame), area.no_fly(mission, frame)
+    emitter = mission.emitters[0] if emitter_id is None else mission.emitter(emitter_id)
+    planner, sensor, wanted = mission.planner, mission.sensor, mission.localization
+    problem = Problem(
+        area=area.region(target),
+        sigma=math.radians(sensor.sigma_deg),
+        threshold=wanted.expected_rmse_m,
+        measurement_time=sensor.measurement_time_s,
+        motion=_motion(planner.motion),
+        flight_area=area.region(fence),
+        no_fly=area.region(unary_union(zones).buffer(KEEP_OFF_M, join_style="mitre")),
+        standoff=planner.standoff_m,
+        action_spacing=planner.action_spacing_m,
+        estimator=planner.estimator,
+        prior=_prior(emitter.prior, frame),
+    )
+    rule = LocalizationRule(
+        threshold=wanted.expected_rmse_m,
+        min_places=wanted.minimum_places,
+        min_place_distance=wanted.minimum_place_distance_m,
+        min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
+    )
+    try:
+        prior = prior_belief(problem)
+    except PlannerError as error:
+        index = mission.emitters.index(emitter)
+        raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
+    return Localization(mission, emitter.emitter_id, frame, problem, prior, rule)
+
+
+def _motion(motion: spec.MotionSpec) -> Motion:
+    match motion:
+        case spec.LinearMotionSpec():
+            return LinearMotion(motion.speed_m_s)
+        case spec.LinearConstantMotionSpec():
+            return LinearConstantMotion(motion.speed_m_s, motion.constant_s)
+        case spec.FullMotionSpec():
+            rate = math.radians(motion.turn_rate_deg_s)
+            return FullMotion(rate, motion.acceleration_m_s2, motion.speed_m_s, motion.constant_s)
+
+
+def _prior(prior: spec.PriorSpec, frame: LocalFrame) -> Prior:
+    match prior:
+        case spec.UniformPriorSpec():
+            return UniformPrior()
+        case spec.GaussianPriorSpec():
+            x, y = frame.to_enu(prior.centre)
+            angle = compass_to_angle(prior.major_axis_deg)
+            turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+            variances = np.diag([prior.sigma_major_m**2, prior.sigma_minor_m**2])
+            return GaussianPrior(x, y, turn @ variances @ turn.T)
+        case spec.RingPriorSpec():
+            x, y = frame.to_enu(prior.centre)
+            return RingPrior(x, y, prior.inner_m, prior.outer_m)

@@ -1,0 +1,213 @@
+"""The search machine: transition(state, input, at) -> effects. No await, no clock, no input or output, no craft.
+
+Every input is answered in every stage; an ended search stays ended.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, assert_never
+
+from backend.commands import AcknowledgeAlert, ChangeArea, ExcludeBearing
+from backend.events import (
+    AlertAcknowledged,
+    AlertCleared,
+    AlertRaised,
+    AreaChanged,
+    BearingExcluded,
+    BearingMeasured,
+    BeliefUpdated,
+    Event,
+    MissionEdited,
+    MissionEnded,
+    PreflightChecked,
+    Topic,
+)
+from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals, search
+from backend.reasons.refused import Refused
+from backend.search.effects import Record, Refuse, SearchEffect, SearchElsewhere, UpdateBelief
+from backend.search.inputs import (
+    BearingsArrived,
+    BeliefReady,
+    Edited,
+    NotStored,
+    PreflightDone,
+    SearchInput,
+    SearchOrdered,
+    SearchOver,
+)
+from backend.search.state import SearchState, evolve
+
+
+@dataclass(slots=True)
+class SearchStep:
+    """State so far and effects so far of one transition; lives no longer than it."""
+
+    state: SearchState
+    at_s: float
+    effects: list[SearchEffect] = field(default_factory=list[SearchEffect])
+
+    def do(self, effect: SearchEffect) -> None:
+        self.effects.append(effect)
+
+    def record(self, event: Event) -> None:
+        """State changes by facts only."""
+        self.state = evolve(self.state, event, self.at_s)
+        self.effects.append(Record(event))
+
+
+def transition(state: SearchState, given: SearchInput, at_s: float) -> tuple[SearchState, tuple[SearchEffect, ...]]:
+    """The state after `given`, and what is to be done about it, in order. `at_s`: UTC epoch seconds of the input.
+
+    The new state is the fold of the recorded facts onto the old one.
+    """
+    step = SearchStep(state, at_s)
+    try:
+        _take(step, given)
+    except Refused as refused:
+        step.do(Refuse(refused.reason))
+    return step.state, tuple(step.effects)
+
+
+def _take(step: SearchStep, given: SearchInput) -> None:
+    state = step.state
+    match given:
+        case Edited(spec=spec):
+            if state.stage in ("draft", "ready"):
+                step.record(MissionEdited(spec=spec))
+                update_stale_beliefs(step, only_with_bearings=True)
+        case PreflightDone(checks=checks):
+            if state.stage != "ended":
+                passed = all(check.ok or not check.blocking for check in checks)
+                step.record(PreflightChecked(passed=passed, checks=list(checks)))
+        case BearingsArrived(facts=facts):
+            _arrived(step, facts)
+        case BeliefReady():
+            _belief(step, given)
+        case SearchOrdered():
+            _ordered(step, given)
+        case NotStored(detail=detail):
+            if state.stage == "open":
+                alert(step, "storage", "warning", flight.NotStored(detail))
+        case SearchOver():
+            if state.stage == "open":
+                _over(step, given)
+        case _:
+            assert_never(given)
+
+
+def update_stale_beliefs(step: SearchStep, only_with_bearings: bool = False) -> None:
+    """Of every emitter whose bearings or area changed."""
+    for emitter in step.state.emitters.values():
+        if not emitter.belief_current and (emitter.measured or not only_with_bearings):
+            step.do(UpdateBelief(emitter.emitter_id))
+
+
+def _arrived(step: SearchStep, facts: tuple[Event, ...]) -> None:
+    """A bearing of an emitter that is not looked for is no bearing of this search."""
+    for fact in facts:
+        if isinstance(fact, BearingMeasured) and fact.emitter_id not in step.state.emitters:
+            raise Refused(refusals.NoSuchEmitter(fact.emitter_id))
+    for fact in facts:
+        step.record(fact)
+    update_stale_beliefs(step, only_with_bearings=True)
+
+
+def _belief(step: SearchStep, given: BeliefReady) -> None:
+    emitter = step.state.emitters.get(given.fact.emitter_id)
+    if emitter is None or given.bearing_ids != emitter.bearing_ids or emitter.belief_current:
+        return
+    step.record(given.fact)
+    _doubt_headings(step, given.fact)
+
+
+def _doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
+    askew = next((reason for reason in belief.not_yet if isinstance(reason, search.HeadingsAskew)), None)
+    if askew is None:
+        clear_alerts(step, "heading")
+    else:
+        alert(step, "heading", "caution", askew)
+
+
+def _ordered(step: SearchStep, given: SearchOrdered) -> None:
+    match given.command:
+        case ChangeArea():
+            _change_area(step, given, given.command)
+        case ExcludeBearing():
+            _exclude(step, given, given.command)
+        case AcknowledgeAlert(alert_id=alert_id):
+            step.record(AlertAcknowledged(alert_id=alert_id, by=given.by))
+        case _:
+            assert_never(given.command)
+
+
+def _change_area(step: SearchStep, given: SearchOrdered, command: ChangeArea) -> None:
+    match step.state.stage:
+        case "draft" | "ready":
+            raise Refused(refusals.NotStarted())
+        case "ended":
+            raise Refused(refusals.MissionOver())
+        case "open" if not given.held:
+            raise Refused(refusals.AreaOnlyInHold())
+        case "open":
+            for reason in given.objections:
+                raise Refused(reason)
+    step.record(AreaChanged(search=command.search, by=given.by))
+    step.do(SearchElsewhere())
+    update_stale_beliefs(step)
+
+
+def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) -> None:
+    found = step.state.bearing(command.bearing_id)
+    if found is None:
+        raise Refused(refusals.NoSuchBearing())
+    emitter, bearing = found
+    if bearing.bearing_id in emitter.excluded:
+        raise Refused(refusals.BearingExcludedAlready())
+    if step.state.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    step.record(
+        BearingExcluded(
+            emitter_id=emitter.emitter_id, bearing_id=command.bearing_id, by=given.by, reason=command.reason
+        )
+    )
+    update_stale_beliefs(step)
+
+
+def _over(step: SearchStep, given: SearchOver) -> None:
+    """Say honestly what came of it. The mission's time runs until the belief was good enough, else until now."""
+    state = step.state
+    outcome, reason = given.outcome, given.because
+    if outcome is None:
+        outcome, reason = _verdict(state, given.because)
+    clear_alerts(step, "storage", "console")
+    began = step.at_s if state.started_at_s is None else state.started_at_s
+    until = state.localized_at_s if outcome == "localized" and state.localized_at_s is not None else step.at_s
+    step.record(MissionEnded(outcome=outcome, reason=reason, mission_time_s=max(0.0, until - began)))
+
+
+def _verdict(state: SearchState, because: Reason) -> tuple[Literal["localized", "not_localized"], Reason]:
+    if state.localized:
+        beliefs = [e.belief for e in state.emitters.values() if e.belief is not None]
+        against = sum(len(belief.contradicting) for belief in beliefs)
+        if against == 0:
+            return "localized", search.Localized()
+        return "localized", search.LocalizedAgainst(against, sum(belief.bearings for belief in beliefs))
+    if isinstance(because, search.Localized | search.LocalizedAgainst):
+        return "not_localized", NoLongerLocalized(state.not_yet)
+    return "not_localized", NotLocalized(because, state.not_yet)
+
+
+def alert(step: SearchStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:
+    """Raise an alert; one that is open on the same topic gives way to it."""
+    if any(alert.topic == topic and alert.reason == reason for alert in step.state.open_alerts):
+        return
+    clear_alerts(step, topic)
+    alert_id = f"{topic}-{step.state.alerts_raised + 1}"
+    step.record(AlertRaised(alert_id=alert_id, topic=topic, level=level, reason=reason))
+
+
+def clear_alerts(step: SearchStep, *topics: Topic) -> None:
+    for alert in step.state.open_alerts:
+        if alert.topic in topics:
+            step.record(AlertCleared(alert_id=alert.alert_id))

@@ -1,0 +1,188 @@
+"""The planner asked in the mission's words: the next place, what a place costs, a preview before take-off.
+
+Everything here is synchronous and pure; the runner calls it in a thread, the kernel releases the interpreter lock.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from statistics import fmean, geometric_mean
+
+import numpy as np
+
+from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, PlanChosen
+from backend.reasons import Reason, carried
+from backend.search.localization import Localization
+from hardware.readings import Place
+from planner.belief.grid import GridBelief
+from planner.plan import expected_time_from, plan
+from planner.policy.base import BASE_POLICIES
+from planner.travel import straight_suffices, travel_path, visibility_graph
+from planner.types import Decision, FloatArray, PlannerError, Problem, Ring
+
+COST_ROLLOUTS = 200
+
+
+def next_place(
+    task: Localization,
+    belief: GridBelief,
+    measured: Sequence[BearingMeasured],
+    platform: tuple[float, float],
+    place_number: int,
+    avoid: Sequence[Place],
+    threads: int,
+    craft_id: str = FIRST_CRAFT,
+) -> PlanChosen:
+    """The planner's choice for this emitter as a fact. Raises PlannerError when no place is allowed or reachable."""
+    began = time.perf_counter()
+    without = [task.frame.to_enu(p) for p in avoid]
+    decision = decide(task, belief, measured, platform, without, threads)
+    plan_ms = 1e3 * (time.perf_counter() - began)
+    times = decision.times
+    chosen = next((c for c in decision.candidates if (c.x, c.y) == (decision.x, decision.y)), None)
+    mean = float(times.mean()) if len(times) else None if chosen is None else chosen.value
+    return PlanChosen(
+        craft_id=craft_id,
+        emitter_id=task.emitter_id,
+        place_number=place_number,
+        place=task.place(decision.x, decision.y),
+        source="planner",
+        reason=carried(decision.reason),
+        expected_time_s=mean,
+        time_90_s=in_nine_of_ten(times),
+        candidates=candidate_facts(task, decision),
+        rollouts=decision.rollouts,
+        plan_ms=plan_ms,
+    )
+
+
+def decide(
+    task: Localization,
+    belief: GridBelief,
+    measured: Sequence[BearingMeasured],
+    platform: tuple[float, float],
+    without: Sequence[tuple[float, float]] = (),
+    threads: int = 1,
+) -> Decision:
+    """The planner that the specification names."""
+    options = task.mission.planner.options
+    if options.method == "base_policy":
+        return base_policy_decision(task, belief, platform, without)
+    return plan(
+        foreseen(task.problem, measured),
+        belief,
+        task.planner_bearings(measured),
+        platform,
+        options,
+        threads=threads,
+        without=without,
+    )
+
+
+def foreseen(problem: Problem, measured: Sequence[BearingMeasured]) -> Problem:
+    """The problem with the sensor as this mission found it, for the bearings to come; the specification counts as one.
+
+    sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): a geometric mean, since sigma is a scale: one bad sweep in a
+    good signal does not undo the others. The measurement time is the arithmetic mean, since missions add it up.
+    """
+    sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
+    times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
+    return replace(problem, sigma=geometric_mean(sigmas), measurement_time=fmean(times))
+
+
+def base_policy_decision(
+    task: Localization, belief: GridBelief, platform: tuple[float, float], without: Sequence[tuple[float, float]]
+) -> Decision:
+    """The base policy alone, refused places kept out of the action space."""
+    problem = replace(task.problem, no_fly=(*task.problem.no_fly, *(_around(place) for place in without)))
+    return BASE_POLICIES[task.mission.planner.base_policy](problem, belief, platform)
+
+
+def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFact]:
+    """The candidates that were simulated at all."""
+    facts: list[CandidateFact] = []
+    for c in decision.candidates:
+        if c.rollouts == 0 or not math.isfinite(c.value):
+            continue
+        place = task.place(c.x, c.y)
+        error = c.std_error if math.isfinite(c.std_error) else None
+        facts.append(
+            CandidateFact(
+                lat=place.lat,
+                lon=place.lon,
+                value_s=c.value,
+                std_error_s=error,
+                rollouts=c.rollouts,
+                dropped_in_round=c.dropped_in_round,
+            )
+        )
+    return facts
+
+
+def lay_out_ways(task: Localization) -> None:
+    """What flying around no-fly areas needs, before anybody waits for it: seconds for a coast of a thousand corners."""
+    if not straight_suffices(task.problem):
+        visibility_graph(task.problem)
+
+
+def way_to(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:
+    """Way points (m ENU) after `start`, `end` included: straight, or around what may not be crossed.
+
+    Raises PlannerError when there is no way.
+    """
+    return [(float(x), float(y)) for x, y in travel_path(task.problem, np.array(start), np.array(end))[1:]]
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What measuring at a place next would mean. mean_s and p90_s None: it cannot be reached, and why."""
+
+    mean_s: float | None
+    std_error_s: float | None
+    p90_s: float | None
+    rollouts: int
+    reason: Reason | None = None
+
+
+def cost_of(
+    task: Localization,
+    belief: GridBelief,
+    measured: Sequence[BearingMeasured],
+    platform: tuple[float, float],
+    place: tuple[float, float],
+    rollouts: int = COST_ROLLOUTS,
+) -> Cost:
+    """Time until localized when the next bearing is taken at `place` (m ENU)."""
+    try:
+        found = expected_time_from(
+            foreseen(task.problem, measured),
+            belief,
+            task.planner_bearings(measured),
+            place,
+            task.mission.planner.options,
+            platform_xy=platform,
+            rollouts=rollouts,
+        )
+    except PlannerError as error:
+        return Cost(None, None, None, 0, carried(error.reason))
+    return Cost(found.mean, _finite(found.std_error), in_nine_of_ten(found.times), rollouts)
+
+
+def in_nine_of_ten(times: FloatArray) -> float | None:
+    """Time (s) not exceeded in at least 90 % of the sampled times (n,), None without any.
+
+    A few lost searches can carry the mean beyond the 90 % quantile; then it is the mean, which holds for even more.
+    """
+    return float(max(np.quantile(times, 0.9), times.mean())) if len(times) else None
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _around(place: tuple[float, float], radius: float = 5.0) -> Ring:
+    angles = np.arange(8) * np.pi / 4
+    return np.array(place) + radius * np.column_stack([np.cos(angles), np.sin(angles)])

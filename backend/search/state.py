@@ -1,0 +1,209 @@
+"""What a search knows at one moment: a fold of the mission's facts, and nothing else. It needs no craft."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from backend.events import (
+    AlertCleared,
+    AlertRaised,
+    AntennaChecked,
+    AreaChanged,
+    BearingExcluded,
+    BearingMeasured,
+    BeliefUpdated,
+    CheckFact,
+    Event,
+    MissionDrafted,
+    MissionEdited,
+    MissionEnded,
+    MissionStarted,
+    Outcome,
+    PlanChosen,
+    PreflightChecked,
+    ServerRestarted,
+    Topic,
+)
+from backend.reasons import Reason
+from backend.spec import MissionSpec, Place
+
+Stage = Literal["draft", "ready", "open", "ended"]
+"""A draft may be edited; ready: its preflight passed; open: it is searched; ended stays ended."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenAlert:
+    """An alert that was raised and not cleared."""
+
+    alert_id: str
+    topic: Topic
+    reason: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class EmitterState:
+    """What is known of one emitter.
+
+    belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
+    epoch seconds at which the belief was first good enough, None when it is not.
+    """
+
+    emitter_id: str
+    measured: tuple[BearingMeasured, ...] = ()
+    excluded: frozenset[str] = frozenset()
+    belief: BeliefUpdated | None = None
+    belief_current: bool = False
+    localized_at_s: float | None = None
+
+    @property
+    def bearings(self) -> tuple[BearingMeasured, ...]:
+        """The bearings that count, in the order they were taken."""
+        return tuple(b for b in self.measured if b.bearing_id not in self.excluded)
+
+    @property
+    def bearing_ids(self) -> tuple[str, ...]:
+        return tuple(b.bearing_id for b in self.bearings)
+
+    @property
+    def localized(self) -> bool:
+        return self.belief_current and self.belief is not None and self.belief.localized
+
+    @property
+    def not_yet(self) -> tuple[Reason, ...]:
+        return () if self.belief is None else tuple(self.belief.not_yet)
+
+
+@dataclass(frozen=True, slots=True)
+class SearchState:
+    """emitters: by id, in the specification's order. home: origin of the local frame, None until a craft started.
+
+    place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds.
+    """
+
+    spec: MissionSpec | None = None
+    passed: bool = False
+    antenna: CheckFact | None = None
+    home: Place | None = None
+    home_amsl_m: float = 0.0
+    started_at_s: float | None = None
+    emitters: Mapping[str, EmitterState] = field(default_factory=dict[str, EmitterState])
+    place_number: int = 0
+    open_alerts: tuple[OpenAlert, ...] = ()
+    alerts_raised: int = 0
+    outcome: Outcome | None = None
+    outcome_reason: Reason | None = None
+
+    @property
+    def stage(self) -> Stage:
+        if self.outcome is not None:
+            return "ended"
+        if self.started_at_s is not None:
+            return "open"
+        return "ready" if self.passed else "draft"
+
+    @property
+    def mission(self) -> MissionSpec:
+        if self.spec is None:
+            raise ValueError("this mission has no specification: its journal does not begin with mission_drafted")
+        return self.spec
+
+    @property
+    def localized(self) -> bool:
+        """Every emitter that is looked for."""
+        return bool(self.emitters) and all(emitter.localized for emitter in self.emitters.values())
+
+    @property
+    def beliefs_current(self) -> bool:
+        return all(emitter.belief_current for emitter in self.emitters.values())
+
+    @property
+    def localized_at_s(self) -> float | None:
+        """When the last of them was, None while one is not."""
+        times = [emitter.localized_at_s for emitter in self.emitters.values()]
+        return None if not times or None in times else max(time for time in times if time is not None)
+
+    @property
+    def wanted(self) -> tuple[EmitterState, ...]:
+        """The emitters that are not localized."""
+        return tuple(emitter for emitter in self.emitters.values() if not emitter.localized)
+
+    @property
+    def not_yet(self) -> tuple[Reason, ...]:
+        return tuple(reason for emitter in self.wanted for reason in emitter.not_yet)
+
+    @property
+    def measured(self) -> tuple[BearingMeasured, ...]:
+        """The bearings of all emitters."""
+        return tuple(bearing for emitter in self.emitters.values() for bearing in emitter.measured)
+
+    def bearing(self, bearing_id: str) -> tuple[EmitterState, BearingMeasured] | None:
+        for emitter in self.emitters.values():
+            for bearing in emitter.measured:
+                if bearing.bearing_id == bearing_id:
+                    return emitter, bearing
+        return None
+
+
+def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
+    """The state after one fact. `at_s`: UTC epoch seconds of the fact."""
+    match event:
+        case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
+            return replace(_with_spec(state, spec), passed=False, antenna=None)
+        case AreaChanged(search=search):
+            changed = _with_spec(state, state.mission.searching(search))
+            return _each(changed, lambda emitter: replace(emitter, localized_at_s=None))
+        case PreflightChecked(passed=passed):
+            return replace(state, passed=passed) if state.stage in ("draft", "ready") else state
+        case AntennaChecked(check=check):
+            return replace(state, antenna=check)
+        case MissionStarted(home=home, home_amsl_m=home_amsl_m):
+            if state.home is not None:
+                return state
+            # bearings from before the start (imported) are folded again in the frame of the home
+            begun = _each(state, lambda e: replace(e, belief_current=e.belief_current and not e.measured))
+            return replace(begun, home=home, home_amsl_m=home_amsl_m, started_at_s=at_s)
+        case PlanChosen(place_number=number):
+            return replace(state, place_number=max(state.place_number, number))
+        case BearingMeasured() | BearingExcluded() | BeliefUpdated():
+            return _evolve_emitter(state, event, at_s)
+        case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
+            alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
+            return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
+        case AlertCleared(alert_id=alert_id):
+            return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
+        case ServerRestarted():
+            return _each(state, lambda emitter: replace(emitter, belief_current=False))
+        case MissionEnded(outcome=outcome, reason=reason):
+            return replace(state, outcome=outcome, outcome_reason=reason)
+        case _:
+            return state
+
+
+def _evolve_emitter(
+    state: SearchState, event: BearingMeasured | BearingExcluded | BeliefUpdated, at_s: float
+) -> SearchState:
+    emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id))
+    number = state.place_number
+    match event:
+        case BearingMeasured():
+            emitter = replace(emitter, measured=(*emitter.measured, event), belief_current=False)
+            number = max(number, event.place_number)
+        case BearingExcluded(bearing_id=bearing_id):
+            emitter = replace(emitter, excluded=emitter.excluded | {bearing_id}, belief_current=False)
+        case BeliefUpdated(localized=localized):
+            since = (emitter.localized_at_s or at_s) if localized else None
+            emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
+    return replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
+
+
+def _with_spec(state: SearchState, spec: MissionSpec) -> SearchState:
+    """An emitter that is no longer looked for takes its bearings with it."""
+    ids = [emitter.emitter_id for emitter in spec.emitters]
+    emitters = {name: replace(state.emitters.get(name, EmitterState(name)), belief_current=False) for name in ids}
+    return replace(state, spec=spec, emitters=emitters)
+
+
+def _each(state: SearchState, change: Callable[[EmitterState], EmitterState]) -> SearchState:
+    return replace(state, emitters={name: change(emitter) for name, emitter in state.emitters.items()})

@@ -1,0 +1,96 @@
+"""What is recorded of a sweep, whoever took it: its bearing, or why it has none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from uuid import uuid4
+
+import numpy as np
+
+from backend.events import BearingMeasured, BearingSource, Peak, SweepRejected
+from backend.reasons import Reason, carried
+from backend.reasons.search import QualityTooLow, SweepIncomplete, SweepValue
+from backend.spec import Place, SensorSpec
+from hardware.readings import BearingReading, Sweep
+
+BINS = 180
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """Which sweep it is. place_number counts places from 1, attempt the turns at one."""
+
+    emitter_id: str
+    source: BearingSource
+    sweep_id: str
+    place_number: int
+    attempt: int
+
+
+def sweep_fact(
+    taken: Taken, sensor: SensorSpec, sweep: Sweep, reading: BearingReading, measurement_time_s: float | None
+) -> BearingMeasured | SweepRejected:
+    """measurement_time_s None: nobody waited for it."""
+    binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
+    needed: tuple[tuple[SweepValue, float], ...] = (
+        ("bearing", reading.bearing_deg),
+        ("sigma", reading.sigma_deg),
+        ("quality", reading.quality),
+        ("altitude", sweep.altitude_amsl_m),
+        ("drift", sweep.drift_m),
+    )
+    unknown: tuple[SweepValue, ...] = tuple(name for name, value in needed if not math.isfinite(value))
+    if unknown:
+        quality = reading.quality if math.isfinite(reading.quality) else 0.0
+        return rejected(taken, sweep.position, quality, SweepIncomplete(unknown), binned, fitted)
+    if not reading.accepted or reading.quality < sensor.minimum_quality:
+        low = QualityTooLow(reading.quality, sensor.minimum_quality)
+        reason = low if reading.reason is None else carried(reading.reason)
+        return rejected(taken, sweep.position, reading.quality, reason, binned, fitted)
+    return BearingMeasured(
+        emitter_id=taken.emitter_id,
+        source=taken.source,
+        bearing_id=str(uuid4()),
+        sweep_id=taken.sweep_id,
+        place_number=taken.place_number,
+        place=sweep.position,
+        altitude_amsl_m=sweep.altitude_amsl_m,
+        bearing_deg=reading.bearing_deg,
+        sigma_deg=reading.sigma_deg,
+        quality=reading.quality,
+        peaks=[Peak(bearing_deg=p.bearing_deg, weight=p.weight) for p in reading.peaks],
+        snr_db=reading.snr_db,
+        drift_m=sweep.drift_m,
+        binned_db=binned,
+        fitted_db=fitted,
+        measurement_time_s=measurement_time_s,
+        heading_sigma_deg=reading.heading_sigma_deg,
+    )
+
+
+def rejected(
+    taken: Taken,
+    place: Place,
+    quality: float,
+    reason: Reason,
+    binned_db: list[float | None] | None = None,
+    fitted_db: list[float | None] | None = None,
+) -> SweepRejected:
+    nothing: list[float | None] = [None] * BINS
+    return SweepRejected(
+        emitter_id=taken.emitter_id,
+        source=taken.source,
+        sweep_id=taken.sweep_id,
+        place_number=taken.place_number,
+        attempt=taken.attempt,
+        quality=quality,
+        reason=reason,
+        place=place,
+        binned_db=nothing if binned_db is None else binned_db,
+        fitted_db=nothing if fitted_db is None else fitted_db,
+    )
+
+
+def _bins(values: np.ndarray) -> list[float | None]:
+    return [float(v) if math.isfinite(v) else None for v in values]

@@ -1,0 +1,76 @@
+"""Where the simulated vehicle is kept while no server runs."""
+
+from __future__ import annotations
+
+import json
+import logging
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from backend.settings import Settings
+from hardware.sim.autopilot.geodesy import HomeFrame
+from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, find_simulated, launch_simulated
+
+log = logging.getLogger("crossfix")
+
+HOME_AMSL_M = 120.0
+
+
+@dataclass(frozen=True, slots=True)
+class Hangar:
+    """Remembers the simulated vehicle in a file, so that it flies on when the server is killed and is found again."""
+
+    settings: Settings
+
+    @property
+    def _register(self) -> Path:
+        return self.settings.data_dir / "simulated_vehicle.json"
+
+    def _key(self) -> dict[str, object]:
+        s = self.settings
+        return {
+            "flavour": s.simulate,
+            "time_factor": s.time_factor,
+            "seed": s.seed,
+            "home": [s.home_lat_deg, s.home_lon_deg],
+        }
+
+    async def enter(self, in_flight: bool) -> SimulatedAutopilot:
+        """The vehicle that an unfinished mission left in the air, else a new one."""
+        left = await self._left_behind()
+        if left is not None:
+            found, same = left
+            if in_flight and same:
+                log.warning("the simulated vehicle is still flying, it is taken over")
+                return found
+            await found.stop()
+        s = self.settings
+        started = await launch_simulated(
+            Setting(
+                flavour=s.simulate,
+                home=HomeFrame(s.home_lat_deg, s.home_lon_deg, HOME_AMSL_M),
+                speedup=s.time_factor,
+                seed=s.seed,
+                wind=(3.0, 240.0, 1.0),
+                keep_running=s.simulated_flies_on,
+            )
+        )
+        ports = {"connect_port": started.connect_port, "control_port": started.control_port}
+        self._register.parent.mkdir(parents=True, exist_ok=True)
+        self._register.write_text(json.dumps(self._key() | ports))
+        return started
+
+    async def _left_behind(self) -> tuple[SimulatedAutopilot, bool] | None:
+        try:
+            kept = json.loads(self._register.read_text())
+            found = await find_simulated(int(kept["connect_port"]), int(kept["control_port"]))
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        same = all(kept.get(name) == value for name, value in self._key().items())
+        return None if found is None else (found, same)
+
+    async def leave(self, vehicle: SimulatedAutopilot) -> None:
+        await vehicle.stop()
+        with suppress(OSError):
+            self._register.unlink()

@@ -1,0 +1,84 @@
+"""A receiver in a simulated world that is made around the vehicle's home once that is known."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Mapping, Sequence
+from typing import Literal
+
+from backend.simulation.emitters import EMITTERS, SimulatedEmitter, emitter_places
+from backend.simulation.walls import walls
+from hardware.clock import ScaledClock
+from hardware.ports import ReceiverError, Vehicle
+from hardware.readings import Channel, Place, PowerSample
+from hardware.reasons.receiver import ReceiverNotOpen
+from hardware.reasons.simulation import HomeNotKnown
+from hardware.sim.receiver import SimulatedReceiver
+from hardware.sim.world import Emitter, World
+
+TELEMETRY_HELD_WALL_S = 0.25
+"""The simulated receiver waits so long for the pose of its samples, however fast the simulation runs."""
+
+
+class EmittersAroundHome:
+    """The Receiver port.
+
+    truth: where each simulated emitter stands, by its frequency; empty until the home is known.
+    """
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        clock: ScaledClock,
+        seed: int,
+        world: Literal["open", "multipath"] = "open",
+        emitters: Sequence[SimulatedEmitter] = EMITTERS,
+    ) -> None:
+        self._vehicle = vehicle
+        self._clock = clock
+        self._seed = seed
+        self._world = world
+        self._emitters = emitters
+        self._receiver: SimulatedReceiver | None = None
+        self.truth: Mapping[float, Place] = {}
+
+    async def open(self, channels: Sequence[Channel]) -> None:
+        """See the Receiver port. Raises ReceiverError also while the home is not known."""
+        if self._receiver is None:
+            self._receiver = self._made()
+        await self._receiver.open(channels)
+
+    def _made(self) -> SimulatedReceiver:
+        telemetry = self._vehicle.telemetry()
+        home = telemetry.home or telemetry.position
+        if home is None:
+            raise ReceiverError(HomeNotKnown())
+        self.truth = emitter_places(self._seed, home, self._emitters)
+        emitters = tuple(
+            Emitter(self.truth[e.frequency_hz], e.frequency_hz, pulse_period_s=e.pulse_period_s) for e in self._emitters
+        )
+        reflectors = walls(self._seed, home) if self._world == "multipath" else ()
+        return SimulatedReceiver(
+            World(emitters, reflectors=reflectors, seed=self._seed),
+            self._vehicle.telemetry,
+            self._clock,
+            ground_amsl_m=telemetry.home_amsl_m or 0.0,
+            telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),
+        )
+
+    async def close(self) -> None:
+        if self._receiver is not None:
+            await self._receiver.close()
+
+    def silence(self, silent: bool) -> None:
+        """Stop or resume delivering samples, as a hung driver would. Raises ReceiverError before the first opening."""
+        self._opened().silence(silent)
+
+    async def samples(self) -> AsyncIterator[PowerSample]:
+        """See the Receiver port."""
+        async for sample in self._opened().samples():
+            yield sample
+
+    def _opened(self) -> SimulatedReceiver:
+        if self._receiver is None:
+            raise ReceiverError(ReceiverNotOpen())
+        return self._receiver

@@ -1,0 +1,94 @@
+// German: what happens in a mission and how it ends.
+import type { ReasonTable } from "../reasons";
+
+const LOOK = "Nach dem Fluggerät sehen und fortsetzen oder die Rückkehr befehlen.";
+
+export const flight = {
+  ordered: {
+    text: "{order?start=Gestartet|resume=Fortgesetzt|hold=Angehalten|return=Rückkehr befohlen|abort=Abgebrochen|override=Ort gewählt|accept=Ort angenommen|veto=Ort abgelehnt|automatic=Selbstannahme scharf geschaltet|exclude=Peilung weggelassen} durch {by}.",
+    remedy: "",
+  },
+  proceeds: {
+    text: "{after?climb=Auf Höhe|plan=Der nächste Ort ist gewählt|flight=Der Ort ist erreicht|bearing=Die Peilung ist genommen|belief=Die Karte der Wahrscheinlichkeit ist erneuert|way_home=Über dem Startplatz|area=Das Suchgebiet ist geändert}.",
+    remedy: "",
+  },
+  no_console: {
+    text: "{stage?hold=Keine Konsole ist verbunden|return=Keine Konsole kam zurück}.",
+    remedy: "Eine Konsole verbinden und fortsetzen.",
+  },
+  vehicle_link_lost: {
+    text: "Die Funkstrecke zum Fluggerät ist weg.",
+    remedy: "Solange handelt sein eigener Ausfallschutz. Die Funkstrecke wiederherstellen.",
+  },
+  payload_link_lost: {
+    text: "Die Verbindung zum Begleitrechner ist weg.",
+    remedy: "Seinen Strom und sein Netz prüfen.",
+  },
+  back_after_restart: { text: "Der Server ist neu gestartet.", remedy: "Nach dem Fluggerät sehen, dann fortsetzen." },
+  pilot_flies: {
+    text: "{perhaps_failsafe?true=Der Pilot oder der Ausfallschutz des Autopiloten|false=Der Pilot} steuert: Das Fluggerät ist in {mode}.",
+    remedy: "Fortsetzen, wenn der Pilot die Steuerung zurückgegeben hat.",
+  },
+  failsafe_flies: {
+    text: "Der Autopilot bringt das Fluggerät von selbst heim: {because?silence=Er hatte von hier nichts gehört|link_lost=Sein Ausfallschutz hat gehandelt, während die Funkstrecke weg war|server_away=Sein Ausfallschutz hat gehandelt, während der Server weg war|ordered_before=Die Rückkehr wurde befohlen, bevor der Server weg war}.",
+    remedy: "Fortsetzen, um weiterzusuchen, oder es landen lassen.",
+  },
+  failsafe_stopped: {
+    text: "Der eigene Heimweg des Autopiloten endete in {mode}, vielleicht durch einen früheren Befehl.",
+    remedy: "Nach dem Fluggerät sehen, dann halten oder fortsetzen.",
+  },
+  landed: {
+    text: "Das Fluggerät ist gelandet{during?hold=, während die Mission angehalten war|automatic=, obwohl nichts es befohlen hat|manual=, während der Pilot oder sein eigener Ausfallschutz steuerte|localized=, und der Sender ist gefunden}.",
+    remedy:
+      "{during?hold=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|automatic=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|*=}",
+  },
+  step_broke: {
+    text: "{step?take_off=Das Abheben|fly=Der Flug|measure=Das Messen|plan=Das Planen|belief=Das Erneuern der Karte|hold=Das Halten|return=Die Rückkehr|land=Die Landung} ist in Crossfix gescheitert.",
+    remedy: LOOK,
+  },
+  watch_broke: {
+    text: "{watch?vehicle=Das Beobachten des Fluggeräts|changes=Das Hören auf das Fluggerät|track=Das Aufzeichnen des Wegs} ist in Crossfix gescheitert.",
+    remedy: LOOK,
+  },
+  place_unsure: {
+    text: "Der Ort von Peilung {place_number} ist um {drift_m} unsicher; sie zählt weniger.",
+    remedy: "Die gemeldete Position ist gesprungen, oder der Wind hat das Fluggerät versetzt: GPS und Wind prüfen.",
+  },
+  not_stored: {
+    text: "Nicht alles von dieser Mission kann gespeichert werden: {detail}.",
+    remedy: "Es bleibt neben der Warteschlange des Journals liegen; der Flug geht weiter.",
+  },
+
+  headings_askew: {
+    text: "Alle Peilungen scheinen um denselben Winkel falsch zu sein, etwa {offset_deg} ± {std_error_deg}: Der gefundene Ort kann falsch sein.",
+    remedy: "Kompass und Befestigung der Antenne prüfen; ein einzelner falscher Ort kann ebenso aussehen.",
+  },
+  localized: { text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle.", remedy: "" },
+  localized_against: {
+    text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle; {against} von {bearings|Peilung|Peilungen} {against?1=spricht|*=sprechen} dagegen.",
+    remedy: "",
+  },
+  sweep_incomplete: {
+    text: "Von dieser Drehung sind diese Werte unbekannt: {unknown?bearing=Peilung|sigma=Peilfehler|quality=Güte|altitude=Höhe|drift=Drift}.",
+    remedy: "Die Drehung wiederholen.",
+  },
+  quality_too_low: { text: "Die Güte {quality:2} liegt unter {wanted:2}.", remedy: "Die Drehung wiederholen." },
+
+  told_before: { text: "{text}", remedy: "{remedy}" },
+  no_usable_bearing: {
+    text: "{again?true=Die Drehung wird wiederholt|false=Hier keine brauchbare Peilung}: {because}",
+    remedy: "{because!remedy}",
+  },
+  not_localized: { text: "Nicht gefunden. {because} {not_yet}", remedy: "" },
+  places_used_up: { text: "{places|Ort ist|Orte sind} verbraucht, so viele, wie die Mission erlaubt.", remedy: "" },
+  no_longer_localized: { text: "Nicht mehr gefunden, seit eine Peilung weggelassen wurde. {not_yet}", remedy: "" },
+  receiver_trouble: { text: "Empfänger: {because}", remedy: "{because!remedy}" },
+  interrupted: {
+    text: "Unterbrochen: {because?later_mission=In der Luft ist eine später gestartete Mission|unreadable=Sie ist nicht mehr lesbar}.",
+    remedy: "",
+  },
+  ordered_again_later: {
+    text: "{because}",
+    remedy: "Es wird noch einmal befohlen, wenn das Fluggerät wieder zu hören ist.",
+  },
+} satisfies Partial<ReasonTable>;

@@ -1,0 +1,98 @@
+// German: requests to the server, its journal and its disk.
+import type { ReasonTable } from "../reasons";
+
+export const server = {
+  field_missing: { text: "Das Feld fehlt.", remedy: "" },
+  field_unknown: { text: "Dieses Feld gibt es nicht.", remedy: "" },
+  field_out_of_range: {
+    text: "Der Wert muss {relation?greater_than=größer als|greater_than_equal=mindestens|less_than=kleiner als|less_than_equal=höchstens} {bound} sein.",
+    remedy: "",
+  },
+  field_wrong_length: {
+    text: "Nötig sind {relation?least=mindestens|most=höchstens} {length|Zeichen oder Eintrag|Zeichen oder Einträge}.",
+    remedy: "",
+  },
+  field_not_one_of: { text: "Erlaubt ist eines von {expected}.", remedy: "" },
+  field_invalid: { text: "Das ist nicht gültig: {message}.", remedy: "" },
+  request_invalid: {
+    text: "So geht es nicht: {faults|Feld ist|Felder sind} falsch, zuerst {field}.",
+    remedy: "Die genannten Felder berichtigen und noch einmal senden.",
+  },
+  nothing_there: {
+    text: "Es gibt {what?mission=keine Mission|page=keine Seite|belief=keine Karte der Wahrscheinlichkeit|sweep=keine Drehung|map=keine Karte|overlay=keine Überlagerung|file=keine Datei|recording=keine Aufnahme|craft=kein Fluggerät|scene=keine 3D-Ansicht} {which}.",
+    remedy: "",
+  },
+  http_refused: { text: "Die Anfrage wurde abgelehnt ({status}): {phrase}.", remedy: "" },
+  body_too_large: {
+    text: "Eine Anfrage darf höchstens {most_bytes} haben.",
+    remedy: "Die Geometrie vereinfachen oder die Datei teilen.",
+  },
+  unknown_host: {
+    text: "Dieser Server heißt nicht {host}.",
+    remedy: "Ihn über seine IP-Adresse oder localhost öffnen oder den Namen in CROSSFIX_ALLOWED_HOSTS nennen.",
+  },
+  foreign_origin: {
+    text: "Eine Seite von {origin} darf diesem Server nichts befehlen.",
+    remedy: "Die Seite benutzen, die dieser Server ausliefert.",
+  },
+  samples_not_stored: {
+    text: "Die Messwerte von Ort {place_number} wurden nicht gespeichert; darum kann keine andere Antenne sie hören.",
+    remedy: "Mit anderem Peilfehler, Ausreißeranteil oder Planer fragen: Diese brauchen keine Messwerte.",
+  },
+  export_unreadable: {
+    text: "{fault?not_json=Das ist kein JSON|not_exported=Das ist keine von Crossfix ausgegebene Mission|later=Das wurde von einem neueren Crossfix ausgegeben}.",
+    remedy: "{fault?later=Mit jenem Crossfix öffnen.|*=Die Datei mission.json einer ausgegebenen Mission wählen.}",
+  },
+  upload_broke_off: {
+    text: "Das Hochladen brach ab; nichts wurde behalten.",
+    remedy: "Die Datei noch einmal hochladen.",
+  },
+  no_payload_expected: {
+    text: "Dieser Server nimmt keine Messwerte von einer Nutzlast an.",
+    remedy: "Ihn mit CROSSFIX_PAYLOAD_TOKENS starten, einer Liste der Tokens, die seine Nutzlasten zeigen dürfen.",
+  },
+  unknown_token: {
+    text: "Der Server kennt dieses Token nicht.",
+    remedy: "Der Nutzlast eines der Tokens aus CROSSFIX_PAYLOAD_TOKENS geben.",
+  },
+  too_many_scenes: { text: "Zu viele 3D-Ansichten sind offen.", remedy: "Eine in einem anderen Tab schließen." },
+  scene_silent: { text: "Der 3D-Server antwortet nicht.", remedy: "Die Ansicht neu laden." },
+  server_broke: {
+    text: "Wegen eines Fehlers im Server war die Anfrage nicht auszuführen (Vorfall {incident}).",
+    remedy: "Die Mission geht weiter. Noch einmal versuchen; geschieht es wieder, den Vorfall mit dem Protokoll des Servers melden.",
+  },
+
+  database_silent: {
+    text: "Die Datenbank antwortet nicht: {detail}.",
+    remedy: "Prüfen, ob sie läuft; was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
+  },
+  database_slow: {
+    text: "Die letzte Antwort der Datenbank dauerte {answer_s:1}.",
+    remedy: "Nach ihrer Last und ihrer Platte sehen.",
+  },
+  disk_low: { text: "Auf der Platte sind nur noch {free_bytes} frei.", remedy: "Platz schaffen." },
+  nothing_stores: {
+    text: "Die Datenbank ist weg ({database}), und die Warteschlange ist nicht beschreibbar ({spool}).",
+    remedy: "Auf der Platte Platz schaffen und die Datenbank wieder starten.",
+  },
+  fact_unfit: {
+    text: "{by?journal=Das ergibt keinen Sinn und lässt sich nicht speichern|database=Die Datenbank lehnt das ab}: {detail}.",
+    remedy: "",
+  },
+  written_elsewhere: {
+    text: "Ereignis {seq} der Mission {mission_id} schließt nicht an das Gespeicherte an: Ein anderer Server schreibt hinein.",
+    remedy: "Nur einen Server diese Datenbank benutzen lassen.",
+  },
+  database_unfit: {
+    text: "Die Datenbank {database} ist nicht verwendbar: {detail}.",
+    remedy: "Prüfen, ob CROSSFIX_DATABASE_URL stimmt und die Platte beschreibbar ist.",
+  },
+  another_server: {
+    text: "Ein anderer Server benutzt {path}.",
+    remedy: "Ihn beenden oder diesen mit einem anderen --data-dir starten.",
+  },
+  foreign_spool: {
+    text: "Unter {path} liegt keine Warteschlange des Journals.",
+    remedy: "Das Verzeichnis wegräumen und noch einmal starten.",
+  },
+} satisfies Partial<ReasonTable>;

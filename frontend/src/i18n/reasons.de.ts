@@ -1,0 +1,27 @@
+// German for every reason, by room; a missing one does not compile.
+import { flight } from "./german/flight";
+import { maps } from "./german/maps";
+import { payload } from "./german/payload";
+import { planner } from "./german/planner";
+import { preflight } from "./german/preflight";
+import { receiver } from "./german/receiver";
+import { recording } from "./german/recording";
+import { safety } from "./german/safety";
+import { server } from "./german/server";
+import { sweep } from "./german/sweep";
+import { vehicle } from "./german/vehicle";
+import type { ReasonTable } from "./reasons";
+
+export const reasonsDe: ReasonTable = {
+  ...planner,
+  ...receiver,
+  ...payload,
+  ...sweep,
+  ...recording,
+  ...vehicle,
+  ...preflight,
+  ...flight,
+  ...safety,
+  ...maps,
+  ...server,
+};

@@ -1,0 +1,1335 @@
+// English for every reason, generated from the classes: `make codegen` writes it.
+import type { ReasonTable } from "./reasons";
+
+export const reasonsEn: ReasonTable = {
+  quickest_place: {
+    text: "Localized in about {expected_time_s} by way of this place, {gain_s} sooner than by any other of {places} places tried.",
+    remedy: "",
+  },
+  longest_lead: {
+    text: "Localized in about {expected_time_s} by way of this place; of {places} places tried it kept its lead over the most simulated flights.",
+    remedy: "",
+  },
+  only_place: {
+    text: "Localized in about {expected_time_s} by way of this place, the only one {among?allowed=allowed|tried=tried}.",
+    remedy: "",
+  },
+  quickest_place_found: {
+    text: "Localized in about {expected_time_s} by way of this place, found by {search?quadrant=quadrant search|sgd=stochastic gradient descent|bfgs=BFGS}.",
+    remedy: "",
+  },
+  most_information: {
+    text: "A bearing from here narrows the belief most{about?estimate=|worst_case= in the worst case}, of {places|place|places} compared.",
+    remedy: "",
+  },
+  least_entropy: {
+    text: "The next bearing is expected to leave {entropy_nat:2} nat, the least of {places|place|places}.",
+    remedy: "",
+  },
+  beside_ellipse: {
+    text: "Across the long axis of the belief, {distance?tabulated=on the nearer side|just_outside=just outside its ellipse}.",
+    remedy: "",
+  },
+  first_of_route: {
+    text: "The first of {places|place|places} {planner?sopt=that would fix the near edge of the belief|tokekar_subset=that together tell most about the estimate|tokekar_tree=that hold out best against unlucky bearings|lookahead=on the course that tells most about the estimate}.",
+    remedy: "",
+  },
+  no_bearing_yet: {
+    text: "No bearing has been taken.",
+    remedy: "Take the first bearing.",
+  },
+  too_few_places: {
+    text: "{bearings|bearing|bearings} from {places|place|places}; {needed_places} places are needed.",
+    remedy: "Take a bearing from another place.",
+  },
+  too_few_places_agree: {
+    text: "{agreeing_places} of {places|place|places} {agreeing_places?1=agrees|*=agree} on the estimate; {needed_places} are needed.",
+    remedy: "Take a bearing from another place.",
+  },
+  crossing_angle_too_small: {
+    text: "All bearings come from one side: they cross at only {crossing_deg}; {needed_deg} are needed.",
+    remedy: "Take a bearing from another side.",
+  },
+  estimate_contradicted: {
+    text: "{contradicting} of {bearings|bearing|bearings} {contradicting?1=contradicts|*=contradict} the estimate.",
+    remedy: "Take another bearing.",
+  },
+  bearings_disagree: {
+    text: "The {bearings} bearings contradict each other: at least one is an outlier.",
+    remedy: "Take another bearing, or exclude the outlier.",
+  },
+  bearing_misses_area: {
+    text: "The bearing points past the search area.",
+    remedy: "Check the area, the antenna and the place of the bearing.",
+  },
+  expected_error_too_large: {
+    text: "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
+    remedy: "Take another bearing.",
+  },
+  no_place_to_fly: {
+    text: "The vehicle has nowhere to fly: the fence and the no-fly areas leave no room.",
+    remedy: "Enlarge the fence.",
+  },
+  no_place_in_reach: {
+    text: "No place can be reached from here without crossing the fence or a no-fly area.",
+    remedy: "Change the fence or the no-fly areas, or start elsewhere.",
+  },
+  no_way: {
+    text: "There is no way to the place {distance_m} away without crossing the fence or a no-fly area.",
+    remedy: "Choose another place.",
+  },
+  no_place_sees_belief: {
+    text: "A bearing from any place that is allowed would miss the belief.",
+    remedy: "Enlarge the fence or lower the standoff distance.",
+  },
+  every_place_refused: {
+    text: "Every place has been refused.",
+    remedy: "Hold, or choose the next place yourself.",
+  },
+  too_many_places: {
+    text: "Places {spacing_m} apart would be more than {most_places}.",
+    remedy: "Space them {finest_m} apart or more.",
+  },
+  budget_too_small: {
+    text: "A budget of {rollouts|rollout|rollouts} is too small for this search.",
+    remedy: "Raise it to {needed_rollouts|rollout|rollouts} or more.",
+  },
+  fixed_sample_paths: {
+    text: "This selection needs more sample paths than the {paths} of deterministic sampling.",
+    remedy: "Use crn or pmc sampling.",
+  },
+  belief_out_of_step: {
+    text: "The belief holds {folded|bearing|bearings}, but {given|was|were} given.",
+    remedy: "Fold the bearings given.",
+  },
+  unusable_area: {
+    text: "The search area {flaw?no_ring=is empty|too_few_corners=has fewer than three corners|not_finite=has a corner whose coordinates are not finite numbers|no_extent=covers no ground: its corners lie on one line or in one point}.",
+    remedy: "Draw a polygon of at least three corners.",
+  },
+  area_crosses_itself: {
+    text: "The outline of the search area crosses itself near x = {x_m:1}, y = {y_m:1}.",
+    remedy: "Untangle it.",
+  },
+  prior_outside_area: {
+    text: "The prior has no mass inside the search area.",
+    remedy: "Move the prior, or enlarge the area.",
+  },
+  unusable_gaussian: {
+    text: "A Gaussian needs a finite mean and a positive definite 2 x 2 covariance.",
+    remedy: "",
+  },
+  unusable_ring: {
+    text: "A ring prior needs finite radii, the inner one smaller than the outer one.",
+    remedy: "",
+  },
+  mean_at_sensor: {
+    text: "The mean of the belief lies at the sensor, where a bearing has no derivative.",
+    remedy: "",
+  },
+  unusable_bearing: {
+    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak}.",
+    remedy: "",
+  },
+  unusable_flights: {
+    text: "A movement time model cannot be fitted: {flaw?lengths_differ=distances, turns and times are not equally many|too_few=fewer than four flights|not_finite=a distance is negative, a time is not positive, or a value is not finite|equal_distances=all flights are equally long, so speed and constant cannot be told apart}.",
+    remedy: "",
+  },
+  unusable_number: {
+    text: "{quantity?sigma=The bearing noise sigma|threshold=The threshold of the expected error|measurement_time=The measurement time|speed=The speed of the movement model|turn_rate=The turn rate of the movement model|acceleration=The acceleration of the movement model|movement_constant=The constant of the movement model|action_spacing=The spacing of the action lattice|action_grid=The number of cells of the action grid|platform_position=The position of the platform|actions=The number of actions|budget=The budget in rollouts|horizon=The horizon in bearings|threads=The number of threads|levels=The number of levels|paths=The number of sample paths} must be {wanted?positive=positive and finite|not_negative=finite and not negative|at_least_one=at least one|finite=finite|power_of_two=a power of two}, not {given}.",
+    remedy: "",
+  },
+  receiver_misnamed: {
+    text: 'The receiver "{device}" {fault?form=is not understood|host=names no host|port=names a port that is not a number from 1 to 65535|driver=names no driver|server=names no server}.',
+    remedy:
+      "Write {fault?form=soapy:driver=NAME[,key=value], rtl_tcp://HOST[:PORT], sigmf:FILE or recording:FILE|host=rtl_tcp://HOST[:PORT]|port=rtl_tcp://HOST[:PORT]|driver=for instance driver=rtlsdr: a search without a driver would probe the network|server=driver=remote,remote=tcp://HOST:PORT: a search for servers would probe the network}.",
+  },
+  receiver_not_open: {
+    text: "The receiver is not open.",
+    remedy: "Open it with its channels first.",
+  },
+  receiver_silent: {
+    text: "The receiver has delivered nothing for {quiet_s}.",
+    remedy: "Check its cable and driver, and that no other program uses it.",
+  },
+  nothing_heard_in_turn: {
+    text: "The receiver delivered nothing during the turn.",
+    remedy: "Check that it is running and tuned.",
+  },
+  receiver_stream_ended: {
+    text: "The receiver's stream has ended.",
+    remedy: "Look at the radio, or play the recording again.",
+  },
+  receiver_unplugged: {
+    text: "The receiver was unplugged.",
+    remedy: "Plug it in again.",
+  },
+  samples_lost: {
+    text: "The receiver lost {lost_percent} of its samples.",
+    remedy: "Check that it is still connected; lower the sample rate if this computer is too slow for it.",
+  },
+  nonsensical_power: {
+    text: "The receiver delivers a power of {value} dB, which is impossible; such samples are left out.",
+    remedy: "Check the receiver and its driver.",
+  },
+  gain_fixed: {
+    text: "The gain {why?recording=of a recording cannot be changed|sweep=must not change inside a sweep}.",
+    remedy: "{why?recording=Record again with another gain|sweep=Set it before the sweep or after it}.",
+  },
+  recorded_sweep_empty: {
+    text: "The recorded sweep holds no sample.",
+    remedy: "Give another recording.",
+  },
+  no_channel: {
+    text: "The receiver was asked for no channel.",
+    remedy: "Name at least one emitter with its frequency.",
+  },
+  frequency_out_of_range: {
+    text: "The receiver cannot tune to {frequency_hz}.",
+    remedy: "Check the emitter's frequency, or use another receiver.",
+  },
+  frequency_twice: {
+    text: "The receiver was asked for {frequency_hz} twice, and could not tell the two emitters apart.",
+    remedy: "Look for one of them at a time.",
+  },
+  frequency_not_asked_for: {
+    text: "The receiver delivers samples at {frequency_hz}, which nobody asked for.",
+    remedy: "Restart the receiver.",
+  },
+  carriers_only: {
+    text: "This receiver measures carriers only, and the tag at {frequency_hz} sends pulses.",
+    remedy: "Use a receiver that delivers IQ.",
+  },
+  one_channel_only: {
+    text: "This receiver hears one emitter at a time, and {asked} were asked for.",
+    remedy: "Look for one of them at a time, or use a receiver that delivers IQ.",
+  },
+  band_too_narrow: {
+    text: "At a sample rate of {sample_rate_hz} the receiver cannot hear {refused_hz} at the same time as the others.",
+    remedy: "Raise the sample rate to {needed_hz}, or look for {refused_hz} in a search of its own.",
+  },
+  outside_band: {
+    text: "A sample rate of {sample_rate_hz} around {centre_hz} does not hold {refused_hz}.",
+    remedy: "Tune closer, or raise the sample rate.",
+  },
+  recorded_elsewhere: {
+    text: "The recording was made at {recorded_hz}, not at {wanted_hz}.",
+    remedy: "Give the emitter's frequency as recorded, or another recording.",
+  },
+  sample_rate_too_low: {
+    text: "A sample rate of {sample_rate_hz} is too low.",
+    remedy: "Raise the sample rate to at least {needed_hz}.",
+  },
+  impossible_pulses: {
+    text: "A pulse of {width_s:3} every {period_s:3} is impossible.",
+    remedy: "Give a width greater than zero and less than the period.",
+  },
+  soapy_missing: {
+    text: "SoapySDR is not installed for this Python.",
+    remedy:
+      "Install the system package python3-soapysdr (and the module of your radio) and make SoapySDR.py visible in this environment (the user guide says how), or use an rtl_tcp:// receiver.",
+  },
+  radio_failed: {
+    text: 'The radio "{device}" {stage?call=reports a fault|start=does not start|read=has stopped delivering} ({says}).',
+    remedy: "Check the device string and the cable.",
+  },
+  no_receive_channel: {
+    text: 'The radio "{device}" has no receive channel.',
+    remedy: "Use a radio that can receive.",
+  },
+  tuned_elsewhere: {
+    text: 'The radio "{device}" tuned to {tuned_hz} instead of {wanted_hz}.',
+    remedy: "Check that this is in its range.",
+  },
+  rtl_sdr_sample_rate: {
+    text: "An RTL-SDR cannot sample at {sample_rate_hz}.",
+    remedy: "Choose from 225001 to 300000 or from 900001 to 3200000 samples a second.",
+  },
+  rtl_tcp_unreachable: {
+    text: "The rtl_tcp server at {address} cannot be reached ({detail}).",
+    remedy: "Start it there.",
+  },
+  rtl_tcp_busy: {
+    text: "The rtl_tcp server at {address} {closed?true=closed the connection|false=does not answer}.",
+    remedy: "Check that it is running and that no other client is connected to it.",
+  },
+  not_rtl_tcp: {
+    text: "The program that listens at {address} is not an rtl_tcp server.",
+    remedy: "Correct the address.",
+  },
+  rtl_tcp_ended: {
+    text: "{broken?true=The connection to the rtl_tcp server at|false=The stream of the rtl_tcp server at} {address} {broken?true=broke|false=ended}.",
+    remedy: "Check its radio and the network.",
+  },
+  payload_starting: {
+    text: "The payload is opening its receiver.",
+    remedy: "",
+  },
+  payload_listening: {
+    text: "The payload listens to {channels|emitter|emitters}.",
+    remedy: "",
+  },
+  payload_state_unknown: {
+    text: 'The payload\'s receiver is in a state that this server does not know ("{told}").',
+    remedy: "Update the server.",
+  },
+  no_payload_connected: {
+    text: "No payload is connected.",
+    remedy: "Check that its agent is running (crossfix payload), its link and its token.",
+  },
+  payload_away: {
+    text: "No payload was connected for {away_s}.",
+    remedy: "Check its power and its link.",
+  },
+  payload_tokens_missing: {
+    text: "The chosen receiver is a payload's, but no payload may connect.",
+    remedy: "Give the server the tokens of its payloads in CROSSFIX_PAYLOAD_TOKENS.",
+  },
+  spool_unusable: {
+    text: "The payload's spool {path} cannot be used ({detail}).",
+    remedy: "Check that the disk is writable, or name another directory.",
+  },
+  spool_not_written: {
+    text: "The payload's spool cannot be written ({detail}).",
+    remedy: "Check whether its disk is full.",
+  },
+  other_protocol: {
+    text: "The payload speaks version {theirs} of the protocol, the server version {ours}.",
+    remedy: "Update the {older?payload=payload's software|server=server}.",
+  },
+  message_out_of_turn: {
+    text: "{wrong?no_hello=The payload did not say hello first|second_hello=The payload said hello twice|no_welcome=The server did not say welcome}.",
+    remedy: "Check that both run Crossfix, and report it if they do.",
+  },
+  message_not_understood: {
+    text: "A message was not understood ({place}: {problem}).",
+    remedy: "Update both the payload's software and the server.",
+  },
+  payload_connected_again: {
+    text: 'The payload "{name}" has connected again, which ends the older connection.',
+    remedy: "If there are two, give one of them another name.",
+  },
+  refused_by_server: {
+    text: 'The server closed the connection and said "{says}".',
+    remedy: "",
+  },
+  configuration_unreadable: {
+    text: "The configuration {path} is not a readable TOML file ({detail}).",
+    remedy: "Correct it, or write it again with --save.",
+  },
+  configuration_entry_missing: {
+    text: 'The entry "{entry}" of the configuration is missing.',
+    remedy: "Give --{option}, or write it into the file.",
+  },
+  configuration_entry_wrong: {
+    text: 'The entry "{entry}" of the configuration is wrong ({problem}).',
+    remedy: "Correct it.",
+  },
+  pulse_timing_incomplete: {
+    text: "A pulsed tag needs both the width of its pulses and their period.",
+    remedy: "Give both --pulse-width-s and --pulse-period-s, or neither for a carrier.",
+  },
+  home_not_known: {
+    text: "The simulated emitters stand around the vehicle's home, which is not known yet.",
+    remedy: "Wait for a GPS fix.",
+  },
+  simulator_refused: {
+    text: "The simulated autopilot refused: {problem}.",
+    remedy: "",
+  },
+  simulator_silent: {
+    text: "The simulated autopilot did not answer to {order} within {waited_s:1}.",
+    remedy: "Start it again.",
+  },
+  no_pulse_heard: {
+    text: "No pulse of the tag was heard in any direction.",
+    remedy: "Switch the tag on, or measure nearer to it.",
+  },
+  no_heading_heard: {
+    text: "The vehicle reported no heading during the turn.",
+    remedy: "Check its telemetry link and the rate of ATTITUDE.",
+  },
+  headings_not_numbers: {
+    text: "The vehicle's headings are not numbers.",
+    remedy: "Calibrate its compass, or restart the autopilot.",
+  },
+  no_position_heard: {
+    text: "The vehicle reported no position during the turn.",
+    remedy: "Wait for a GPS fix.",
+  },
+  clocks_apart: {
+    text: "The power samples and the headings are {apart_s:1} apart.",
+    remedy: "Set the clocks of receiver and vehicle by GPS or NTP.",
+  },
+  headings_interrupted: {
+    text: "Wherever power was heard, the vehicle reported no heading for more than {longest_s:1}.",
+    remedy: "Look for gaps in the telemetry.",
+  },
+  power_not_numbers: {
+    text: "No power value of the sweep is a plausible number.",
+    remedy: "Restart the receiver.",
+  },
+  overdriven: {
+    text: "The receiver was overdriven: {clipped} of {samples} samples are clipped.",
+    remedy: "Lower its gain, or measure further away.",
+  },
+  too_few_directions: {
+    text: "Power was heard in only {heard|direction|directions}; at least {needed} around the circle are needed.",
+    remedy: "Turn slower, or raise the receiver's sample rate.",
+  },
+  turn_incomplete: {
+    text: "Power was heard over only {heard_deg} of the turn.",
+    remedy: "Turn once all the way round while the receiver listens.",
+  },
+  constant_power: {
+    text: "The receiver shows the same power in every direction: a constant, not a signal.",
+    remedy: "Check its antenna input and its gain.",
+  },
+  nothing_above_noise: {
+    text: "Nothing was heard: no direction is {needed_db:0} above the noise floor.",
+    remedy: "Measure nearer to the emitter.",
+  },
+  no_direction: {
+    text: "The sweep shows no direction: the power hardly changes with the heading.",
+    remedy: "",
+  },
+  unlike_antenna: {
+    text: "The sweep does not look like the antenna (similarity {quality:2}, at least {needed:2} is needed): reflections, interference or no signal.",
+    remedy: "",
+  },
+  direction_in_gap: {
+    text: "The strongest direction lies in a gap of {gap_deg} where the receiver did not listen.",
+    remedy: "",
+  },
+  antenna_agrees: {
+    text: "Measured {measured_deg}, true {true_deg}, quality {quality:2}.",
+    remedy: "",
+  },
+  emitter_too_near: {
+    text: "The emitter is only {distance_m} away.",
+    remedy: "Turn at least {least_m} away from it.",
+  },
+  antenna_dead: {
+    text: "The power changes by only {heard_db} over the turn, the pattern by {pattern_db:0}: the antenna seems dead or not connected.",
+    remedy: "Check the antenna's cable, connector and element, and that the test emitter is on.",
+  },
+  antenna_unlike_pattern: {
+    text: "The sweep does not fit the antenna's pattern. {because}",
+    remedy:
+      "Check that this is the antenna of the chosen pattern, that its element is whole and that the emitter has the same polarization.",
+  },
+  antenna_askew: {
+    text: "The emitter is at {true_deg} but was measured at {measured_deg}.",
+    remedy: "Set the antenna's offset to {offset_deg}, or turn the antenna; if both are right, calibrate the compass.",
+  },
+  receiver_clock_off: {
+    text: "The receiver's clock is {offset_s:2} off the vehicle's.",
+    remedy: "Set both by GPS or NTP, then turn again.",
+  },
+  too_few_samples: {
+    text: "The sweeps hold only {samples|sample|samples}; a pattern needs at least {needed}.",
+    remedy: "Turn slower, or fly more sweeps.",
+  },
+  no_magnetic_model: {
+    text: "There is no magnetic model for the year {year}.",
+    remedy: "Update pygeomag, or set the declination by hand.",
+  },
+  not_a_pattern: {
+    text: 'The file {file} is not an antenna pattern: {why?json=it is not JSON|format=it does not state the format "crossfix antenna pattern"|relative_bearing_deg=it lacks relative_bearing_deg|gain=it lacks gain|unit=it lacks unit|rows=it holds no rows of angle_deg, gain|numbers=an angle, gain, offset or frequency is not a finite number|counts=it does not have one gain for each angle|positive=a linear gain is not above zero}.',
+    remedy: "Use a file that crossfix calibrate wrote, or a turntable table of angle_deg, gain_db that ends in .csv.",
+  },
+  pattern_row_unusable: {
+    text: 'Line {line} of {file} is not "angle_deg, gain": {row}.',
+    remedy: "Repair or remove that line.",
+  },
+  pattern_unit_unknown: {
+    text: 'The unit "{unit}" of the gains in {file} is not known.',
+    remedy: 'Use "dB" or "linear power".',
+  },
+  too_few_points: {
+    text: "The pattern {name} has only {points|point|points}.",
+    remedy: "Measure at least {needed} around the whole circle.",
+  },
+  angle_twice: {
+    text: "The angle {angle_deg:1} occurs twice in the pattern {name}.",
+    remedy: "Keep one row for each angle.",
+  },
+  pattern_gap: {
+    text: "The pattern {name} has a gap of {gap_deg} after {after_deg}.",
+    remedy: "Measure all the way round, at least every {widest_deg}.",
+  },
+  implausible_gains: {
+    text: "The gain of the pattern {name} varies by {spread?small=less than|large=more than} {limit_db:0} around the circle.",
+    remedy: "Check that the antenna's element is whole, and the table's unit.",
+  },
+  pattern_of_other_frequency: {
+    text: "The pattern {name} was measured at {measured_hz:1}, not at {wanted_hz:1}.",
+    remedy: "Use a pattern that was measured at the emitter's frequency.",
+  },
+  file_unreadable: {
+    text: "The file {file} cannot be read ({detail}).",
+    remedy: "Check its path and its format.",
+  },
+  file_unusable: {
+    text: "The file {file} {why?not_text=is not a text file|empty=holds no rows of data|no_pulse=holds no pulse (no row that starts with 7)|one_heading=holds fewer than two rows of time and heading}.",
+    remedy: "{why?not_text=Export the recording as CSV|*=Check that it is the right file}.",
+  },
+  columns_unknown: {
+    text: "The {columns|column|columns} of {file} (line {line}) cannot be told apart.",
+    remedy: "Name them in a header line: {expected}.",
+  },
+  cell_unusable: {
+    text: 'Line {line} of {file} is left out: "{cell}" in column {column} is not a usable {quantity?kind_of_row=kind of row (7, 10 or 11)|snr=SNR|noise_psd=noise PSD|latitude=latitude|longitude=longitude|bearing=bearing|sigma=sigma|time=time|heading=heading|power=power|frequency=frequency|attitude=attitude}.',
+    remedy: "",
+  },
+  row_left_out: {
+    text: "Line {line} of {file} is left out: {why?columns=it has too few columns|not_open=it ends a rotation that was never begun|two_offsets=columns 20 and 21 both carry an antenna offset}.",
+    remedy: "{why?two_offsets=Add a header line that names the right one.|*=}",
+  },
+  rotation_irregular: {
+    text: "The rotation from line {line} of {file} {why?empty=holds no usable pulse and is left out|not_closed=is never closed (no row 11); it ends where the next one begins, or with the file|offset_changes=changes its antenna offset; the commonest is used}.",
+    remedy: "",
+  },
+  pulses_outside_rotations: {
+    text: "Left out of {file}: {pulses|pulse|pulses} outside every rotation.",
+    remedy: "",
+  },
+  tag_not_heard: {
+    text: "Tag {tag} was not heard in the rotation from line {line} of {file}.",
+    remedy: "Choose one of its tags: {heard}.",
+  },
+  other_tags_left_out: {
+    text: "Of the rotation from line {line} of {file}, tag {tag} is used, without {pulses|pulse|pulses} of other tags ({others}).",
+    remedy: "To use another tag, name it.",
+  },
+  nothing_usable: {
+    text: "The file {file} holds no usable {wanted?bearing=bearing|power=row of heading and power|pulse=pulse}. {because}",
+    remedy:
+      "{wanted?bearing=Name the columns lat, lon, bearing_deg and, if known, sigma_deg.|power=Name the columns heading_deg and power_db.|pulse=Check that it is the right file.}",
+  },
+  place_not_stated: {
+    text: "The file {file} does not state where it was recorded.",
+    remedy: "Add columns lat and lon, or name the place beside it.",
+  },
+  sigmf_field_missing: {
+    text: "The recording {file} does not state {field}.",
+    remedy:
+      "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
+  },
+  sigmf_field_unusable: {
+    text: "In the recording {file}, {field} cannot be used: {value}.",
+    remedy:
+      "{field?core:sample_rate=State the samples a second, a number above zero|core:frequency=State one centre frequency in hertz; cut a recording that was retuned into one for each|core:datetime=State when the recording began, as in 2026-05-01T10:00:00Z, or write the times of the headings as seconds since then|core:geolocation=State a GeoJSON point on the earth, or leave it out|core:dataset=Remove it and name the .sigmf-data file like the .sigmf-meta file|antenna:azimuth_angle=State where the antenna pointed, in degrees, in two annotations at least, or give a table of time and heading beside the recording}.",
+  },
+  sigmf_file_missing: {
+    text: "The recording {file} lacks its file {missing}.",
+    remedy: "A recording is two files: .sigmf-meta says how it was sampled, .sigmf-data holds the samples.",
+  },
+  samples_unusable: {
+    text: "The recording {file} {why?collection=is a collection of several|real=holds real samples, not complex IQ|none=holds no sample|zero=is silent: every sample is zero|too_short=is too short for one power reading}.",
+    remedy:
+      "{why?collection=Give one recording|real=Record complex IQ|none=Check that its data file is complete|zero=Check that the receiver was running|too_short=Check its sample rate}.",
+  },
+  samples_not_numbers: {
+    text: "In the recording {file}, {samples|sample is not a number|samples are not numbers}, the first after {first_s:2}.",
+    remedy: "Cut them out, or check core:datatype.",
+  },
+  no_signal_found: {
+    text: "The recording {file} is silent: nothing stands {needed_db:0} above the noise.",
+    remedy: "If the emitter is weaker than that, give its frequency.",
+  },
+  silent_at: {
+    text: "The recording {file} is silent at {frequency_hz}: the strongest reading stands {above_db} above the noise.",
+    remedy: "Check the frequency.",
+  },
+  no_pulse_at: {
+    text: "No pulse was heard at {frequency_hz} in the recording {file}.",
+    remedy: "Check the frequency and the tag's pulse width and period.",
+  },
+  headings_apart: {
+    text: "The headings run from {from_s:1} to {to_s:1} after the beginning of the recording {file}, the samples only to {samples_s:1}.",
+    remedy: "Check the times and the sample rate ({sample_rate_hz}).",
+  },
+  headings_of_other_length: {
+    text: "The headings of {file} last {headings_s:1}, the samples {samples_s:1}; what they share is used.",
+    remedy: "Check the recording's sample rate ({sample_rate_hz}).",
+  },
+  strongest_used: {
+    text: "The strongest signal in the recording {file}, at {frequency_hz}, is used.",
+    remedy: "To use another signal, give its frequency.",
+  },
+  readings_without_heading: {
+    text: "No heading is known for {left_out} of {readings|power reading|power readings} in the recording {file}; they are left out.",
+    remedy: "",
+  },
+  not_iq: {
+    text: "The file {file} holds {given?headings=its own headings, and no IQ that needs a table of them|signal=powers, not IQ, so that no frequency and no pulses are looked for in it}.",
+    remedy: "{given?headings=Leave the table of headings out.|signal=}",
+  },
+  recording_unusable: {
+    text: "The recording {file} cannot be used. {because}",
+    remedy: "{because!remedy}",
+  },
+  vehicle_link_not_opened: {
+    text: "The vehicle link {url} cannot be opened: {problem}.",
+    remedy: "Check that the device is there. Another ground station may be using the port.",
+  },
+  no_autopilot_answers: {
+    text: "No autopilot answers on {url} within {waited_s}.",
+    remedy: "Switch it on, and check that it sends to this address.",
+  },
+  heartbeat_stopped: {
+    text: "An autopilot answered on {url}, but its heartbeat has stopped.",
+    remedy: "Check its power and the link.",
+  },
+  unknown_autopilot: {
+    text: "The autopilot on {url} is neither PX4 nor ArduPilot (MAV_AUTOPILOT {number}).",
+    remedy: "Connect a vehicle with one of them.",
+  },
+  vehicle_not_connected: {
+    text: "No vehicle is connected on {url}.",
+    remedy: "Switch it on and check its link and its address.",
+  },
+  vehicle_silent: {
+    text: "The {manoeuvre?take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing} was given up: nothing was heard from the vehicle for {silent_s}.",
+    remedy: "Check the link.",
+  },
+  position_lost: {
+    text: "The vehicle does not know its position.",
+    remedy: "Wait for a GPS fix.",
+  },
+  sticks_moved: {
+    text: "The {manoeuvre?take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing} is not possible: the pilot took over with the sticks.",
+    remedy: "Resume when the pilot has given control back.",
+  },
+  mode_not_commanded: {
+    text: "The {manoeuvre?take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing} is not possible: {who?failsafe=the autopilot's failsafe|*=somebody else} selected {mode}, which Crossfix did not command.",
+    remedy:
+      "{who?pilot=Resume when the pilot has given control back|failsafe=Hold or resume to take the vehicle from it|nobody=Resume or start to fly again}.",
+  },
+  manoeuvre_replaced: {
+    text: "The {manoeuvre?take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing} was replaced by the {by?take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing}.",
+    remedy: "",
+  },
+  autopilot_refused: {
+    text: "The autopilot refused {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}: {result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.",
+    remedy: "Read the autopilot's messages.",
+  },
+  command_unanswered: {
+    text: "The autopilot did not answer {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} (sent {attempts|time|times}).",
+    remedy: "Check the link.",
+  },
+  mode_not_shown: {
+    text: "The autopilot acknowledged {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} ({attempts|time|times}), but its mode never showed it.",
+    remedy: "Read the autopilot's messages.",
+  },
+  not_in_the_air: {
+    text: "The vehicle is not in the air.",
+    remedy: "Take off first.",
+  },
+  stands_disarmed: {
+    text: "The vehicle stands disarmed on the ground: there is nothing to {manoeuvre?return=return from|landing=land}.",
+    remedy: "",
+  },
+  take_off_ignored: {
+    text: "The autopilot acknowledged the take-off, but the vehicle stayed on the ground.",
+    remedy: "Read the autopilot's messages.",
+  },
+  no_take_off: {
+    text: "No take-off within {waited_s}. {because}",
+    remedy: "{because!remedy}",
+  },
+  climb_too_low: {
+    text: "The vehicle climbed to {reached_m:1} only, not to {wanted_m:1}.",
+    remedy: "Look for an altitude limit of the autopilot.",
+  },
+  no_progress: {
+    text: "No progress for {waited_s} with {distance_m} to go.",
+    remedy: "Check the wind.",
+  },
+  not_arrived: {
+    text: "The vehicle did not arrive: it is still {distance_m:1} away and {climb_m:1} too high or too low.",
+    remedy: "Check the wind and the autopilot's messages.",
+  },
+  turn_stopped: {
+    text: "The turn stopped after {turned_deg}.",
+    remedy: "",
+  },
+  turn_not_made: {
+    text: "The vehicle acknowledged the turn but did not make it: {turned_deg} seen, {ways|way|ways} tried.",
+    remedy: "Check the wind and the autopilot's messages.",
+  },
+  hold_ignored: {
+    text: "The autopilot acknowledged the hold, but the vehicle does not hover.",
+    remedy: "",
+  },
+  does_not_hold: {
+    text: "{because}",
+    remedy: "The pilot should take over.",
+  },
+  parameter_not_set: {
+    text: "The autopilot did not take {parameter} = {wanted}.",
+    remedy: "Set it with its own ground station.",
+  },
+  vehicle_connected: {
+    text: "Connected to {autopilot?px4=PX4|ardupilot=ArduPilot} on {url}.",
+    remedy: "",
+  },
+  vehicle_unheard: {
+    text: "The vehicle link is lost.",
+    remedy: "Check radio, cable and vehicle address; the autopilot's failsafe acts meanwhile.",
+  },
+  vehicle_heard_again: {
+    text: "The vehicle link is restored after {outage_s:1}.",
+    remedy: "",
+  },
+  autopilot_restarted: {
+    text: "The autopilot has restarted.",
+    remedy: "",
+  },
+  mode_changed: {
+    text: "The vehicle is in {mode}.",
+    remedy: "",
+  },
+  position_jumped: {
+    text: "The GPS position jumped by {jumped_m}.",
+    remedy: "",
+  },
+  taken_over: {
+    text: "The {who?pilot=pilot|failsafe=autopilot's failsafe} took over in {mode}.",
+    remedy: "",
+  },
+  taken_over_by_sticks: {
+    text: "The pilot took over with the sticks.",
+    remedy: "",
+  },
+  operator_in_control: {
+    text: "The operator took control.",
+    remedy: "",
+  },
+  parameter_set: {
+    text: "{parameter} was set from {before} to {after}.",
+    remedy: "",
+  },
+  tried_again: {
+    text: "{because} Attempt {attempt} follows.",
+    remedy: "",
+  },
+  link_checked: {
+    text: "{autopilot?px4=PX4|ardupilot=ArduPilot|unknown=An unknown autopilot} is heard.",
+    remedy: "",
+  },
+  gps_checked: {
+    text: "{fix?no GPS=No GPS|no fix=No fix|2D=2D fix|3D=3D fix|DGPS=DGPS fix|RTK float=RTK float fix|RTK fixed=RTK fixed|static=Static position|PPP=PPP fix}, {satellites|satellite|satellites}.",
+    remedy: "Wait for a 3D fix with at least {wanted_satellites|satellite|satellites} under open sky.",
+  },
+  never_reported: {
+    text: "The autopilot has not reported {what?gps=its GPS|position=its position|heading=its heading|battery=the battery's charge|home=its home}.",
+    remedy:
+      "{what?gps=Check that it has a GPS receiver|position=Wait until the autopilot knows where it is|heading=Check the compass: bearings need the vehicle's heading|battery=Set up the battery monitor|home=Wait until the autopilot has set its home (it needs GPS)}.",
+  },
+  report_age: {
+    text: "The {what?position=position|heading=heading} is {age_s:1} old.",
+    remedy: "{what?position=Wait until the autopilot knows where it is|heading=Check the compass: bearings need the vehicle's heading}.",
+  },
+  battery_charge: {
+    text: "The battery holds {charge_percent}.",
+    remedy: "Charge it to at least {wanted_percent}.",
+  },
+  home_set: {
+    text: "Home is at {lat@lon}.",
+    remedy: "",
+  },
+  arming_checked: {
+    text: "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
+    remedy: "Read the autopilot's messages: its own checks refuse to arm.",
+  },
+  control_checked: {
+    text: "{who?pilot=The pilot has control|failsafe=The autopilot's failsafe has control|nobody=Nobody is intervening}.",
+    remedy: "{who?failsafe=Let it land|*=Give control back with the transmitter, then resume}.",
+  },
+  failsafe_parameter: {
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use}: {parameter} = {value}.",
+    remedy:
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=}.",
+  },
+  failsafe_unread: {
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use}: {parameter} could not be read.",
+    remedy:
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=}.",
+  },
+  room_to_fly: {
+    text: "There are {area_m2} to fly in.",
+    remedy: "",
+  },
+  start_allowed: {
+    text: "Fence, battery and position allow the start.",
+    remedy: "",
+  },
+  receiver_delivers: {
+    text: "The receiver delivers samples on {channels|channel|channels}.",
+    remedy: "",
+  },
+  no_samples: {
+    text: "The receiver delivers no samples.",
+    remedy: "Check that it is plugged in and not in use by another program.",
+  },
+  tag_unheard: {
+    text: "The receiver works, but hears no pulse of the tag at {frequency_hz}.",
+    remedy: "Bring the tag nearer, or accept that it is out of range here.",
+  },
+  pattern_in_use: {
+    text: "The antenna pattern is {name}.",
+    remedy: "",
+  },
+  no_vehicle_yet: {
+    text: "No vehicle has answered on {address} yet.",
+    remedy: "Switch it on and check its link and address.",
+  },
+  connecting_broke: {
+    text: "Connecting to {address} failed inside Crossfix and is tried again.",
+    remedy: "",
+  },
+  ordered: {
+    text: "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|abort=Aborted|override=Place chosen|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed|exclude=Bearing excluded} by {by}.",
+    remedy: "",
+  },
+  proceeds: {
+    text: "{after?climb=At altitude|plan=The next place is chosen|flight=The place is reached|bearing=The bearing is taken|belief=The belief is updated|way_home=Above home|area=The search area has changed}.",
+    remedy: "",
+  },
+  no_console: {
+    text: "{stage?hold=No console is connected|return=No console came back}.",
+    remedy: "Connect a console and resume.",
+  },
+  vehicle_link_lost: {
+    text: "The link to the vehicle is lost.",
+    remedy: "Its own failsafe acts meanwhile. Restore the link.",
+  },
+  payload_link_lost: {
+    text: "The link to the companion computer is lost.",
+    remedy: "Check the companion's power and network.",
+  },
+  back_after_restart: {
+    text: "The server restarted.",
+    remedy: "Look at the vehicle, then resume.",
+  },
+  pilot_flies: {
+    text: "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control: the vehicle is in {mode}.",
+    remedy: "Resume when the pilot has given control back.",
+  },
+  failsafe_flies: {
+    text: "The autopilot brings the vehicle home by itself: {because?silence=it had not heard from here|link_lost=its failsafe acted while the link was lost|server_away=its failsafe acted while the server was away|ordered_before=the return was ordered before the server was away}.",
+    remedy: "Resume to go on searching, or let it land.",
+  },
+  failsafe_stopped: {
+    text: "The autopilot's own way home ended in {mode}, perhaps by an earlier order.",
+    remedy: "Look at the vehicle, then hold or resume.",
+  },
+  landed: {
+    text: "The vehicle landed {during?hold=while the mission was held|automatic=although nothing ordered it|manual=while the pilot or its own failsafe had control|localized=and the emitter is localized}.",
+    remedy:
+      "{during?hold=Resume to take off again, abort to end the mission.|automatic=Resume to take off again, abort to end the mission.|*=}",
+  },
+  step_broke: {
+    text: "{step?take_off=Taking off|fly=Flying|measure=Measuring|plan=Planning|belief=Updating the belief|hold=Holding|return=Returning|land=Landing} failed inside Crossfix.",
+    remedy: "Look at the vehicle and resume, or order the return.",
+  },
+  watch_broke: {
+    text: "{watch?vehicle=Watching the vehicle|changes=Listening to the vehicle|track=Keeping the track} failed inside Crossfix.",
+    remedy: "Look at the vehicle and resume, or order the return.",
+  },
+  place_unsure: {
+    text: "The place of bearing {place_number} is uncertain by {drift_m}; it counts for less.",
+    remedy: "Its reported position jumped, or wind moved it: look at GPS and wind.",
+  },
+  not_stored: {
+    text: "Not everything of this mission can be stored: {detail}.",
+    remedy: "It is kept beside the journal's spool; the flight goes on.",
+  },
+  not_an_archive: {
+    text: "The file is not a PMTiles archive{looks_like?none=|empty=: it is empty|sqlite=, it looks like an MBTiles or another SQLite file|zip=, it is a zip file|gzip=, it is gzip-compressed|tiff=, it is a TIFF picture|png=, it is a PNG picture|jpeg=, it is a JPEG picture|json=, it looks like JSON|xml=, it looks like XML or a web page}.",
+    remedy: "Only PMTiles archives (.pmtiles, version 3) can be used. MBTiles files are converted with `pmtiles convert`.",
+  },
+  old_archive: {
+    text: "The PMTiles archive has version {version}; version 3 is needed.",
+    remedy: "Only PMTiles archives (.pmtiles, version 3) can be used. MBTiles files are converted with `pmtiles convert`.",
+  },
+  tiles_not_drawable: {
+    text: "The archive's tiles are of type {tile_type}, which the map cannot draw.",
+    remedy: "Vector tiles must be MVT, pictures PNG, JPEG, WebP or AVIF.",
+  },
+  compression_not_read: {
+    text: "The archive is compressed with {compression}, which a browser cannot unpack.",
+    remedy: "Make it with gzip compression, the default of the PMTiles tools.",
+  },
+  archive_damaged: {
+    text: "The PMTiles archive is damaged in its {part?header=header|metadata=metadata|directories=directories|tiles=tiles|first_tile=first tile}: {fault?cut_off=there is less than it states|unreadable=it cannot be read|senseless=the values make no sense|too_large=there is more than any map needs|missing=there is nothing|endless=it points to itself without end|not_as_stated=the picture is not of the type that it says}.",
+    remedy:
+      "{fault?cut_off=Copy or download the whole file again.|*=Export or extract the map again, for example with `pmtiles extract`, and upload the new file.}",
+  },
+  map_label_damaged: {
+    text: "The map's label is missing or damaged.",
+    remedy: "Upload the map again.",
+  },
+  put_by_hand: {
+    text: "It was put into the map folder by hand.",
+    remedy: "Upload it on the page instead.",
+  },
+  map_unusable: {
+    text: "Map {file}: {because}",
+    remedy: "{because!remedy}",
+  },
+  upload_incomplete: {
+    text: "Only {arrived_bytes} of {announced_bytes} arrived.",
+    remedy: "Upload it again; nothing was kept.",
+  },
+  no_room_for_map: {
+    text: "The file does not fit: {needed_bytes} more are needed, {room_bytes} may be used.",
+    remedy: "Delete maps that are not needed. {reserve_bytes} stay free for the journal.",
+  },
+  map_drawn_plainly: {
+    text: "{because?layers_not_named=The archive does not say which layers its tiles have, so nothing of it can be drawn|schema_unknown=The map's layers follow no schema that is known here; all of them are drawn alike}.",
+    remedy: "",
+  },
+  area_on_maps: {
+    text: "{shown?whole=The whole area is on the offline maps|partly=Only a part of the area is on the offline maps; the rest is plain grid|not_finely=No offline map shows the area finely enough to fly by: the plain grid is shown|no_map=There is no offline map: the plain grid is shown} ({shown_percent}).",
+    remedy: "",
+  },
+  beyond_web_maps: {
+    text: "The area lies beyond 85 degrees of latitude, where web maps end.",
+    remedy: "Fly with the plain grid.",
+  },
+  not_readable_as: {
+    text: "The file cannot be read as {format?geojson=GeoJSON|kml=KML|kmz=KMZ|none=GeoJSON, KML or KMZ}: {fault?empty=it is empty|other_format=it is something else|not_json=it is not valid JSON|no_type=it is JSON without a `type`|no_features=its FeatureCollection has no list of `features`|not_xml=it is not valid XML|document_type=it holds a document type definition|other_xml=its first element is not <kml>|not_unpacked=it cannot be unpacked|no_kml_inside=there is no KML file in it|too_large=it is far too large when unpacked}.",
+    remedy: "Export it as GeoJSON in WGS84 (longitude, latitude), or as KML or KMZ with placemarks.",
+  },
+  other_coordinates: {
+    text: "The file uses the coordinate system {system}, not WGS84.",
+    remedy: "Export it in WGS84 (longitude, latitude).",
+  },
+  too_many_features: {
+    text: "The overlay has more than {most} features.",
+    remedy: "Leave out what is not needed, or make a map package (PMTiles) of it.",
+  },
+  part_left_out: {
+    text: "{part?feature=Feature|placemark=Placemark} {which} is left out: {fault?missing=it has no geometry that can be drawn|type_unknown=its type of geometry is not known|nested_too_deep=its geometries are nested too deep|no_position=a position lacks its longitude or latitude|not_numbers=its coordinates are not numbers|swapped=a position is not on Earth; longitude and latitude may be swapped|in_metres=a position is not on Earth; it may be in metres|too_few_positions=a line needs two positions and a ring three corners}.",
+    remedy: "",
+  },
+  file_left_out: {
+    text: "The archive also holds {file}, which is left out.",
+    remedy: "",
+  },
+  kind_left_out: {
+    text: "{kind?NetworkLink=Links to other files are|GroundOverlay=Pictures on the ground are|ScreenOverlay=Pictures on the screen are|PhotoOverlay=Photos are|Model=3D models are|Tour=Tours are} left out ({count}).",
+    remedy: "",
+  },
+  more_left_out: {
+    text: "{parts|more part was|more parts were} left out.",
+    remedy: "",
+  },
+  nothing_to_draw: {
+    text: "The file holds nothing that can be drawn. {left_out}",
+    remedy: "Use another file.",
+  },
+  not_areas: {
+    text: "{count|point or line was|points or lines were} left out.",
+    remedy: "",
+  },
+  polygons_united: {
+    text: "{polygons} polygons that touch or overlap were merged into {areas}.",
+    remedy: "",
+  },
+  no_polygon: {
+    text: "The file holds no polygon.",
+    remedy:
+      "{lines?true=A line is not an area: close it into a polygon.|false=Draw the area as one or more polygons and export it as GeoJSON (WGS84) or KML.}",
+  },
+  not_started: {
+    text: "The mission has not started.",
+    remedy: "Start it first.",
+  },
+  already_started: {
+    text: "The mission has started already.",
+    remedy: "Draft a new one to fly again.",
+  },
+  mission_over: {
+    text: "The mission has ended.",
+    remedy: "Draft a new one.",
+  },
+  not_held: {
+    text: "The mission is not held.",
+    remedy: "",
+  },
+  landing_already: {
+    text: "The vehicle is landing at home already.",
+    remedy: "Hold stops the landing.",
+  },
+  on_the_way_home: {
+    text: "The vehicle is on its way home.",
+    remedy: "Hold and resume first, to go on searching.",
+  },
+  on_the_ground: {
+    text: "The vehicle is on the ground.",
+    remedy: "",
+  },
+  area_only_in_hold: {
+    text: "The search area can only be changed in hold.",
+    remedy: "Hold, then change it.",
+  },
+  no_proposed_place: {
+    text: "No place is proposed.",
+    remedy: "Wait for the planner's next place.",
+  },
+  no_such_bearing: {
+    text: "This mission has no such bearing.",
+    remedy: "Reload the page.",
+  },
+  bearing_excluded_already: {
+    text: "The bearing is excluded already.",
+    remedy: "",
+  },
+  no_such_alert: {
+    text: "There is no such open alert.",
+    remedy: "It may have cleared by itself.",
+  },
+  no_such_craft: {
+    text: "No craft {craft_id} flies for this mission.",
+    remedy: "Reload the page.",
+  },
+  no_such_emitter: {
+    text: "This mission looks for no emitter {emitter_id}.",
+    remedy: "Reload the page.",
+  },
+  vehicle_unknown: {
+    text: "Nothing is known of the vehicle.",
+    remedy: "Connect the vehicle and ask again.",
+  },
+  no_home: {
+    text: "The vehicle's home is not known yet.",
+    remedy: "Wait for a GPS fix.",
+  },
+  another_mission_flies: {
+    text: "Another mission is still flying: {name}.",
+    remedy: "End it and let the vehicle land first.",
+  },
+  no_mission: {
+    text: "There is no mission {mission_id}.",
+    remedy: "Look at the list of missions.",
+  },
+  not_editable: {
+    text: "The mission has started and can no longer be edited.",
+    remedy: "In hold, change its search area; or draft a new mission.",
+  },
+  mission_flies: {
+    text: "A mission is flying.",
+    remedy: "Check the antenna when the vehicle is down.",
+  },
+  mission_does_not_fly: {
+    text: "The mission is not flying.",
+    remedy: "Edit the draft, or draft a new mission.",
+  },
+  field_missing: {
+    text: "It is missing.",
+    remedy: "",
+  },
+  field_unknown: {
+    text: "There is no such field.",
+    remedy: "",
+  },
+  field_out_of_range: {
+    text: "It must be {relation?greater_than=greater than|greater_than_equal=at least|less_than=less than|less_than_equal=at most} {bound}.",
+    remedy: "",
+  },
+  field_wrong_length: {
+    text: "It must have {relation?least=at least|most=at most} {length|item|items}.",
+    remedy: "",
+  },
+  field_not_one_of: {
+    text: "It must be one of {expected}.",
+    remedy: "",
+  },
+  field_invalid: {
+    text: "It is not valid: {message}.",
+    remedy: "",
+  },
+  request_invalid: {
+    text: "The request is not valid: {faults|field is|fields are} wrong, first {field}.",
+    remedy: "Correct the named fields and send it again.",
+  },
+  nothing_there: {
+    text: "There is no {what?mission=mission|page=page|belief=belief|sweep=sweep|map=map|overlay=overlay|file=file|recording=recording|craft=craft|scene=scene} {which}.",
+    remedy: "",
+  },
+  http_refused: {
+    text: "The request was refused ({status}): {phrase}.",
+    remedy: "",
+  },
+  body_too_large: {
+    text: "A request may have at most {most_bytes}.",
+    remedy: "Simplify the geometry, or split the file.",
+  },
+  unknown_host: {
+    text: "This server does not go by the name {host}.",
+    remedy: "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
+  },
+  foreign_origin: {
+    text: "A page of {origin} may not command this server.",
+    remedy: "Use the page that this server serves.",
+  },
+  samples_not_stored: {
+    text: "The power samples of place {place_number} were not stored, so no other antenna can hear them.",
+    remedy: "Ask with another bearing error, share of wrong bearings or planner: these need no samples.",
+  },
+  half_given: {
+    text: "{pair?place=A place needs both latitude and longitude|pulses=A pulsed tag needs both its pulse width and its period}.",
+    remedy: "Give both, or neither.",
+  },
+  too_many_files: {
+    text: "{files|file is|files are} more than one recording.",
+    remedy: "Upload one file, or meta, data and headings.",
+  },
+  two_recordings: {
+    text: "The files {first} and {second} are two recordings.",
+    remedy: "Upload them one after the other.",
+  },
+  iq_options_unused: {
+    text: "Frequency and pulses are looked for in IQ only; the powers of {file} are taken as they are.",
+    remedy: "",
+  },
+  export_unreadable: {
+    text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
+    remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
+  },
+  upload_broke_off: {
+    text: "The upload broke off; nothing was kept.",
+    remedy: "Upload the file again.",
+  },
+  no_payload_expected: {
+    text: "This server takes no samples from a payload.",
+    remedy: "Start it with CROSSFIX_PAYLOAD_TOKENS, a list of the tokens its payloads may show.",
+  },
+  unknown_token: {
+    text: "The server does not know this token.",
+    remedy: "Give the payload one of the tokens in CROSSFIX_PAYLOAD_TOKENS.",
+  },
+  too_many_scenes: {
+    text: "Too many 3D views are open.",
+    remedy: "Close one in another tab.",
+  },
+  scene_silent: {
+    text: "The 3D server does not answer.",
+    remedy: "Load the view again.",
+  },
+  server_broke: {
+    text: "The request could not be carried out because of a fault in the server (incident {incident}).",
+    remedy: "The mission goes on. Try again; if it happens again, report the incident with the server's log.",
+  },
+  failsafe_acts: {
+    text: "The autopilot acts by itself: {mode}.",
+    remedy: "Hold or resume first.",
+  },
+  pilot_controls: {
+    text: "The pilot has control: nothing is sent to the vehicle.",
+    remedy: "Resume when the pilot has given control back.",
+  },
+  not_given_back: {
+    text: "The pilot has not given control back: the vehicle is still in {mode}.",
+    remedy: "The pilot selects HOLD (PX4) or BRAKE or GUIDED (ArduPilot) on the transmitter, then resume.",
+  },
+  no_link: {
+    text: "The link to the vehicle is lost.",
+    remedy: "Wait until the vehicle answers again; its own failsafe acts meanwhile.",
+  },
+  no_position: {
+    text: "The vehicle has no position.",
+    remedy: "Wait for a GPS fix.",
+  },
+  position_old: {
+    text: "The vehicle's position is {age_s:1} old.",
+    remedy: "Wait until telemetry arrives again.",
+  },
+  battery_unknown: {
+    text: "The vehicle does not report its battery.",
+    remedy: "Set up the battery monitor, or say in the mission that this vehicle reports no battery.",
+  },
+  battery_silent: {
+    text: "The battery's charge is no longer reported.",
+    remedy: "Check the battery monitor.",
+  },
+  battery_short: {
+    text: "Battery at {charge_percent}: {left_percent} would be left, the way home takes {needed_percent} and the reserve is {reserve_percent}.",
+    remedy: "Return home and change the battery.",
+  },
+  altitude_outside: {
+    text: "{altitude_relative_m} above home is outside the allowed {lowest_relative_m} to {highest_relative_m}.",
+    remedy: "Change the mission's altitude or its band.",
+  },
+  too_far_from_home: {
+    text: "The place is {distance_m} from home, more than {most_m}.",
+    remedy: "Choose a place nearer to home.",
+  },
+  already_in_air: {
+    text: "The vehicle is already in the air.",
+    remedy: "Land it; a mission starts on the ground.",
+  },
+  outside_fence: {
+    text: "{what?vehicle_stands=The vehicle stands|vehicle=The vehicle is|home=Home is|place=The place is} {beyond_m} outside the fence.",
+    remedy: "{what?place=Choose a place inside, or widen the fence.|*=Draw the fence around the vehicle and its home.}",
+  },
+  inside_no_fly: {
+    text: "{what?vehicle_stands=The vehicle stands|vehicle=The vehicle is|home=Home is|place=The place is} inside a no-fly zone.",
+    remedy: "{what?place=Choose a place outside the zone.|*=Draw the no-fly zones beside the vehicle and its home.}",
+  },
+  near_no_fly: {
+    text: "The place is {near_m:1} from a no-fly zone, and a hovering vehicle wanders.",
+    remedy: "Choose a place {least_m} or more from the zone.",
+  },
+  way_leaves_fence: {
+    text: "The way there leaves the fence.",
+    remedy: "Fly by way of a place in between.",
+  },
+  way_crosses_no_fly: {
+    text: "The way there crosses a no-fly zone.",
+    remedy: "Fly by way of a place beside the zone.",
+  },
+  area_empty: {
+    text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} is empty.",
+    remedy: "Draw at least three corners.",
+  },
+  too_few_corners: {
+    text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} has fewer than three different corners.",
+    remedy: "Draw at least three.",
+  },
+  too_many_corners: {
+    text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} has more than {most} corners.",
+    remedy: "Simplify it.",
+  },
+  outline_unusable: {
+    text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} {fault?crosses_itself=has an outline that crosses itself|hole_outside=has a hole outside its outline|not_simple=is not a simple polygon}.",
+    remedy: "Move the corners so that no two edges cross.",
+  },
+  area_too_small: {
+    text: "The area has only {area_m2}.",
+    remedy: "Draw at least {least_m2}.",
+  },
+  area_too_wide: {
+    text: "The area is {width_m} wide.",
+    remedy: "Search at most {most_m} at a time.",
+  },
+  area_too_far: {
+    text: "The area is {distance_m} away from the vehicle.",
+    remedy: "Draw the area where the vehicle is, or carry the vehicle there.",
+  },
+  headings_askew: {
+    text: "All bearings seem to be off by the same angle, about {offset_deg} ± {std_error_deg}: the place found may be wrong.",
+    remedy: "Check compass and antenna mounting; a single wrong place can look the same.",
+  },
+  localized: {
+    text: "Localized: the expected error is below the threshold.",
+    remedy: "",
+  },
+  localized_against: {
+    text: "Localized: the expected error is below the threshold; it stands against {against} of {bearings|bearing|bearings}.",
+    remedy: "",
+  },
+  recording_too_long: {
+    text: "The recording holds {sweeps} sweeps.",
+    remedy: "Import at most {most} at once.",
+  },
+  recording_without_place: {
+    text: "The file {file} does not say where it was recorded.",
+    remedy: "Name the place beside it.",
+  },
+  recording_too_far: {
+    text: "The recording was taken {distance_m} from the mission's area.",
+    remedy: "Import it into a mission whose area is around it, or name the right place.",
+  },
+  import_remark: {
+    text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}.",
+    remedy: "",
+  },
+  other_frequency: {
+    text: "The file {file} was recorded at {recorded_hz}; the mission looks for {wanted_hz}.",
+    remedy: "",
+  },
+  sweep_incomplete: {
+    text: "Of this sweep these values are unknown: {unknown?bearing=bearing|sigma=sigma|quality=quality|altitude=altitude|drift=drift}.",
+    remedy: "Take the sweep again.",
+  },
+  quality_too_low: {
+    text: "The quality {quality:2} is below {wanted:2}.",
+    remedy: "Take the sweep again.",
+  },
+  database_silent: {
+    text: "The database does not answer: {detail}.",
+    remedy: "Check that it is running; what happens meanwhile is kept in the spool on the disk.",
+  },
+  database_slow: {
+    text: "The database's last answer took {answer_s:1}.",
+    remedy: "Look at its load and its disk.",
+  },
+  disk_low: {
+    text: "Only {free_bytes} are left on the disk.",
+    remedy: "Free some space.",
+  },
+  nothing_stores: {
+    text: "The database is away ({database}) and the spool cannot be written ({spool}).",
+    remedy: "Free space on the disk, and bring the database back.",
+  },
+  fact_unfit: {
+    text: "{by?journal=This makes no sense and cannot be stored|database=The database refuses this}: {detail}.",
+    remedy: "",
+  },
+  written_elsewhere: {
+    text: "Event {seq} of mission {mission_id} does not follow what is stored: another server writes to it.",
+    remedy: "Let only one server use this database.",
+  },
+  database_unfit: {
+    text: "The database {database} cannot be used: {detail}.",
+    remedy: "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+  },
+  another_server: {
+    text: "Another server uses {path}.",
+    remedy: "Stop it, or start this one with another --data-dir.",
+  },
+  foreign_spool: {
+    text: "What lies at {path} is not a journal spool.",
+    remedy: "Move it away and start again.",
+  },
+  told_before: {
+    text: "{text}",
+    remedy: "{remedy}",
+  },
+  no_usable_bearing: {
+    text: "{again?true=The sweep is taken again|false=No usable bearing here}: {because}",
+    remedy: "{because!remedy}",
+  },
+  not_localized: {
+    text: "Not localized. {because} {not_yet}",
+    remedy: "",
+  },
+  places_used_up: {
+    text: "{places|place was|places were} used, as many as the mission allows.",
+    remedy: "",
+  },
+  no_longer_localized: {
+    text: "No longer localized since a bearing was excluded. {not_yet}",
+    remedy: "",
+  },
+  receiver_trouble: {
+    text: "Receiver: {because}",
+    remedy: "{because!remedy}",
+  },
+  preflight_failed: {
+    text: "Preflight: {because}",
+    remedy: "{because!remedy}",
+  },
+  interrupted: {
+    text: "Interrupted: {because?later_mission=a mission started later is the one in the air|unreadable=it can no longer be read}.",
+    remedy: "",
+  },
+  ordered_again_later: {
+    text: "{because}",
+    remedy: "It is ordered again when the vehicle is heard.",
+  },
+};

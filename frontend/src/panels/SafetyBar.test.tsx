@@ -1,0 +1,188 @@
+// @vitest-environment happy-dom
+import { render } from "preact";
+import { act } from "preact/test-utils";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { watchKeys } from "../app/keys";
+import { urgent } from "../commands/urgent";
+import { FakeSource } from "../sources/fakeSource";
+import type { SourceMessage } from "../sources/source";
+import { moveClock } from "../state/clock";
+import { live } from "../state/connection";
+import { NOBODY } from "../state/craft";
+import { emptyLive } from "../state/live";
+import { open } from "../state/open";
+import type { Authority, CraftStatus, MissionEvent, Phase } from "../wire";
+import { phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
+import { SafetyBar } from "./SafetyBar";
+
+watchKeys();
+
+const part = (testId: string) => document.querySelector<HTMLButtonElement>(`[data-testid=${testId}]`);
+const press = (code: string) => dispatchEvent(new KeyboardEvent("keydown", { code, altKey: true, shiftKey: true }));
+const drafted: MissionEvent = { kind: "mission_drafted", spec: someSpec() };
+const happens = (...events: MissionEvent[]): SourceMessage[] => record(...events).map((recorded) => ({ type: "event", recorded }));
+const inPhase = (after: Phase) => happens(drafted, phase(after));
+
+/** What the server says of the one craft there is. */
+const craftStatus = (changes: Partial<CraftStatus>) =>
+  someStatus({
+    crafts: [
+      {
+        craft_id: "craft-1",
+        mission_id: null,
+        phase: "ground",
+        receiver: "ok",
+        receiver_power_db: -90,
+        receiver_age_s: 0,
+        battery_to_return_percent: 10,
+        ...changes,
+      },
+    ],
+  });
+
+let source: FakeSource;
+const show = (next: FakeSource, ...messages: SourceMessage[]) =>
+  act(() => {
+    source = next;
+    open(source);
+    source.tell({ type: "link", state: "open", attempt: 0 }, ...messages);
+    vi.advanceTimersByTime(200);
+  });
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  act(() => render(<SafetyBar />, document.body));
+});
+afterEach(async () => {
+  act(() => render(null, document.body));
+  await vi.runOnlyPendingTimersAsync();
+  vi.useRealTimers();
+  urgent.value = {};
+});
+
+const COMMANDS = [
+  ["abort", "KeyA"],
+  ["hold", "KeyH"],
+  ["return", "KeyR"],
+] as const;
+
+/** What buttons and keys send, in this order. */
+function sentByAll(): string[] {
+  for (const [kind, code] of COMMANDS) {
+    act(() => part(kind)!.click());
+    urgent.value = {};
+    act(() => void press(code));
+    urgent.value = {};
+  }
+  return source.sent.map(({ missionId, kind }) => `${missionId} ${kind}`);
+}
+
+const both = (id: string) => COMMANDS.flatMap(([kind]) => [`${id} ${kind}`, `${id} ${kind}`]);
+
+describe("abort, hold and return", () => {
+  it("act on the mission in flight, by button and by key", () => {
+    show(new FakeSource(), ...inPhase("flying"), someTelemetry());
+    expect(sentByAll()).toEqual(both("m"));
+  });
+
+  it("act on it still when it was aborted and its vehicle is in the air", () => {
+    const aborted: MissionEvent = {
+      kind: "mission_ended",
+      outcome: "aborted",
+      reason: { code: "ordered", order: "abort", by: "operator" },
+      mission_time_s: 1,
+    };
+    const flies = craftStatus({ mission_id: "m", phase: "returning" });
+    show(new FakeSource(), ...happens(drafted, phase("returning"), aborted), someTelemetry({ in_air: true }), flies);
+    expect(sentByAll()).toEqual(both("m"));
+  });
+
+  it("act on the mission that flies while another one is shown, and the bar says so", () => {
+    show(new FakeSource(), ...happens(drafted), someTelemetry(), craftStatus({ mission_id: "other", phase: "flying" }));
+    expect(part("urgent-note")!.querySelector("a")!.getAttribute("href")).toContain("other");
+    expect(sentByAll()).toEqual(both("other"));
+  });
+
+  it("never act on a recording", () => {
+    class Recording extends FakeSource {
+      override readonly takesCommands = false;
+    }
+    show(new Recording(), ...inPhase("flying"), someTelemetry(), craftStatus({}));
+    expect(sentByAll()).toEqual([]);
+  });
+
+  it("are disabled, keys too, when nothing flies", () => {
+    const ready: MissionEvent = { kind: "preflight_checked", passed: true, checks: [] };
+    show(new FakeSource(), ...happens(drafted, ready), someTelemetry({ in_air: false }), craftStatus({}));
+    for (const [kind] of COMMANDS) expect(part(kind)!.disabled).toBe(true);
+    expect(sentByAll()).toEqual([]);
+  });
+});
+
+it("resumes only what holds or the pilot flies, and only after a slide", () => {
+  for (const after of ["taking_off", "planning", "waiting", "flying", "measuring", "returning", "landing"] as const) {
+    show(new FakeSource(), ...inPhase(after), someTelemetry());
+    expect(part("resume"), after).toBeNull();
+  }
+  show(new FakeSource(), ...inPhase("manual"), someTelemetry());
+  expect(part("resume")).not.toBeNull();
+  show(new FakeSource(), ...inPhase("hold"), someTelemetry());
+  act(() => part("resume")!.click());
+  expect(part("resume-slider")).not.toBeNull();
+  expect(source.sent).toEqual([]);
+});
+
+/** The page's clock started with the page, before this test's time. */
+const later = (ms: number) =>
+  act(() => {
+    vi.advanceTimersByTime(ms);
+    moveClock();
+  });
+
+it("shows values with their age, and none when they are too old", () => {
+  show(new FakeSource(), someTelemetry({ battery_percent: 63 }));
+  expect(part("battery")!.textContent).toContain("63 %");
+  later(5_000);
+  expect(part("battery")!.dataset.state).toBe("old");
+  later(30_000);
+  expect(part("battery")!.dataset.state).toBe("gone");
+  expect(part("battery")!.textContent).not.toContain("63");
+});
+
+it("warns below the charge that the way home needs", () => {
+  show(new FakeSource(), someTelemetry({ battery_percent: 20 }), craftStatus({ battery_to_return_percent: 30 }));
+  expect(part("battery")!.className).toContain("warning");
+});
+
+describe("who has control", () => {
+  const control = () => part("control")!.textContent;
+  const taken = (authority: Partial<Authority>): SourceMessage[] =>
+    happens(drafted, phase("manual"), { kind: "authority_changed", craft_id: "craft-1", authority: { ...NOBODY, ...authority }, by: null });
+
+  it("is not known before the vehicle was heard", () => {
+    live.value = emptyLive;
+    show(new FakeSource());
+    expect(control()).toMatch(/not known/);
+  });
+
+  it.each([
+    ["ours", /^Crossfix/],
+    ["pilot", /^The pilot has control \(Loiter\)/],
+    ["failsafe", /failsafe has control \(Loiter\)/],
+    ["nobody", /^Nobody/],
+  ] as const)("is %s as the server says it", (who, words) => {
+    show(new FakeSource(), ...inPhase("flying"), someTelemetry({ who, mode: "Loiter" }));
+    expect(control()).toMatch(words);
+  });
+
+  it("is the pilot until an operator takes it back, in the mode in which they took it", () => {
+    const pilots = taken({ who: "pilot", taken_by: "mode", mode: "Position" });
+    show(new FakeSource(), ...pilots, someTelemetry({ who: "nobody", mode: "Loiter" }));
+    expect(control()).toBe("The pilot has control (Position)");
+  });
+
+  it("may be the failsafe's as well as the pilot's, and says so", () => {
+    show(new FakeSource(), ...taken({ who: "pilot", taken_by: "mode", mode: "Return", perhaps_failsafe: true }), someTelemetry());
+    expect(control()).toMatch(/pilot or .*failsafe/);
+  });
+});

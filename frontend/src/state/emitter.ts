@@ -1,0 +1,52 @@
+// What is known of one emitter: a fold of the mission's events.
+import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
+
+export interface At<T> {
+  fact: T;
+  seq: number;
+  at: string;
+}
+
+export interface Bearing extends At<BearingMeasured> {
+  excluded: boolean;
+}
+
+export interface BeliefPoint {
+  seq: number;
+  at: string;
+  bearings: number;
+  expectedRmse: number | null;
+}
+
+export interface EmitterState {
+  emitterId: string;
+  bearings: readonly Bearing[];
+  rejected: readonly At<SweepRejected>[];
+  belief: At<BeliefUpdated> | null;
+  beliefs: readonly BeliefPoint[];
+}
+
+export const emptyEmitter = (emitterId: string): EmitterState => ({ emitterId, bearings: [], rejected: [], belief: null, beliefs: [] });
+
+/** `event` is one that speaks of this emitter. */
+export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
+  switch (event.kind) {
+    case "sweep_rejected":
+      return { ...state, rejected: [...state.rejected, { fact: event, seq, at }] };
+    case "bearing_measured":
+      return { ...state, bearings: [...state.bearings, { fact: event, seq, at, excluded: false }] };
+    case "bearing_excluded":
+      return {
+        ...state,
+        bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
+      };
+    case "belief_updated":
+      return {
+        ...state,
+        belief: { fact: event, seq, at },
+        beliefs: [...state.beliefs, { seq, at, bearings: event.bearings, expectedRmse: event.estimate?.expected_rmse_m ?? null }],
+      };
+    default:
+      return state;
+  }
+}

@@ -1,0 +1,206 @@
+// The events of a mission as sentences, and how much each matters.
+import { type MessageKey, reasonText, t } from "../i18n";
+import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
+import type { BeliefUpdated, Command, EventOf, MissionEvent, Recorded } from "../wire";
+import { checkName, phaseName } from "./words";
+
+/** How much an event matters to somebody who skims. */
+export function isMain(event: MissionEvent): boolean {
+  switch (event.kind) {
+    case "phase_changed":
+    case "command_accepted":
+    case "sweep_started":
+    case "alert_acknowledged":
+    case "alert_cleared":
+    case "belief_updated":
+      return false;
+    case "authority_changed":
+      return event.by !== null || event.authority.taken_by !== null;
+    default:
+      return true;
+  }
+}
+
+export type EventTone = "bearing" | "decision" | "alert" | "mode" | "other";
+
+export function toneOf(event: MissionEvent): EventTone {
+  switch (event.kind) {
+    case "bearing_measured":
+    case "sweep_rejected":
+    case "bearing_excluded":
+    case "recording_imported":
+      return "bearing";
+    case "plan_chosen":
+    case "plan_vetoed":
+      return "decision";
+    case "alert_raised":
+    case "link_lost":
+    case "safety_vetoed":
+    case "command_refused":
+      return "alert";
+    case "phase_changed":
+    case "authority_changed":
+    case "hold_ordered":
+    case "resume_ordered":
+    case "return_ordered":
+    case "abort_ordered":
+    case "automatic_changed":
+    case "area_changed":
+    case "mission_started":
+    case "mission_ended":
+      return "mode";
+    default:
+      return "other";
+  }
+}
+
+/** Who orders before users sign in has a name that is no person's. */
+const ROLES: Readonly<Record<string, MessageKey>> = { operator: "by.operator" };
+
+/** null: the mission by itself. */
+function byWords(by: string | null): string {
+  if (by === null) return t("by.mission");
+  const role = ROLES[by];
+  return role ? t(role) : by;
+}
+
+const COMMANDS: Record<Command["kind"], MessageKey> = {
+  start: "command.start",
+  hold: "command.hold",
+  resume: "command.resume",
+  return: "command.return",
+  abort: "command.abort",
+  override: "command.override",
+  accept: "command.accept",
+  veto: "command.veto",
+  set_automatic: "command.set_automatic",
+  change_area: "command.change_area",
+  exclude_bearing: "command.exclude_bearing",
+  acknowledge_alert: "command.acknowledge_alert",
+};
+
+/** A recording of a later server may hold a command that this page does not know. */
+const commandName = (command: string): string => (command in COMMANDS ? t(COMMANDS[command as Command["kind"]]) : command);
+
+/** An operator's order says all by itself; the mission tells its reason. */
+function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_ordered">): string {
+  const words = t(`event.${kind}` satisfies MessageKey, { by: byWords(by) });
+  return reason ? `${words}: ${reasonText(reason)}` : words;
+}
+
+function controlWords({ authority, by }: EventOf<"authority_changed">): string {
+  if (by !== null) return t("event.control_taken_back", { by: byWords(by) });
+  const mode = authority.mode ?? t("control.sticks");
+  switch (authority.who) {
+    case "pilot":
+      return t(authority.perhaps_failsafe ? "control.perhapsFailsafe" : "control.pilot", { mode });
+    case "failsafe":
+      return t("control.failsafe", { mode });
+    case "ours":
+      return t("control.crossfix");
+    case "nobody":
+      return t("control.nobody");
+  }
+}
+
+function beliefWords({ estimate, consistent, localized, contradicting, bearings, not_yet }: BeliefUpdated, units: UnitSystem): string {
+  if (!estimate || (!consistent && !localized)) return t("event.belief_inconsistent");
+  const rmse = formatLength(estimate.expected_rmse_m, units);
+  if (!localized) return t("event.belief_updated", { rmse, reason: not_yet.map(reasonText).join(" ") });
+  const against = contradicting.length;
+  return against > 0 ? t("event.belief_localized_against", { against, bearings, rmse }) : t("event.belief_localized", { rmse });
+}
+
+export function eventWords({ event }: Recorded, units: UnitSystem): string {
+  switch (event.kind) {
+    case "mission_drafted":
+      return t("event.mission_drafted");
+    case "mission_edited":
+      return t("event.mission_edited");
+    case "area_changed":
+      return t("event.area_changed", { by: byWords(event.by) });
+    case "preflight_checked":
+      return event.passed
+        ? t("event.preflight_passed")
+        : t("event.preflight_failed", {
+            names: event.checks
+              .filter((c) => !c.ok && c.blocking)
+              .map((c) => checkName(c.name))
+              .join(", "),
+          });
+    case "mission_started":
+      return t("event.mission_started", { by: byWords(event.by) });
+    case "phase_changed":
+      return t("event.phase_changed", { phase: phaseName(event.after), reason: reasonText(event.reason) });
+    case "took_off":
+      return t("event.took_off", { height: formatLength(event.altitude_relative_m, units) });
+    case "plan_chosen":
+      return t("event.plan_chosen", { number: event.place_number, reason: reasonText(event.reason) });
+    case "plan_vetoed":
+      return t("event.plan_vetoed", { by: byWords(event.by) });
+    case "flight_started":
+      return t("event.flight_started", { number: event.place_number });
+    case "place_reached":
+      return t("event.place_reached", { number: event.place_number, time: formatDuration(event.flight_time_s) });
+    case "sweep_started":
+      return event.attempt > 1
+        ? t("event.sweep_again", { number: event.place_number, attempt: event.attempt })
+        : t("event.sweep_started", { number: event.place_number });
+    case "sweep_rejected":
+      return t("event.sweep_rejected", { quality: formatNumber(event.quality, 2), reason: reasonText(event.reason) });
+    case "bearing_measured":
+      return t("event.bearing_measured", {
+        bearing: formatBearing(event.bearing_deg),
+        sigma: formatNumber(event.sigma_deg, 1),
+        number: event.place_number,
+        quality: formatNumber(event.quality, 2),
+      });
+    case "antenna_checked":
+      return t(event.check.ok ? "event.antenna_ok" : "event.antenna_wrong", { detail: reasonText(event.check.reason) });
+    case "recording_imported":
+      return t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: byWords(event.by) });
+    case "bearing_excluded":
+      return event.reason
+        ? t("event.bearing_excluded", { by: byWords(event.by), reason: event.reason })
+        : t("event.bearing_excluded.plain", { by: byWords(event.by) });
+    case "belief_updated":
+      return beliefWords(event, units);
+    case "hold_ordered":
+    case "return_ordered":
+      return orderWords(event);
+    case "resume_ordered":
+      return t("event.resume_ordered", { by: byWords(event.by) });
+    case "abort_ordered":
+      return t("event.abort_ordered", { by: byWords(event.by) });
+    case "automatic_changed":
+      return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: byWords(event.by) });
+    case "authority_changed":
+      return controlWords(event);
+    case "command_accepted":
+      return t("event.command_accepted", { command: commandName(event.command), by: byWords(event.by) });
+    case "command_refused":
+      return t("event.command_refused", { command: commandName(event.command), reason: reasonText(event.reason) });
+    case "safety_vetoed":
+      return t("event.safety_vetoed", { reason: reasonText(event.reason) });
+    case "link_lost":
+      return t("event.link_lost", { link: t(`link.${event.link}` satisfies MessageKey), reason: reasonText(event.reason) });
+    case "link_restored":
+      return t("event.link_restored", {
+        link: t(`link.${event.link}` satisfies MessageKey),
+        time: formatDuration(event.outage_s),
+      });
+    case "alert_raised":
+      return t("event.alert_raised", { level: t(`alerts.${event.level}` satisfies MessageKey), text: reasonText(event.reason) });
+    case "alert_acknowledged":
+      return t("event.alert_acknowledged", { by: byWords(event.by) });
+    case "alert_cleared":
+      return t("event.alert_cleared");
+    case "server_restarted":
+      return t("event.server_restarted");
+    case "mission_ended":
+      return t("event.mission_ended", {
+        outcome: t(`outcome.${event.outcome}` satisfies MessageKey),
+        reason: reasonText(event.reason),
+      });
+  }
+}

@@ -1,0 +1,66 @@
+// What the operator prefers, kept in this browser.
+import { effect, signal } from "@preact/signals";
+import { type Language, setLanguage } from "../i18n";
+import type { CoordinateFormat } from "../units/coordinates";
+import type { UnitSystem } from "../units/quantities";
+import { coordinateFormat, unitSystem } from "../units/shown";
+
+export interface Settings {
+  theme: "outdoor" | "indoor";
+  scale: number;
+  units: UnitSystem;
+  coordinates: CoordinateFormat;
+  language: Language;
+  tones: boolean;
+  speech: boolean;
+  lite: boolean;
+  tourSeen: boolean;
+}
+
+const KEY = "crossfix.settings";
+
+export const defaultSettings: Settings = {
+  theme: "outdoor",
+  scale: 1,
+  units: "metric",
+  coordinates: "dd",
+  language: navigator.language.startsWith("de") ? "de" : "en",
+  tones: true,
+  speech: false,
+  lite: false,
+  tourSeen: false,
+};
+
+/** Unreadable or foreign entries are ignored: the defaults hold for them. */
+export function readSettings(stored: string | null): Settings {
+  if (!stored) return defaultSettings;
+  let parsed: unknown;
+  try {
+    parsed = JSON.parse(stored);
+  } catch {
+    return defaultSettings;
+  }
+  if (typeof parsed !== "object" || parsed === null) return defaultSettings;
+  const given = parsed as Record<string, unknown>;
+  const known = Object.entries(defaultSettings).map(([key, value]) => [key, typeof given[key] === typeof value ? given[key] : value]);
+  return Object.fromEntries(known) as Settings;
+}
+
+export const settings = signal<Settings>(readSettings(localStorage.getItem(KEY)));
+
+export function change<K extends keyof Settings>(key: K, value: Settings[K]): void {
+  settings.value = { ...settings.value, [key]: value };
+}
+
+export function applySettings(): void {
+  effect(() => {
+    localStorage.setItem(KEY, JSON.stringify(settings.value));
+    document.documentElement.dataset.theme = settings.value.theme;
+    document.documentElement.style.fontSize = `${settings.value.scale * 100}%`;
+  });
+  effect(() => {
+    void setLanguage(settings.value.language);
+    unitSystem.value = settings.value.units;
+    coordinateFormat.value = settings.value.coordinates;
+  });
+}

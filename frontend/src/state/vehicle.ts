@@ -1,0 +1,69 @@
+// The vehicle of the craft shown and its path, at the moment looked at.
+import { batch, computed, effect, signal } from "@preact/signals";
+import type { Source } from "../sources/source";
+import type { TrackFact } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
+import { live, source } from "./connection";
+import { craftShown, telemetry } from "./heard";
+import { cursor, liveMission, reviewTimeMs } from "./moment";
+import { steady, unseen, type VehicleView } from "./vehicleView";
+
+/** The stored path: what was flown before this page was opened. */
+export const track = signal<readonly TrackFact[]>([]);
+
+async function loadTrack(from: Source, missionId: string, craftId: string): Promise<void> {
+  const loaded = await from.track(missionId, craftId).catch(() => null);
+  if (!loaded || source.peek() !== from || craftFlown.peek() !== craftId) return;
+  const paths = new Map(live.peek().paths);
+  paths.delete(craftId);
+  batch(() => {
+    track.value = loaded.points;
+    live.value = { ...live.peek(), paths };
+  });
+}
+
+const craftFlown = computed(() => liveMission.value.craftId);
+
+effect(() => {
+  const [from, craftId] = [source.value, craftFlown.value];
+  track.value = [];
+  if (from?.missionId && craftId !== null) void loadTrack(from, from.missionId, craftId);
+});
+
+const reviewing = computed(() => cursor.value !== null);
+effect(() => {
+  const [from, { missionId, craftId }] = [source.peek(), liveMission.peek()];
+  if (reviewing.value && from && missionId && craftId !== null) void loadTrack(from, missionId, craftId);
+});
+
+const reviewPoint = computed<TrackFact | null>(() => {
+  const time = reviewTimeMs.value;
+  if (time === null) return null;
+  return track.value.findLast((p) => Date.parse(p.at_utc) <= time) ?? track.value[0] ?? null;
+});
+
+const seen = computed<VehicleView>(() => {
+  if (reviewing.value) {
+    const point = reviewPoint.value;
+    return point ? { at: [point.lon, point.lat], headingDeg: point.heading_deg, speedMs: null } : unseen;
+  }
+  const value = telemetry.value?.value;
+  if (!value) return unseen;
+  const at: LonLat | null = value.lon !== null && value.lat !== null ? [value.lon, value.lat] : null;
+  return { at, headingDeg: value.heading_deg, speedMs: value.ground_speed_m_s };
+});
+
+export const vehicle = signal<VehicleView>(unseen);
+effect(() => {
+  vehicle.value = reviewing.value ? seen.value : steady(vehicle.peek(), seen.value);
+});
+
+const NO_PATH: readonly LonLat[] = [];
+const livePath = computed(() => live.value.paths.get(craftShown.value ?? "") ?? NO_PATH);
+
+export const path = computed<readonly LonLat[]>(() => {
+  const time = reviewTimeMs.value;
+  const until = time ?? Infinity;
+  const flown = track.value.filter((p) => Date.parse(p.at_utc) <= until).map((p): LonLat => [p.lon, p.lat]);
+  return time === null && source.value?.happensNow ? [...flown, ...livePath.value] : flown;
+});

@@ -1,0 +1,42 @@
+import { expect, it } from "vitest";
+import type { BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
+import { CRAFT, EMITTER, excluded, record, someBearing, someReason } from "../wire/examples";
+import { missionAt } from "./mission";
+import { suppose, viewOf } from "./view";
+
+const seen = (...events: MissionEvent[]) => viewOf(missionAt(record(...events), Infinity));
+
+it("shows what the sweeps would have told in the place of what they told, each at its own moment", () => {
+  const flown = seen(
+    someBearing({ bearing_id: "a", sweep_id: "sa" }),
+    someBearing({ bearing_id: "b", sweep_id: "sb" }),
+    someBearing({ bearing_id: "c", sweep_id: "sc" }),
+    excluded("c"),
+  );
+  const nothing: SweepRejected = {
+    kind: "sweep_rejected",
+    emitter_id: EMITTER,
+    source: { kind: "craft", craft_id: CRAFT },
+    sweep_id: "sb",
+    place_number: 2,
+    attempt: 1,
+    quality: 0.1,
+    reason: someReason,
+    place: { lat: 1, lon: 2 },
+    binned_db: [],
+    fitted_db: [],
+  };
+  const belief = { kind: "belief_updated", emitter_id: EMITTER, bearings: 1 } as BeliefUpdated;
+  const state = suppose(flown, {
+    belief,
+    plan: null,
+    sweeps: [someBearing({ sweep_id: "sa", bearing_deg: 70 }), nothing],
+  });
+  expect(state.bearings.map((b) => [b.fact.bearing_deg, b.seq, b.excluded])).toEqual([
+    [70, 1, false],
+    [45, 3, true],
+  ]);
+  expect(state.rejected.map((r) => [r.fact.sweep_id, r.seq])).toEqual([["sb", 2]]);
+  expect(state.belief?.fact).toBe(belief);
+  expect(state.plan).toBeNull();
+});

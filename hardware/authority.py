@@ -1,0 +1,241 @@
+"""Who flies the vehicle: we, the pilot, the autopilot's failsafe, or nobody. One pure reducer, no clock, no mode names.
+
+A mode that we did not command, shown in flight, is somebody else's; only an operator takes control back. The
+autopilot's dialect classifies modes; here a mode is a token to compare and a kind. `Authority` holds all that is needed
+to go on after a restart of the server.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal, assert_never
+
+Who = Literal["ours", "pilot", "failsafe", "nobody"]
+ModeKind = Literal["waiting", "return", "land", "other"]
+"""waiting: the vehicle hovers until it is commanded. return, land: a failsafe may enter it by itself, a pilot too."""
+
+HOMEWARD: frozenset[ModeKind] = frozenset({"return", "land"})
+GIVEN_BACK_S = 1.5
+"""A mode is the pilot's way to give the vehicle back only when heard this much later than the takeover: PX4 reports the
+sticks before it reports the mode."""
+
+
+@dataclass(frozen=True, slots=True)
+class Authority:
+    """Who flies, and what is needed to judge the next mode.
+
+    taken_by: how somebody else took control; not None: no command passes until an operator takes control. It outlasts
+    the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
+    given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
+    perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+
+    commanded: tokens of the modes that follow from our last command; empty: nothing is commanded. tolerated: tokens of
+    modes that may still show because of what was before that command. shown_before: the mode when the command was sent;
+    until the acknowledgement it proves nothing. heard, kind, armed: of the last mode. restarted: none was heard since
+    the server came back.
+    """
+
+    who: Who = "nobody"
+    taken_by: Literal["mode", "sticks"] | None = None
+    taken_at_s: float | None = None
+    mode: str | None = None
+    given_back: bool = False
+    perhaps_failsafe: bool = False
+    commanded: tuple[int, ...] = ()
+    tolerated: tuple[int, ...] = ()
+    shown_before: int | None = None
+    heard: int | None = None
+    kind: ModeKind | None = None
+    armed: bool = False
+    restarted: bool = False
+
+    @property
+    def homeward(self) -> bool:
+        """The vehicle returns or lands, whoever began that."""
+        return self.kind in HOMEWARD
+
+
+NOBODY = Authority()
+"""Before anything was commanded or heard."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandSent:
+    """We are about to send a flight command. modes: tokens of the modes that follow from it."""
+
+    modes: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class CommandAcknowledged:
+    """The autopilot accepted our last command: what it shows from now on follows from it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModeHeard:
+    """The autopilot reported its mode.
+
+    mode: the token; name: for people. armed: None while it is not known since a silence. after_silence: the vehicle, or
+    this server, was silent until a moment ago, so a failsafe may be acting on that. at_s: UTC.
+    """
+
+    mode: int
+    kind: ModeKind
+    name: str
+    armed: bool | None
+    in_air: bool
+    after_silence: bool
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class SticksTookOver:
+    """The autopilot says that the pilot took over with the sticks. at_s: UTC."""
+
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class FlightEnded:
+    """What was commanded is over, and the vehicle stands on the ground."""
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorTookControl:
+    """An operator's explicit deed: the mode of this moment is accepted, and commands pass again."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServerRestarted:
+    """Nobody commanded or listened for a while."""
+
+
+Seen = (
+    CommandSent | CommandAcknowledged | ModeHeard | SticksTookOver | FlightEnded | OperatorTookControl | ServerRestarted
+)
+
+
+def authority_after(authority: Authority, seen: Seen) -> Authority:
+    """Who flies after `seen`. A command may be sent while `who` is "ours", and at no other time."""
+    match seen:
+        case CommandSent(modes=modes):
+            return _commanded(authority, modes)
+        case CommandAcknowledged():
+            return replace(authority, shown_before=None)
+        case ModeHeard():
+            return _mode_heard(authority, seen)
+        case SticksTookOver(at_s=at_s):
+            return _taken(authority, "pilot", "sticks", at_s, None) if authority.armed else authority
+        case FlightEnded():
+            return _nothing_commanded(authority)
+        case OperatorTookControl():
+            return _taken_back(authority)
+        case ServerRestarted():
+            # what was before the last command shows no longer; a pilot may have selected just that
+            return replace(authority, tolerated=(), shown_before=None, restarted=True)
+        case _:
+            assert_never(seen)
+
+
+def _commanded(authority: Authority, modes: frozenset[int]) -> Authority:
+    if authority.taken_by is not None:
+        return authority
+    shown = set[int]() if authority.heard is None else {authority.heard}
+    tolerated = _tokens(({*authority.tolerated, *authority.commanded} | shown) - modes)
+    return replace(
+        authority,
+        who="ours",
+        commanded=_tokens(modes),
+        tolerated=tolerated,
+        shown_before=authority.heard if tolerated else None,
+    )
+
+
+def _tokens(modes: set[int] | frozenset[int]) -> tuple[int, ...]:
+    return tuple(sorted(modes))
+
+
+def _nothing_commanded(authority: Authority) -> Authority:
+    who = "nobody" if authority.taken_by is None else authority.who
+    return replace(authority, who=who, commanded=(), tolerated=(), shown_before=None)
+
+
+def _taken_back(authority: Authority) -> Authority:
+    if authority.taken_by is None:
+        return authority
+    commanded = (authority.heard,) if authority.armed and authority.heard is not None else ()
+    return Authority(
+        who="ours" if commanded else "nobody",
+        commanded=commanded,
+        heard=authority.heard,
+        kind=authority.kind,
+        armed=authority.armed,
+        restarted=authority.restarted,
+    )
+
+
+def _mode_heard(before: Authority, seen: ModeHeard) -> Authority:
+    if seen.armed is None and seen.kind == "waiting":
+        return before  # an autopilot goes there by itself once it has landed, as it may have done unheard
+    armed = before.armed if seen.armed is None else seen.armed
+    now = replace(before, heard=seen.mode, kind=seen.kind, armed=armed, restarted=False)
+    if before.armed and not armed:
+        now = _nothing_commanded(now)  # the flight has ended; a new one starts with a command
+    if now.taken_by is not None:
+        return _while_taken(before, now, seen)
+    if not armed and not now.commanded:
+        return now  # on the ground anybody may select modes
+    return _judged(before, now, seen)
+
+
+def _judged(before: Authority, now: Authority, seen: ModeHeard) -> Authority:
+    """Nobody had taken control so far: is this mode somebody else's?"""
+    waiting = seen.kind == "waiting"
+    if waiting and not seen.in_air and not now.tolerated:
+        return now  # an autopilot goes to its waiting mode by itself once it has landed
+    if not now.commanded and (waiting or not seen.in_air):
+        return now
+    if seen.mode in now.commanded:
+        confirmed = seen.mode != now.shown_before
+        return replace(now, tolerated=(), shown_before=None) if confirmed else now
+    if seen.mode in now.tolerated:
+        return now
+    if waiting and before.restarted:
+        return _nothing_commanded(now)  # the last command of the server before may not have been recorded
+    who: Who = "failsafe" if seen.kind in HOMEWARD and seen.after_silence else "pilot"
+    return _taken(now, who, "mode", seen.at_s, seen)
+
+
+def _taken(
+    authority: Authority, who: Who, by: Literal["mode", "sticks"], at_s: float, heard: ModeHeard | None
+) -> Authority:
+    return replace(
+        _nothing_commanded(authority),
+        who=who,
+        taken_by=by,
+        taken_at_s=at_s,
+        mode=None if heard is None else heard.name,
+        given_back=not authority.armed,
+        perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD,
+    )
+
+
+def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authority:
+    """Somebody else has control, or had it before the vehicle landed."""
+    if not now.armed:
+        return replace(now, who="nobody" if before.armed else before.who, given_back=True)
+    if before.who == "nobody":
+        return _taken(now, "pilot", "mode", seen.at_s, seen)  # armed again by hand
+    waiting, homeward = seen.kind == "waiting", seen.kind in HOMEWARD
+    if before.who == "failsafe":
+        if not seen.in_air or seen.mode == before.heard:
+            return now
+        if homeward or (waiting and seen.after_silence):
+            # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command
+            return replace(now, mode=seen.name, given_back=waiting)
+        return _taken(now, "pilot", "mode", seen.at_s, seen)
+    return replace(
+        now,
+        given_back=waiting and seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S,
+        perhaps_failsafe=before.perhaps_failsafe and (homeward or not seen.in_air),
+    )

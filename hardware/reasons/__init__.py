@@ -1,0 +1,58 @@
+"""Why something in the hardware is so, or cannot be: a module a kind, each with a union of its reasons.
+
+Values are in SI with the unit in the name; angles in degrees, as they are shown.
+"""
+
+from hardware.reasons.antenna import AntennaReason
+from hardware.reasons.channels import ChannelReason
+from hardware.reasons.iq_recording import IqRecordingReason
+from hardware.reasons.pattern import PatternReason
+from hardware.reasons.payload import PayloadReason
+from hardware.reasons.payload_link import PayloadLinkReason
+from hardware.reasons.preflight import PreflightReason
+from hardware.reasons.radio import RadioReason
+from hardware.reasons.receiver import ReceiverReason
+from hardware.reasons.simulation import SimulationReason
+from hardware.reasons.sweep import SweepReason
+from hardware.reasons.table import TableReason
+from hardware.reasons.vehicle import VehicleReason
+from hardware.reasons.vehicle_news import VehicleNews
+
+HardwareReason = (
+    ReceiverReason
+    | ChannelReason
+    | RadioReason
+    | PayloadReason
+    | PayloadLinkReason
+    | SimulationReason
+    | SweepReason
+    | AntennaReason
+    | PatternReason
+    | TableReason
+    | IqRecordingReason
+    | VehicleReason
+    | VehicleNews
+    | PreflightReason
+)
+
+RecordingReason = TableReason | IqRecordingReason
+"""Why a recording cannot be used, or what of it is left out or assumed."""
+
+__all__ = [
+    "AntennaReason",
+    "ChannelReason",
+    "HardwareReason",
+    "IqRecordingReason",
+    "PatternReason",
+    "PayloadLinkReason",
+    "PayloadReason",
+    "PreflightReason",
+    "RadioReason",
+    "ReceiverReason",
+    "RecordingReason",
+    "SimulationReason",
+    "SweepReason",
+    "TableReason",
+    "VehicleNews",
+    "VehicleReason",
+]

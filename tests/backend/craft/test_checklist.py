@@ -1,0 +1,107 @@
+"""The checklist on doubles: what refuses a start, and what only says so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from equipment import TWO_EMITTERS, spec
+from facts import CHECK
+from stage import Stage
+
+from backend.craft import checklist as module
+from backend.craft.checklist import checklist, home_of
+from backend.craft.listening import Listening, channels_of
+from backend.events import CheckFact
+from backend.reasons import checks, refusals, safety, search
+from backend.spec import EmitterSpec, MissionSpec, Polygon
+from hardware.readings import CheckName
+from hardware.reasons.receiver import ReceiverUnplugged
+
+
+async def checked(stage: Stage, mission: MissionSpec | None = None) -> dict[CheckName, CheckFact]:
+    found, _ = await checklist(mission or spec(), stage.craft(), None)
+    return {check.name: check for check in found}
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "RECEIVER_WALL_S", 0.2)
+
+
+async def test_a_vehicle_that_stands_ready_passes_every_check() -> None:
+    found, task = await checklist(spec(), Stage().craft(), None)
+    assert all(check.ok for check in found)
+    assert {check.name for check in found} == {"vehicle_link", "area", "safety", "receiver", "pattern"}
+    assert task is not None
+
+
+async def test_the_check_of_the_antenna_stays_in_the_list() -> None:
+    antenna = CHECK.model_copy(update={"name": "antenna"})
+    found, _ = await checklist(spec(), Stage().craft(), None, antenna)
+    assert antenna in found
+
+
+async def test_a_vehicle_without_a_home_has_no_task() -> None:
+    stage = Stage()
+    stage.vehicle.state = replace(stage.vehicle.state, position=None, home=None)
+    found, task = await checklist(spec(), stage.craft(), None)
+    assert task is None
+    assert [check.reason for check in found if check.name == "area"] == [refusals.NoHome()]
+    assert all(check.name != "safety" for check in found)
+
+
+async def test_an_area_that_cannot_be_searched_from_here_blocks() -> None:
+    nowhere = spec().model_copy(update={"area": Polygon(coordinates=[])})
+    area = (await checked(Stage(), nowhere))["area"]
+    assert (area.ok, area.blocking, area.reason) == (False, True, search.AreaEmpty("area"))
+
+
+async def test_what_safety_has_against_the_start_blocks() -> None:
+    stage = Stage()
+    stage.vehicle.state = replace(stage.vehicle.state, battery_percent=None)
+    check = (await checked(stage))["safety"]
+    assert (check.ok, check.blocking, check.reason) == (False, True, safety.BatteryUnknown())
+
+
+async def test_a_receiver_that_is_gone_blocks_and_says_why() -> None:
+    stage = Stage()
+    stage.receiver.gone = True
+    check = (await checked(stage))["receiver"]
+    assert (check.ok, check.blocking, check.reason) == (False, True, ReceiverUnplugged())
+
+
+async def test_a_receiver_that_delivers_nothing_blocks() -> None:
+    stage = Stage()
+    stage.receiver.mute = True
+    check = (await checked(stage))["receiver"]
+    assert (check.ok, check.blocking, check.reason) == (False, True, checks.NoSamples())
+
+
+async def test_a_tag_that_is_not_heard_here_does_not_block() -> None:
+    stage = Stage()
+    stage.receiver.unheard = True
+    tag = EmitterSpec(kind="pulsed", pulse_period_s=0.5)
+    check = (await checked(stage, spec((tag,))))["receiver"]
+    assert (check.ok, check.blocking, check.reason) == (False, False, checks.TagUnheard(tag.frequency_hz))
+
+
+async def test_every_emitter_is_listened_for() -> None:
+    stage = Stage()
+    check = (await checked(stage, spec(TWO_EMITTERS)))["receiver"]
+    assert (check.ok, check.reason) == (True, checks.ReceiverDelivers(2))
+    assert stage.receiver.frequencies_hz == [emitter.frequency_hz for emitter in TWO_EMITTERS]
+
+
+async def test_the_receiver_of_a_mission_that_flies_is_not_opened_again() -> None:
+    stage = Stage()
+    mission = spec()
+    listening = Listening(stage.receiver, stage.clock, channels_of(mission), 5.0)
+    found, _ = await checklist(mission, stage.craft(), listening)
+    assert stage.receiver.frequencies_hz == []
+    assert [check.ok for check in found if check.name == "receiver"] == [True]
+
+
+def test_home_is_where_the_vehicle_stands_while_the_autopilot_says_none() -> None:
+    state = replace(Stage().vehicle.state, home=None, home_amsl_m=None, altitude_amsl_m=140.0, altitude_relative_m=40.0)
+    assert home_of(state) == (state.position, 100.0)

@@ -1,0 +1,270 @@
+"""The craft machine in every state against every input, whoever flies and whatever has become of the search."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from typing import get_args
+
+import pytest
+from craft_inputs import AUTHORITIES, every_craft_input
+from craft_walk import PHASES, VEHICLE, CraftWalk, craft_in, moves, refusal, sent
+from facts import FAILSAFE, LANDED_BY_PILOT, SPEC, WAITING_SPEC
+
+from backend import commands
+from backend.craft import effects, inputs
+from backend.craft.effects import CraftEffect
+from backend.craft.machine import kept_of, transition
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
+from backend.events import MissionEnded, PreflightChecked
+from backend.reasons.search import Localized
+from backend.search.effects import Record
+from backend.search.inputs import SearchOver
+from backend.search.machine import transition as transition_search
+from backend.search.state import SearchState, Stage
+from backend.search.state import evolve as evolve_search
+
+STAGES: tuple[Stage, ...] = get_args(Stage)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    craft: CraftState
+    search: SearchState
+    given: inputs.CraftInput
+    after: CraftState
+    asked: tuple[CraftEffect, ...]
+
+    @property
+    def command(self) -> commands.ForCraft | None:
+        return self.given.command if isinstance(self.given, inputs.CraftOrdered) else None
+
+    @property
+    def carried_out(self) -> bool:
+        return self.command is not None and refusal(self.asked) is None
+
+    @property
+    def about(self) -> str:
+        return f"{self.given} in {self.craft.phase}, {self.craft.authority.who}, {self.search.stage}"
+
+
+def stepped(craft: CraftState, search: SearchState, given: inputs.CraftInput) -> Step:
+    after, asked = transition(craft, search, given, 2_000.0)
+    return Step(craft, search, given, after, asked)
+
+
+def search_after(step: Step) -> SearchState:
+    """The search folded on, and over when the machine says so."""
+    search = step.search
+    for effect in step.asked:
+        if isinstance(effect, Record):
+            search = evolve_search(search, effect.event, 2_000.0)
+        elif isinstance(effect, effects.LeaveSearch):
+            search, _ = transition_search(search, SearchOver(effect.because, effect.outcome), 2_000.0)
+    return search
+
+
+def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
+    """What of a state matters for what may be sent."""
+    return (
+        craft.phase,
+        kept_of(craft.authority),
+        search.stage,
+        search.localized,
+        search.beliefs_current,
+        craft.engaged,
+        craft.searching,
+        craft.took_off,
+        craft.automatic,
+        craft.chosen is None,
+        "vehicle" in craft.links_down,
+    )
+
+
+@cache
+def reachable() -> tuple[tuple[CraftState, SearchState], ...]:
+    """One state of each kind that is reached from the ground by inputs and by what the search learns meanwhile."""
+    found: dict[tuple[object, ...], tuple[CraftState, SearchState]] = {}
+    ahead: deque[tuple[CraftState, SearchState]] = deque()
+
+    def reach(craft: CraftState, search: SearchState) -> None:
+        key = key_of(craft, search)
+        if key not in found:
+            found[key] = (craft, search)
+            ahead.append((craft, search))
+
+    for spec in (SPEC, WAITING_SPEC):
+        walk = CraftWalk(spec)
+        reach(walk.craft, walk.search)
+    while ahead:
+        craft, search = ahead.popleft()
+        for given in every_craft_input(craft, search):
+            step = stepped(craft, search, given)
+            reach(step.after, search_after(step))
+        for localized in (False, True):
+            known = CraftWalk()
+            known.craft, known.search = craft, search
+            known.believe(localized)
+            reach(known.craft, known.search)
+    return tuple(found.values())
+
+
+@cache
+def steps() -> tuple[Step, ...]:
+    return tuple(stepped(*state, given) for state in reachable() for given in every_craft_input(*state))
+
+
+def test_the_sweep_reaches_every_phase_with_whoever_may_fly_then_before_and_after_the_end() -> None:
+    seen = {(craft.phase, craft.authority.who, search.stage) for craft, search in reachable() if craft.engaged}
+    assert {phase for phase, _, _ in seen} == set(PHASES) - {"ground"}
+    assert {who for phase, who, _ in seen if phase == "manual"} >= {"pilot", "nobody"}
+    assert {who for phase, who, _ in seen if phase == "hold"} >= {"ours", "failsafe", "nobody"}
+    assert {phase for phase, _, stage in seen if stage == "ended"} >= {"hold", "manual", "returning", "landing"}
+    assert {craft.phase for craft, _ in reachable() if not craft.engaged} == {"ground"}
+
+
+def test_a_pilot_who_flies_an_engaged_craft_flies_it_by_hand() -> None:
+    for craft, _ in reachable():
+        if craft.engaged and craft.authority.who == "pilot":
+            assert craft.phase == "manual"
+        if craft.phase in AUTOMATIC:
+            assert craft.authority.who != "failsafe"
+
+
+def test_nothing_is_sent_while_somebody_else_flies_until_an_operator_takes_control() -> None:
+    for step in steps():
+        restarted = isinstance(step.given, inputs.Restarted)
+        flies = step.after if restarted else step.craft
+        if flies.taken_over or flies.authority.who == "failsafe":
+            first = next((k for k, effect in enumerate(step.asked) if isinstance(effect, VEHICLE)), None)
+            if first is not None:
+                assert step.carried_out, step.about
+                assert effects.TakeControl() in step.asked[:first], step.about
+        if isinstance(step.given, inputs.AuthorityHeard):
+            assert not sent(step.asked), step.about
+
+
+def test_control_is_taken_by_an_operators_deed_alone_and_from_a_pilot_by_resuming_alone() -> None:
+    for step in steps():
+        if effects.TakeControl() not in step.asked:
+            continue
+        assert step.carried_out, step.about
+        if step.craft.engaged and step.craft.taken_over:
+            assert isinstance(step.command, commands.Resume), step.about
+        assert not step.after.taken_over, step.about
+
+
+def test_hold_and_return_work_on_every_engaged_craft_unless_a_pilot_flies() -> None:
+    for step in steps():
+        if not step.craft.engaged or step.craft.taken_over:
+            continue
+        match step.command:
+            case commands.Hold():
+                assert effects.HoldVehicle() in step.asked, step.about
+                assert step.asked[0] == effects.CancelWork(), step.about
+                assert step.after.phase == "hold", step.about
+            case commands.Return() if step.craft.phase != "landing":
+                assert moves(step.asked) == [effects.ReturnHome()], step.about
+                assert step.after.phase == "returning", step.about
+            case commands.Abort() if step.search.stage == "open":
+                assert moves(step.asked) == [effects.ReturnHome(hold_first=True)], step.about
+                assert step.asked[0] == effects.CancelWork(), step.about
+                assert step.after.phase == "returning", step.about
+                assert not step.after.searching, step.about
+            case _:
+                pass
+
+
+def test_a_held_craft_moves_only_when_an_operator_says_so_or_nobody_is_left_to() -> None:
+    for step in steps():
+        if step.craft.phase in ("hold", "manual") and moves(step.asked):
+            ordered = isinstance(step.command, commands.Resume | commands.Return | commands.Abort)
+            timer = step.given == inputs.TimerExpired("console_return")
+            assert ordered or timer, step.about
+
+
+def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:
+    for step in steps():
+        if not step.craft.engaged and sent(step.asked):
+            assert isinstance(step.command, commands.Start), step.about
+
+
+def test_after_the_search_is_over_a_craft_only_holds_or_comes_home() -> None:
+    for step in steps():
+        if step.search.stage == "ended":
+            assert all(isinstance(move, effects.ReturnHome | effects.Land) for move in moves(step.asked)), step.about
+            assert step.after.phase not in AUTOMATIC, step.about
+
+
+def test_what_is_objected_to_is_not_done() -> None:
+    for step in steps():
+        objected = isinstance(step.given, inputs.CraftOrdered) and step.given.objections
+        if objected and isinstance(step.command, commands.Start | commands.Resume | commands.Override):
+            assert not step.carried_out, step.about
+            assert not sent(step.asked), step.about
+            assert (step.after.phase, step.after.authority) == (step.craft.phase, step.craft.authority), step.about
+
+
+def test_a_refused_order_sends_nothing_and_leaves_the_phase() -> None:
+    for step in steps():
+        if step.command is not None and not step.carried_out:
+            assert not any(isinstance(e, (*VEHICLE, effects.CancelWork, effects.TakeControl)) for e in step.asked)
+            assert step.after.phase == step.craft.phase, step.about
+
+
+def test_a_pilot_who_takes_over_silences_everything_at_once() -> None:
+    for step in steps():
+        heard = step.given.authority if isinstance(step.given, inputs.AuthorityHeard) else None
+        if heard is not None and pilot_has(heard) and step.craft.engaged and not step.craft.taken_over:
+            assert step.asked[0] == effects.CancelWork(), step.about
+            assert step.after.phase == "manual", step.about
+            assert not sent(step.asked), step.about
+
+
+def test_what_is_asked_of_a_craft_on_its_way_home_never_sends_it_out_again() -> None:
+    for step in steps():
+        if step.craft.phase in HOMEWARD and step.command is None:
+            assert step.after.phase not in AUTOMATIC, step.about
+
+
+def of_stage(search: SearchState, stage: Stage) -> SearchState:
+    match stage:
+        case "draft" | "ready":
+            checked = evolve_search(replace(search, started_at_s=None, outcome=None), PREFLIGHT, 0.0)
+            return replace(checked, passed=stage == "ready")
+        case "open":
+            return replace(search, started_at_s=1_000.0, outcome=None)
+        case "ended":
+            begun = replace(search, started_at_s=1_000.0)
+            return evolve_search(begun, MissionEnded(outcome="aborted", reason=Localized(), mission_time_s=1.0), 0.0)
+
+
+PREFLIGHT = PreflightChecked(passed=True, checks=[])
+
+
+@pytest.mark.parametrize("phase", PHASES)
+def test_every_input_is_answered_in_every_phase_whoever_flies_in_whatever_stage(phase: str) -> None:
+    """States that cannot be reached, too: whatever a journal holds, the craft can be held."""
+    walk = craft_in(phase)  # type: ignore[arg-type]
+    for authority, stage, silent in product(AUTHORITIES, STAGES, (False, True)):
+        down = frozenset({"vehicle"}) if silent else frozenset()
+        craft = replace(walk.craft, authority=authority, links_down=down)  # type: ignore[arg-type]
+        search = of_stage(walk.search, stage)
+        for given in every_craft_input(craft, search):
+            step = stepped(craft, search, given)
+            folded = craft
+            for effect in step.asked:
+                if isinstance(effect, Record):
+                    folded = evolve(folded, effect.event)
+            assert folded == step.after, "the new state is the fold of the recorded facts"
+            if isinstance(step.command, commands.Hold) and craft.engaged and not craft.taken_over:
+                assert effects.HoldVehicle() in step.asked
+                assert step.after.phase == "hold"
+
+
+def test_who_has_control_after_a_landing_is_still_the_pilot_and_a_failsafe_never_is() -> None:
+    craft = craft_in("manual").craft
+    assert replace(craft, authority=LANDED_BY_PILOT).taken_over
+    assert not replace(craft, authority=FAILSAFE).taken_over

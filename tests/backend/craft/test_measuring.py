@@ -1,0 +1,99 @@
+"""One measurement on doubles: what is unknown about a sweep makes it a rejected one, never a made-up bearing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import AsyncIterator
+from dataclasses import replace
+
+import pytest
+from equipment import SECOND_HZ, TWO_EMITTERS, spec
+from refusals import refusing
+from stage import Stage
+
+from backend.craft.listening import Listening, channels_of
+from backend.craft.measuring import Measured, measure
+from backend.events import FIRST_CRAFT, BearingMeasured, CraftSource, SweepRejected
+from backend.reasons.search import SweepIncomplete
+from backend.spec import EmitterSpec, MissionSpec
+from hardware.ports import ReceiverError, VehicleError
+from hardware.readings import BearingReading, PowerSample
+from hardware.reasons.receiver import NothingHeardInTurn
+from hardware.reasons.sweep import NoPulseHeard
+from hardware.reasons.vehicle import PositionLost
+
+
+async def measured(stage: Stage, mission: MissionSpec | None = None) -> tuple[Measured, ...]:
+    mission = mission or spec()
+    listening = Listening(stage.receiver, stage.clock, channels_of(mission), 5.0)
+    listening.start()
+    try:
+        return await measure(stage.craft(), mission, "m", listening, 1, 1)
+    finally:
+        await listening.stop()
+
+
+async def test_a_sweep_becomes_a_bearing_of_the_craft_that_took_it() -> None:
+    (found,) = await measured(Stage())
+    assert isinstance(found.fact, BearingMeasured)
+    assert found.fact.source == CraftSource(craft_id=FIRST_CRAFT)
+    assert found.fact.measurement_time_s is not None
+    assert found.sweep is not None
+
+
+async def test_one_turn_becomes_one_result_for_each_emitter() -> None:
+    stage = Stage(target=(0.0, 60.0), others={SECOND_HZ: (60.0, 0.0)})
+    found = await measured(stage, spec(TWO_EMITTERS))
+    assert stage.vehicle.names == ["turn"]
+    assert [m.fact.emitter_id for m in found] == [emitter.emitter_id for emitter in TWO_EMITTERS]
+    assert len({m.sweep_id for m in found}) == 2
+    bearings = [m.fact.bearing_deg for m in found if isinstance(m.fact, BearingMeasured)]
+    assert bearings == pytest.approx([0.0, 90.0], abs=1e-6)
+    assert {emitter_id for emitter_id, _ in stage.publisher.progress} <= {e.emitter_id for e in TWO_EMITTERS}
+
+
+async def test_an_emitter_that_was_not_heard_rejects_its_own_sweep_only() -> None:
+    stage = Stage()
+    tag = EmitterSpec(emitter_id="tag", frequency_hz=150e6, kind="pulsed", pulse_width_s=0.02, pulse_period_s=0.5)
+
+    async def carrier_only() -> AsyncIterator[PowerSample]:
+        while True:
+            await stage.clock.sleep(0.2)
+            yield PowerSample(stage.clock.now(), EmitterSpec().frequency_hz, -60.0)
+            yield PowerSample(stage.clock.now(), tag.frequency_hz, -90.0, detected=False)
+
+    stage.receiver.samples = carrier_only  # type: ignore[method-assign]
+    carrier, unheard = await measured(stage, spec((EmitterSpec(), tag)))
+    assert isinstance(carrier.fact, BearingMeasured)
+    assert isinstance(unheard.fact, SweepRejected)
+    assert unheard.fact.reason == NoPulseHeard()
+    assert unheard.sweep is None
+
+
+async def test_a_height_or_a_bearing_that_is_not_known_rejects_the_sweep_and_says_which() -> None:
+    stage = Stage()
+    stage.vehicle.state = replace(stage.vehicle.state, altitude_amsl_m=None)
+    blind = stage.finder.estimate
+
+    def without_sigma(sweep: object, pattern: object) -> BearingReading:
+        return replace(blind(sweep, pattern), sigma_deg=math.nan)  # type: ignore[arg-type]
+
+    stage.finder.estimate = without_sigma  # type: ignore[method-assign]
+    (found,) = await measured(stage)
+    assert isinstance(found.fact, SweepRejected)
+    assert found.fact.reason == SweepIncomplete(("sigma", "altitude"))
+    assert found.sweep is not None
+
+
+async def test_a_receiver_that_delivers_nothing_is_an_error_and_no_rejected_sweep() -> None:
+    stage = Stage()
+    stage.receiver.mute = True
+    with refusing(NothingHeardInTurn, ReceiverError):
+        await measured(stage)
+
+
+async def test_without_any_position_there_is_an_error_and_no_made_up_place() -> None:
+    stage = Stage()
+    stage.vehicle.state = replace(stage.vehicle.state, position=None)
+    with refusing(PositionLost, VehicleError):
+        await measured(stage)

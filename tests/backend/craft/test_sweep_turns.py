@@ -1,0 +1,67 @@
+"""A tag's sweep is slow enough for its pulses, and goes round again until each heading was listened to enough."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from equipment import spec
+
+from backend.craft.sweep_turns import complete, turn_rate_deg_s
+from backend.spec import EmitterSpec, MissionSpec, SensorSpec
+from hardware.readings import HeadingSample, PowerSample
+
+PERIOD_S = 1.0
+
+
+def tag(period_s: float = PERIOD_S) -> EmitterSpec:
+    return EmitterSpec(emitter_id=f"tag-{period_s:.0f}", kind="pulsed", pulse_period_s=period_s)
+
+
+def mission(*emitters: EmitterSpec, pulses: int = 2, rate: float = 30.0) -> MissionSpec:
+    sensor = SensorSpec(pulses_per_heading=pulses, turn_rate_deg_s=rate)
+    return spec(emitters or (tag(),)).model_copy(update={"sensor": sensor})
+
+
+def turned(seconds: float, degrees: float = 360.0) -> list[HeadingSample]:
+    return [HeadingSample(t, degrees * t / seconds % 360.0) for t in np.arange(0.0, seconds, 0.1)]
+
+
+def pulses(seconds: float, deaf: tuple[float, float] = (0.0, 0.0)) -> list[PowerSample]:
+    """Every pulse, those heard between `deaf` seconds as missed."""
+    moments = np.arange(0.5, seconds, PERIOD_S)
+    return [PowerSample(t, 150e6, -60.0, detected=not deaf[0] <= t < deaf[1]) for t in moments]
+
+
+def test_a_carrier_turns_as_specified() -> None:
+    assert turn_rate_deg_s(spec()) == spec().sensor.turn_rate_deg_s
+
+
+def test_a_tag_turns_slowly_enough_for_its_pulses_and_never_faster_than_specified() -> None:
+    seconds = 360.0 / turn_rate_deg_s(mission())
+    assert seconds >= 16 * 2 * PERIOD_S
+    assert complete(tag(), 2, pulses(seconds), turned(seconds))
+    assert turn_rate_deg_s(mission(rate=5.0)) == 5.0
+
+
+def test_of_several_tags_the_slowest_sets_the_turn() -> None:
+    slow = turn_rate_deg_s(mission(tag(2.0)))
+    assert turn_rate_deg_s(mission(tag(), EmitterSpec(), tag(2.0))) == slow < turn_rate_deg_s(mission(tag()))
+
+
+@pytest.mark.parametrize("lost", [(8.0, 16.0), (0.0, 4.0)])
+def test_headings_that_missed_their_pulses_ask_for_another_turn(lost: tuple[float, float]) -> None:
+    assert not complete(tag(), 2, pulses(36.0, lost), turned(36.0))
+
+
+def test_headings_that_were_listened_to_in_vain_for_long_ask_for_no_more() -> None:
+    assert complete(tag(), 2, pulses(72.0, (20.0, 35.0)), turned(72.0))
+
+
+def test_a_turn_that_was_too_fast_is_not_complete() -> None:
+    assert not complete(tag(), 2, pulses(12.0), turned(12.0))
+    assert not complete(tag(), 2, [], [])
+
+
+def test_pulses_longer_than_their_period_are_refused() -> None:
+    with pytest.raises(ValueError, match="shorter than the period"):
+        EmitterSpec(kind="pulsed", pulse_width_s=0.5, pulse_period_s=0.4)

@@ -1,0 +1,42 @@
+"""Telemetry and status, shown beside the facts."""
+
+from __future__ import annotations
+
+import asyncio
+
+from flights import order, stuck
+from stage import Stage
+
+from backend import commands
+from backend.events import FIRST_CRAFT
+from backend.ports import CraftStatus
+
+
+async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) -> None:
+    await asyncio.sleep(0.3)
+    assert stage.publisher.telemetries.count(FIRST_CRAFT) >= 2
+    status = stage.publisher.statuses[0]
+    assert (status.mission_id, status.phase, status.database) == (None, None, "ok")
+    assert status.crafts == (CraftStatus(FIRST_CRAFT, None, "ground", "off", None, None, None),)
+
+
+async def test_the_status_says_what_the_craft_of_the_mission_does(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    status = stage.room.display.status()
+    assert (status.mission_id, status.phase) == (mission_id, "flying")
+    (craft,) = status.crafts
+    assert (craft.craft_id, craft.mission_id, craft.phase, craft.receiver) == (FIRST_CRAFT, mission_id, "flying", "ok")
+    assert craft.receiver_power_db == -60.0
+    assert craft.battery_to_return_percent is not None
+    assert craft.battery_to_return_percent > 0.0
+
+
+async def test_after_an_abort_the_craft_is_shown_until_it_is_down(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    assert (await order(stage, mission_id, commands.Abort())).accepted
+    status = stage.room.display.status()
+    assert (status.mission_id, status.phase) == (mission_id, "aborted")
+    assert status.crafts[0].phase in ("returning", "landing")
+    stage.vehicle.stuck = False
+    stage.vehicle.touch_down()
+    await stage.until_true(lambda: stage.room.display.status().mission_id is None)

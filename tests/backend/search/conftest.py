@@ -1,0 +1,15 @@
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+import pytest
+from stage import Stage
+
+
+@pytest.fixture
+async def stage() -> AsyncIterator[Stage]:
+    """A mission room with a craft, on doubles."""
+    made = Stage()
+    await made.room.start_up()
+    yield made
+    await made.room.shut_down()

@@ -1,0 +1,192 @@
+"""Recorded sweeps as facts: like flown ones, once, all or nothing, with every doubt said."""
+
+from __future__ import annotations
+
+import math
+from uuid import uuid4
+
+import numpy as np
+import pytest
+from equipment import FRAME, PATTERN, TWO_EMITTERS, PointingFinder, spec
+from flights import flying, order
+from refusals import near
+from stage import Stage
+
+from backend import commands
+from backend.commands import CommandRequest
+from backend.events import BearingMeasured, BeliefUpdated, Event, ImportSource, MissionDrafted, RecordingImported
+from backend.ports import JournalUnavailable
+from backend.reasons.refusals import NoSuchEmitter
+from backend.reasons.search import (
+    ImportRemark,
+    OtherFrequency,
+    RecordingTooFar,
+    RecordingTooLong,
+    RecordingWithoutPlace,
+)
+from backend.search.errors import MissionInputError
+from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
+from backend.search.state import SearchState, evolve
+from backend.spec import MissionSpec
+from hardware.direction_finding.recordings import RecordedSweep, Recording
+from hardware.readings import Place, Sweep
+from hardware.reasons.table import CellUnusable
+
+TARGET = (30.0, 60.0)
+REMARK = CellUnusable("turn.csv", 7, 1, "north", "heading")
+
+
+def recorded(x: float, y: float, at_s: float = 0.0, place_known: bool = True) -> RecordedSweep:
+    n = 90
+    position = FRAME.to_geo(x, y)
+    times, headings = np.linspace(at_s, at_s + 9.0, n), np.linspace(0.0, 356.0, n)
+    sweep = Sweep(times, headings, np.full(n, -60.0), 868.3e6, position, 140.0)
+    return RecordedSweep(sweep, None, place_known)
+
+
+def upload(*sweeps: RecordedSweep, name: str = "a", **words: object) -> Upload:
+    recording = Recording(sweeps, (REMARK,))
+    return Upload(recording_id=name, filename="turn.csv", recording=recording, **words)  # type: ignore[arg-type]
+
+
+def drafted(mission: MissionSpec | None = None) -> SearchState:
+    return evolve(SearchState(), MissionDrafted(spec=mission or spec()), 0.0)
+
+
+def imported(given: Upload, finder: PointingFinder | None = None, mission: MissionSpec | None = None) -> Import:
+    return import_facts("m", drafted(mission), given, finder or PointingFinder(TARGET), PATTERN, "ann")
+
+
+def facts(given: Upload, finder: PointingFinder | None = None) -> list[Event]:
+    return list(imported(given, finder).facts)
+
+
+def what_was_imported(given: Upload) -> RecordingImported:
+    first = facts(given)[0]
+    assert isinstance(first, RecordingImported)
+    return first
+
+
+def test_every_sweep_leaves_the_facts_of_a_flown_one() -> None:
+    found = imported(upload(recorded(-80.0, 10.0), recorded(80.0, 10.0)))
+    assert [f.kind for f in found.facts] == ["recording_imported", *["bearing_measured", "belief_updated"] * 2]
+    first, bearings = found.facts[0], [f for f in found.facts if isinstance(f, BearingMeasured)]
+    assert isinstance(first, RecordingImported)
+    assert first.sweep_ids == [b.sweep_id for b in bearings] == [k.sweep_id for k in found.sweeps]
+    assert first.remarks[0] == REMARK
+    assert {(b.emitter_id, b.source) for b in bearings} == {("emitter-1", ImportSource(recording_id="a"))}
+    assert [b.place_number for b in bearings] == [1, 2]
+    assert [b.bearings for b in found.facts if isinstance(b, BeliefUpdated)] == [1, 2]
+
+
+def test_a_recording_is_of_the_emitter_that_is_named() -> None:
+    mission = spec(TWO_EMITTERS)
+    given = upload(recorded(-80.0, 10.0), emitter_id="emitter-2")
+    found = imported(given, mission=mission)
+    assert {fact.emitter_id for fact in found.facts} == {"emitter-2"}  # type: ignore[union-attr]
+    assert [kept.emitter_id for kept in found.sweeps] == ["emitter-2"]
+    state = drafted(mission)
+    for fact in found.facts:
+        state = evolve(state, fact, 0.0)
+    assert {name: len(emitter.bearings) for name, emitter in state.emitters.items()} == {"emitter-1": 0, "emitter-2": 1}
+    with pytest.raises(MissionInputError) as refused:
+        imported(upload(recorded(-80.0, 10.0), emitter_id="fox"), mission=mission)
+    assert (refused.value.reason, refused.value.field) == (NoSuchEmitter("fox"), "emitter_id")
+
+
+def test_a_rejected_sweep_is_a_fact_and_changes_no_belief() -> None:
+    kinds = [f.kind for f in facts(upload(recorded(0.0, 10.0)), PointingFinder(TARGET, rejected=1))]
+    assert kinds == ["recording_imported", "sweep_rejected"]
+
+
+def test_the_named_time_moves_the_recording_and_the_files_own_is_kept() -> None:
+    named = imported(upload(recorded(0, 10, at_s=50.0), at_s=1.7e9))
+    assert named.sweeps[0].sweep.at_s[0] == 1.7e9
+    own = what_was_imported(upload(recorded(0, 10, at_s=1.6e9)))
+    unknown = what_was_imported(upload(recorded(0, 10, at_s=50.0)))
+    assert own.recorded_at_utc is not None
+    assert own.recorded_at_utc.timestamp() == 1.6e9
+    assert unknown.recorded_at_utc is None
+
+
+def test_a_place_that_does_not_fit_is_refused() -> None:
+    away = FRAME.to_geo(0.0, 80_000.0)
+    for given in (upload(recorded(0.0, 80_000.0)), upload(recorded(0.0, 10.0), place=away)):
+        with pytest.raises(MissionInputError) as refused:
+            facts(given)
+        assert refused.value.reason == RecordingTooFar(near(80_000))
+        assert refused.value.field == "lat"
+    with pytest.raises(MissionInputError) as refused:
+        facts(upload(recorded(0.0, 10.0, place_known=False)))
+    assert refused.value.reason == RecordingWithoutPlace("turn.csv")
+
+
+def test_too_many_sweeps_at_once_are_refused() -> None:
+    with pytest.raises(MissionInputError) as refused:
+        facts(upload(*[recorded(0.0, 10.0)] * (MOST_SWEEPS + 1)))
+    assert (refused.value.reason, refused.value.field) == (RecordingTooLong(MOST_SWEEPS + 1, MOST_SWEEPS), "file")
+
+
+def test_a_frequency_and_an_altitude_that_do_not_fit_are_said_and_a_place_that_was_replaced() -> None:
+    heard = recorded(0.0, 10.0).sweep
+    heard = Sweep(heard.at_s, heard.heading_deg, heard.power_db, 433e6, Place(50.0, 7.0), math.nan)
+    odd = RecordedSweep(heard, 0.0, True)
+    assert what_was_imported(upload(odd)).remarks == [
+        REMARK,
+        OtherFrequency("turn.csv", 433e6, 868.3e6),
+        ImportRemark("turn.csv", "altitude_unknown"),
+    ]
+    replaced = what_was_imported(upload(recorded(0.0, 10.0), place=FRAME.to_geo(5.0, 10.0)))
+    assert replaced.remarks == [REMARK, ImportRemark("turn.csv", "place_replaced")]
+
+
+async def test_the_same_recording_is_imported_once() -> None:
+    stage = Stage()
+    mission_id = await stage.room.drafts.create(spec(), "ann")
+    first, again = [
+        await stage.room.drafts.import_recording(mission_id, upload(recorded(0, 10)), "ann") for _ in range(2)
+    ]
+    assert (first[1], again[1]) == (False, True)
+    told = ("recording_imported", "bearing_measured")
+    assert [r.seq for r in again[0]] == [r.seq for r in first[0] if r.event.kind in told]
+    assert stage.journal.kinds(mission_id).count("bearing_measured") == 1
+
+
+async def test_a_journal_that_is_away_keeps_nothing_of_it() -> None:
+    stage = Stage()
+    mission_id = await stage.room.drafts.create(spec(), "ann")
+    stage.journal.away = True
+    with pytest.raises(JournalUnavailable):
+        await stage.room.drafts.import_recording(mission_id, upload(recorded(0, 10)), "ann")
+    stage.journal.away = False
+    assert stage.journal.kinds(mission_id) == ["mission_drafted"]
+    _, already = await stage.room.drafts.import_recording(mission_id, upload(recorded(0, 10)), "ann")
+    assert not already
+
+
+async def test_leaving_out_an_imported_bearing_or_editing_the_draft_settles_the_belief() -> None:
+    stage = Stage()
+    mission_id = await stage.room.drafts.create(spec(), "ann")
+    given = upload(recorded(-80, 10), recorded(80, 10))
+    new, _ = await stage.room.drafts.import_recording(mission_id, given, "ann")
+    bearing = next(r.event for r in new if isinstance(r.event, BearingMeasured))
+    assert (await order(stage, mission_id, commands.ExcludeBearing(bearing_id=bearing.bearing_id))).accepted
+    assert [b.bearings for b in stage.journal.of_kind(mission_id, BeliefUpdated)] == [1, 2, 1]
+    await stage.room.drafts.edit(mission_id, spec().model_copy(update={"name": "renamed"}), "ann")
+    assert stage.journal.kinds(mission_id)[-1] == "belief_updated"
+
+
+async def test_a_mission_in_flight_takes_a_recording_and_keeps_its_place(stage: Stage) -> None:
+    mission_id = await flying(stage)
+    stage.vehicle.stuck = True
+    flown = stage.active.state.craft.chosen
+    new, already = await stage.room.drafts.import_recording(mission_id, upload(recorded(0, 10)), "ann")
+    assert not already
+    assert {r.event.kind for r in new} == {"recording_imported", "bearing_measured"}
+    updated = await stage.until(mission_id, "belief_updated", 2)
+    assert isinstance(updated, BeliefUpdated)
+    assert updated.bearings == 1
+    assert stage.active.state.craft.phase == "flying"
+    assert stage.active.state.craft.chosen == flown
+    again = CommandRequest(command_id=uuid4(), command=commands.Hold())
+    assert (await stage.room.flights.command(mission_id, again, "ann")).accepted

@@ -1,0 +1,118 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from ground import AREA, FRAME, HOME, towards
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from backend.search.localization import Localization, localization
+from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, way_to
+from backend.spec import FlightSpec, MissionSpec, PlannerSpec, Polygon
+from hardware.readings import Place
+
+
+def task(**more: object) -> Localization:
+    planner = more.pop("planner", PlannerSpec(budget=200))
+    return localization(MissionSpec(name="m", area=AREA, planner=planner, **more), HOME)  # type: ignore[arg-type]
+
+
+def zone(*corners: tuple[float, float]) -> Polygon:
+    places = [FRAME.to_geo(*corner) for corner in (*corners, corners[0])]
+    return Polygon(coordinates=[[(p.lon, p.lat) for p in places]])
+
+
+@pytest.mark.parametrize("method", ["rollout", "base_policy"])
+def test_the_next_place_is_allowed_explained_and_repeatable(method: str) -> None:
+    made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
+    seen = [towards(0.0, -20.0, (200.0, 80.0))]
+    belief = made.planning_belief(made.planner_bearings(seen))
+    first, again = (next_place(made, belief, seen, (0.0, -20.0), 2, (), 1) for _ in range(2))
+    assert first.place == again.place
+    assert (first.place_number, first.emitter_id) == (2, "emitter-1")
+    assert first.reason
+    assert first.plan_ms > 0
+    x, y = FRAME.to_enu(first.place)
+    assert -61 <= x <= 361
+    assert -61 <= y <= 181
+    if method == "rollout":
+        assert first.expected_time_s is not None
+        assert first.time_90_s is not None
+        assert first.rollouts >= len(first.candidates) > 1
+        assert sum(c.dropped_in_round is None for c in first.candidates) == 1
+
+
+@pytest.mark.parametrize("method", ["rollout", "base_policy"])
+def test_a_refused_place_is_not_chosen_again(method: str) -> None:
+    made = task(planner=PlannerSpec(budget=200, method=method))  # type: ignore[arg-type]
+    seen = [towards(0.0, -20.0, (200.0, 80.0))]
+    belief = made.planning_belief(made.planner_bearings(seen))
+    refused: list[Place] = []
+    for _ in range(3):
+        choice = next_place(made, belief, seen, (0.0, -20.0), 2, refused, 1).place
+        assert choice not in refused
+        refused.append(choice)
+
+
+def test_the_way_goes_around_a_zone_and_straight_without_one() -> None:
+    free = task()
+    (end,) = way_to(free, (0.0, 0.0), (200.0, 0.0))
+    assert end == pytest.approx((200.0, 0.0))
+    blocked = task(flight=FlightSpec(no_fly=[zone((80, -30), (120, -30), (120, 60), (80, 60))]))
+    way = way_to(blocked, (0.0, 0.0), (200.0, 0.0))
+    assert len(way) > 1
+    assert way[-1] == pytest.approx((200.0, 0.0))
+    length = sum(math.dist(a, b) for a, b in zip([(0.0, 0.0), *way], way, strict=False))
+    assert length > 205.0
+
+
+def test_before_the_first_bearing_the_sensor_is_as_specified() -> None:
+    problem = task().problem
+
+    assert foreseen(problem, ()).sigma == pytest.approx(problem.sigma, rel=1e-12)
+
+
+def test_bearings_to_come_are_expected_as_good_as_those_that_came() -> None:
+    problem = task().problem
+    seen = [towards(0.0, -20.0, (200.0, 80.0), sigma=sigma) for sigma in (1.0, 1.0, 4.0)]
+
+    expected = (math.degrees(problem.sigma) * 1.0 * 1.0 * 4.0) ** 0.25
+
+    assert math.degrees(foreseen(problem, seen).sigma) == pytest.approx(expected)
+
+
+def test_measurements_to_come_are_expected_to_take_as_long_as_those_that_were_flown() -> None:
+    problem = task().problem
+    imported = towards(0.0, -20.0, (200.0, 80.0))
+    flown = imported.model_copy(update={"measurement_time_s": 12.0})
+
+    assert foreseen(problem, [imported]).measurement_time == problem.measurement_time
+    assert foreseen(problem, [imported, flown, flown]).measurement_time == (problem.measurement_time + 24.0) / 3.0
+
+
+def test_a_sharper_sensor_than_specified_shortens_the_forecast() -> None:
+    made = task()
+    said = [[towards(0.0, -20.0, (200.0, 80.0), sigma=sigma)] for sigma in (1.0, 7.0)]
+    belief = made.planning_belief(made.planner_bearings(said[1]))
+
+    sharp, blunt = (cost_of(made, belief, seen, (0.0, -20.0), (150.0, -30.0)).mean_s for seen in said)
+
+    assert sharp is not None
+    assert blunt is not None
+    assert sharp < 0.8 * blunt
+
+
+@given(arrays(np.float64, st.integers(1, 60), elements=st.floats(1.0, 5e3)))
+def test_the_time_in_nine_of_ten_holds_for_nine_of_ten_and_is_never_below_the_mean(times: np.ndarray) -> None:
+    bound = in_nine_of_ten(times)
+    assert bound is not None
+    assert bound >= times.mean()
+    assert np.mean(times <= bound * (1 + 1e-12)) >= 0.9 - 1 / len(times)
+
+
+def test_a_few_lost_searches_do_not_put_the_mean_above_the_time_in_nine_of_ten() -> None:
+    assert in_nine_of_ten(np.array([60.0] * 19 + [3000.0])) == 207.0
+    assert in_nine_of_ten(np.array([])) is None

@@ -1,0 +1,89 @@
+"""At least one of each kind of input to a craft, both fitting and stale ones."""
+
+from __future__ import annotations
+
+from craft_walk import ordered
+from facts import (
+    BATTERY_VETO,
+    BROKE,
+    CHECK,
+    FAILED_CHECK,
+    FAILSAFE,
+    GIVEN_BACK,
+    HOME,
+    LANDED_BY_PILOT,
+    LINK_LOST,
+    NO_ANSWER,
+    NO_PLACE,
+    NOBODY,
+    OURS,
+    PERHAPS_PILOT,
+    PILOT,
+    VETO,
+    bearing,
+    plan,
+    rejected,
+)
+
+from backend import commands
+from backend.craft import inputs
+from backend.craft.effects import TimerName
+from backend.craft.state import CraftState
+from backend.events import Link
+from backend.reasons import Interrupted
+from backend.reasons.flight import StepName
+from backend.search.state import SearchState
+
+AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NOBODY, LANDED_BY_PILOT)
+ORDERS: tuple[commands.ForCraft, ...] = (
+    commands.Start(),
+    commands.Hold(),
+    commands.Resume(),
+    commands.Return(),
+    commands.Abort(),
+    commands.Override(place=HOME),
+    commands.Accept(),
+    commands.Veto(),
+    commands.SetAutomatic(automatic=True),
+    commands.SetAutomatic(automatic=False),
+)
+LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload")
+TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing")
+STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
+
+
+def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.CraftInput]:
+    number, attempt = max(craft.place_number, 1), max(craft.attempt, 1)
+    heard = bearing(number, bearing_id=f"b{len(search.measured) + 1}")
+    return [
+        *(ordered(command) for command in ORDERS),
+        *(ordered(command, objections=(VETO,)) for command in ORDERS),
+        ordered(commands.Resume(), on_ground=True),
+        ordered(commands.Start(), start=None),
+        ordered(commands.Start(), start=inputs.StartFacts((FAILED_CHECK,), HOME, 100.0, "test")),
+        ordered(commands.Start(), start=inputs.StartFacts((CHECK,), None, None, "test")),
+        inputs.SearchChanged(),
+        inputs.InTheAir(HOME, 40.0),
+        inputs.Planned(plan(number + 1)),
+        inputs.Planned(plan(number + 1), (VETO,)),
+        inputs.Planned(plan(number + 1), (BATTERY_VETO,)),
+        inputs.NothingToPlan(NO_PLACE),
+        inputs.Arrived(HOME, 0.4, 12.0),
+        inputs.SweepTaken((heard,)),
+        inputs.SweepTaken((rejected(attempt, number),)),
+        *(inputs.WorkFailed(step, NO_ANSWER, in_air) for step in STEPS for in_air in (True, False, None)),
+        inputs.WorkVetoed((VETO,)),
+        inputs.WorkVetoed((BATTERY_VETO,)),
+        *(inputs.AuthorityHeard(authority) for authority in AUTHORITIES),
+        inputs.FailsafeEnded("HOLD"),
+        *(inputs.LinkDown(link, LINK_LOST) for link in LINKS),
+        *(inputs.LinkUp(link, 3.0) for link in LINKS),
+        inputs.BatteryLow(BATTERY_VETO),
+        inputs.BatteryReported(),
+        inputs.HomeReached(),
+        inputs.Landed(),
+        *(inputs.TimerExpired(name) for name in TIMERS),
+        inputs.Broke(BROKE),
+        *(inputs.Restarted(authority) for authority in AUTHORITIES),
+        inputs.Abandoned(Interrupted("later_mission")),
+    ]

@@ -1,0 +1,271 @@
+"""Stand-ins for what a craft holds: an obedient vehicle, a receiver that hums, a finder that knows the way."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import AsyncIterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
+from hardware.authority import Authority, CommandSent, ModeHeard, ModeKind, OperatorTookControl
+from hardware.autopilot.control import Control
+from hardware.clock import ScaledClock
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.frame import LocalFrame
+from hardware.ports import Clock, NotInControl, ReceiverError, VehicleUnreachable
+from hardware.readings import (
+    Announcement,
+    BearingReading,
+    Channel,
+    HeadingSample,
+    Place,
+    PowerSample,
+    PreflightCheck,
+    Sweep,
+    Telemetry,
+)
+from hardware.reasons.preflight import LinkChecked
+from hardware.reasons.receiver import ReceiverUnplugged
+from hardware.reasons.sweep import NoDirection
+from hardware.reasons.vehicle import ManoeuvreName, ModeNotCommanded, NoAutopilotAnswers, VehicleSilent
+from hardware.reasons.vehicle_news import OperatorInControl, TakenOver
+
+HOME = Place(50.0, 7.0)
+FRAME = LocalFrame(HOME)
+PATTERN = AntennaPattern("test", np.array([0.0, 90.0, 180.0, 270.0]), np.array([0.0, -6.0, -12.0, -6.0]))
+NOTHING = np.full(180, np.nan)
+MODES: dict[str, tuple[int, ModeKind]] = {
+    "HOLD": (1, "waiting"),
+    "POSCTL": (2, "other"),
+    "RETURN": (3, "return"),
+    "LAND": (4, "land"),
+}
+COMMANDED: dict[ManoeuvreName, frozenset[int]] = {
+    "take_off": frozenset({1}),
+    "flight": frozenset({1}),
+    "turn": frozenset({1}),
+    "hold": frozenset({1}),
+    "return": frozenset({3, 4}),
+    "landing": frozenset({4}),
+}
+"""The modes that follow from a command."""
+SECOND_HZ = 869.5e6
+
+
+def spec(emitters: Sequence[EmitterSpec] = (EmitterSpec(),), **flight: object) -> MissionSpec:
+    """A field of 200 x 100 m north of home, planned at once."""
+    ring = [FRAME.to_geo(x, y) for x, y in ((-100, 0), (100, 0), (100, 100), (-100, 100), (-100, 0))]
+    return MissionSpec(
+        name="test",
+        area=Polygon(coordinates=[[(p.lon, p.lat) for p in ring]]),
+        emitters=list(emitters),
+        planner=PlannerSpec(method="base_policy", standoff_m=0.0),
+        flight=FlightSpec(**flight),  # type: ignore[arg-type]
+    )
+
+
+TWO_EMITTERS = (EmitterSpec(), EmitterSpec(emitter_id="emitter-2", frequency_hz=SECOND_HZ))
+
+
+class FlatVehicle:
+    """Flies straight at 50 times its speed; every command is noted with its time. `stuck`: commands never finish."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.commands: list[tuple[str, float]] = []
+        self.state = Telemetry(
+            connected=True,
+            at_s=clock.now(),
+            position=HOME,
+            altitude_amsl_m=100.0,
+            altitude_relative_m=0.0,
+            heading_deg=0.0,
+            battery_percent=95.0,
+            armed=False,
+            in_air=False,
+            mode="HOLD",
+            home=HOME,
+            home_amsl_m=100.0,
+            autopilot="px4",
+        )
+        self.control = Control(lambda before, after: None)
+        self.heard = True
+        self.silence_unnoticed = False
+        self.charge_reported = True
+        self.stuck = False
+        self.reachable = True
+        self.headings_heard: list[HeadingSample] = []
+        self.announced: asyncio.Queue[Announcement] = asyncio.Queue()
+
+    async def connect(self, timeout_s: float = 30.0) -> None:
+        if not self.reachable:
+            raise VehicleUnreachable(NoAutopilotAnswers("udpin://nowhere", timeout_s))
+
+    async def close(self) -> None:
+        pass
+
+    def telemetry(self) -> Telemetry:
+        now = self.clock.now()
+        if self.heard:
+            battery_at_s = now if self.charge_reported else self.state.battery_at_s
+            self.state = replace(
+                self.state, at_s=now, position_at_s=now, heading_at_s=now, battery_at_s=battery_at_s, mode_at_s=now
+            )
+        connected = self.heard or self.silence_unnoticed
+        return replace(self.state, connected=connected, authority=self.control.authority)
+
+    def shows(self, mode: str, after_silence: bool = False) -> None:
+        """The autopilot reports this mode."""
+        self.state = replace(self.state, mode=mode)
+        armed, in_air = bool(self.state.armed), bool(self.state.in_air)
+        number, kind = MODES[mode]
+        self.control.see(ModeHeard(number, kind, mode, armed, in_air, after_silence, self.clock.now()))
+
+    def headings(self, since_s: float) -> list[HeadingSample]:
+        return [h for h in self.headings_heard if h.at_s >= since_s]
+
+    async def changes(self) -> AsyncIterator[Announcement]:
+        while True:
+            yield await self.announced.get()
+
+    async def preflight(self) -> list[PreflightCheck]:
+        silent = VehicleSilent("take_off", 9.0)
+        return [PreflightCheck("vehicle_link", self.heard, LinkChecked("px4") if self.heard else silent)]
+
+    def _order(self, name: str, manoeuvre: ManoeuvreName) -> None:
+        authority = self.control.authority
+        if authority.taken_by is not None:
+            who = "nobody" if authority.who == "ours" else authority.who
+            raise NotInControl(ModeNotCommanded(manoeuvre, authority.mode or "", who))
+        if not self.heard:
+            raise VehicleUnreachable(VehicleSilent(manoeuvre, 9.0))
+        self.commands.append((name, self.clock.now()))
+        self.control.see(CommandSent(COMMANDED[manoeuvre]))
+
+    async def _takes(self, seconds: float) -> None:
+        await self.clock.sleep(math.inf if self.stuck else seconds)
+
+    async def take_off(self, altitude_relative_m: float) -> None:
+        self._order("take_off", "take_off")
+        await self._takes(2.0)
+        self.state = replace(
+            self.state,
+            armed=True,
+            in_air=True,
+            altitude_relative_m=altitude_relative_m,
+            altitude_amsl_m=100.0 + altitude_relative_m,
+        )
+        self.shows("HOLD")
+
+    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
+        self._order("goto", "flight")
+        await self._takes(2.0)
+        self.state = replace(self.state, position=place)
+
+    async def turn(self, rate_deg_s: float) -> None:
+        self._order("turn", "turn")
+        seconds, steps = 360.0 / rate_deg_s, 80
+        for step in range(steps + 1):
+            heading = 360.0 * step / steps % 360.0
+            self.headings_heard.append(HeadingSample(self.clock.now(), heading, self.state.position))
+            await self._takes(seconds / steps)
+
+    async def hold(self) -> None:
+        self._order("hold", "hold")
+        self._stops()
+
+    async def return_home(self) -> None:
+        self._order("return_home", "return")
+        await self._takes(1.0)
+        self.state = replace(self.state, position=HOME)
+
+    async def land(self) -> None:
+        self._order("land", "landing")
+
+    def _stops(self) -> None:
+        if self.state.in_air:
+            self.shows("HOLD")
+
+    def touch_down(self) -> None:
+        self.state = replace(self.state, armed=False, in_air=False, altitude_relative_m=0.0)
+        self.shows("HOLD")
+
+    def pilot_takes_over(self) -> None:
+        self.shows("POSCTL")
+        self.announced.put_nowait(Announcement(self.clock.now(), TakenOver("pilot", "POSCTL")))
+
+    def pilot_gives_back(self) -> None:
+        """Some seconds later."""
+        self.state = replace(self.state, mode="HOLD")
+        number, kind = MODES["HOLD"]
+        self.control.see(ModeHeard(number, kind, "HOLD", True, True, False, self.clock.now() + 2.0))
+
+    def take_control(self) -> None:
+        before = self.control.authority
+        self.control.see(OperatorTookControl())
+        if self.control.authority != before:
+            self.announced.put_nowait(Announcement(self.clock.now(), OperatorInControl()))
+
+    def restore(self, authority: Authority) -> None:
+        self.control.restore(authority)
+        self.shows(self.state.mode or "HOLD", after_silence=True)
+
+    @property
+    def names(self) -> list[str]:
+        return [name for name, _ in self.commands]
+
+
+class HummingReceiver:
+    """One level all the time: the directions come from `PointingFinder`.
+
+    `mute` and `gone` are its faults; while `unheard`, no pulse that is due is heard.
+    """
+
+    def __init__(self, clock: ScaledClock) -> None:
+        self.clock = clock
+        self.mute = False
+        self.gone = False
+        self.unheard = False
+        self.frequencies_hz: list[float] = []
+
+    async def open(self, channels: Sequence[Channel]) -> None:
+        if self.gone:
+            raise ReceiverError(ReceiverUnplugged())
+        self.frequencies_hz = [channel.frequency_hz for channel in channels]
+
+    async def close(self) -> None:
+        pass
+
+    async def samples(self) -> AsyncIterator[PowerSample]:
+        while True:
+            await self.clock.sleep(0.2)
+            if self.gone:
+                raise ReceiverError(ReceiverUnplugged())
+            for frequency_hz in () if self.mute else self.frequencies_hz:
+                yield PowerSample(self.clock.now(), frequency_hz, -60.0, detected=not self.unheard)
+
+
+class PointingFinder:
+    """Knows where the emitters are. The first `rejected` sweeps are refused. others: targets by frequency."""
+
+    def __init__(
+        self,
+        target: tuple[float, float],
+        rejected: int = 0,
+        others: Mapping[float, tuple[float, float]] | None = None,
+    ) -> None:
+        self.target = target
+        self.rejected = rejected
+        self.others = dict(others or {})
+
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        east, north = FRAME.to_enu(sweep.position)
+        target = self.others.get(sweep.frequency_hz, self.target)
+        bearing = math.degrees(math.atan2(target[0] - east, target[1] - north)) % 360.0
+        accepted = self.rejected <= 0
+        self.rejected -= 1
+        reason = None if accepted else NoDirection()
+        return BearingReading(bearing, 3.0, 0.95 if accepted else 0.2, accepted, reason, (), NOTHING, NOTHING)

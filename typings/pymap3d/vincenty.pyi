@@ -1,0 +1,6 @@
+"""What Crossfix calls of pymap3d.vincenty 3.2. Angles in degrees, lengths in metres."""
+
+from typing import SupportsFloat
+
+def vdist(Lat1: float, Lon1: float, Lat2: float, Lon2: float) -> tuple[SupportsFloat, SupportsFloat]: ...
+def vreckon(Lat1: float, Lon1: float, Rng: float, Azim: float) -> tuple[SupportsFloat, SupportsFloat]: ...

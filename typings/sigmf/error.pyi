@@ -1,0 +1,3 @@
+"""The errors of sigmf 1.14."""
+
+class SigMFError(Exception): ...
