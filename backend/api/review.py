@@ -96,7 +96,7 @@ async def get_belief(
         recorded = [record for record in recorded if record.seq <= seq]
     frame = await asyncio.to_thread(belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
-        raise not_found("belief", f"at the event {seq}")
+        raise not_found("belief_at", str(seq))
     return Response(frame, media_type="application/octet-stream")
 
 
@@ -109,7 +109,7 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
     async with services.planning:
         found = await asyncio.to_thread(what_if, mission_id, recorded, request, antenna)
     if found is None:
-        raise not_found("belief", f"after {request.bearings} bearings")
+        raise not_found("belief_after", str(request.bearings))
     return found
 
 

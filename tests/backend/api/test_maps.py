@@ -109,7 +109,7 @@ async def test_layers_for_the_page(client: httpx.AsyncClient, uploaded: dict) ->
 
 @pytest.mark.parametrize(
     ("content", "words"),
-    [(b"", "empty"), (b"<html>", "web page"), (archive_bytes()[:500], "less than it says")],
+    [(b"", "empty"), (b"<html>", "web page"), (archive_bytes()[:500], "less than it states")],
 )
 async def test_a_bad_file_is_refused_and_nothing_kept(
     client: httpx.AsyncClient, settings: Settings, content: bytes, words: str

@@ -24,7 +24,6 @@ VIEW = "view-0001"
 
 @pytest.fixture
 async def scenes(app: FastAPI, services) -> AsyncIterator[FastAPI]:
-    services.missions.active_mission_id = None
     await services.journal.append("m1", [MissionDrafted(spec=MissionSpec(name="draft", area=AREA))])
     yield app
     await close_scene_views(app)

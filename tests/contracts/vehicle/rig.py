@@ -86,6 +86,6 @@ async def ready(vehicle: Vehicle, clock: ScaledClock) -> None:
         await clock.sleep(1.0)
 
 
-async def ends_with(task: asyncio.Task[None], error: type[BaseException], says: str = "") -> None:
+async def ends_with(task: asyncio.Task[None], error: type[BaseException], says: str | None = None) -> None:
     with pytest.raises(error, match=says):
         await asyncio.wait_for(task, 60)
