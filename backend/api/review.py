@@ -96,7 +96,7 @@ async def get_belief(
         recorded = [record for record in recorded if record.seq <= seq]
     frame = await asyncio.to_thread(belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
-        raise not_found("belief_at", str(seq))
+        raise not_found("belief_at", str(seq)) if emitter is None else not_found("belief_about", emitter)
     return Response(frame, media_type="application/octet-stream")
 
 

@@ -8,7 +8,18 @@ from typing import ClassVar, Literal
 from planner.reason import Words
 
 NothingKind = Literal[
-    "mission", "page", "belief_at", "belief_after", "sweep", "map", "overlay", "file", "recording", "craft", "scene"
+    "mission",
+    "page",
+    "belief_about",
+    "belief_at",
+    "belief_after",
+    "sweep",
+    "map",
+    "overlay",
+    "file",
+    "recording",
+    "craft",
+    "scene",
 ]
 
 
@@ -80,15 +91,15 @@ class RequestInvalid:
 
 @dataclass(frozen=True, slots=True)
 class NothingThere:
-    """which: its name or id; of a belief the number of the event it stood at, or of the bearings it is made from."""
+    """which: its name or id; of a belief the emitter, or the number of the event or of the bearings."""
 
     what: NothingKind
     which: str
     code: Literal["nothing_there"] = "nothing_there"
     english: ClassVar[Words] = Words(
-        "There is no {what?mission=mission|page=page|belief_at=belief at the event|belief_after=belief after this many "
-        "bearings:|sweep=sweep|map=map|overlay=overlay|file=file|recording=recording|craft=craft|scene=3D view} "
-        "{which}.",
+        "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event"
+        "|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|file=file"
+        "|recording=recording|craft=craft|scene=3D view} {which}.",
         "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
     )
 

@@ -1057,7 +1057,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Correct the named fields and send it again.",
   },
   nothing_there: {
-    text: "There is no {what?mission=mission|page=page|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
+    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
     remedy: "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
   },
   http_refused: {

@@ -3251,10 +3251,10 @@ export interface components {
              */
             code: "nothing_stores";
         };
-        /** @description which: its name or id; of a belief the number of the event it stood at, or of the bearings it is made from. */
+        /** @description which: its name or id; of a belief the emitter, or the number of the event or of the bearings. */
         NothingThere: {
             /** @enum {string} */
-            what: "mission" | "page" | "belief_at" | "belief_after" | "sweep" | "map" | "overlay" | "file" | "recording" | "craft" | "scene";
+            what: "mission" | "page" | "belief_about" | "belief_at" | "belief_after" | "sweep" | "map" | "overlay" | "file" | "recording" | "craft" | "scene";
             which: string;
             /**
              * @description discriminator enum property added by openapi-typescript

@@ -161,7 +161,7 @@ async def test_the_belief_about_another_emitter_is_asked_for_by_its_name(client,
         "flown", "tag", seq, 1, belief.density, TAG_TASK.corners_lon_lat(belief), lite=False
     )
     unknown = await client.get(f"{flown}/beliefs", params={"emitter": "fox"})
-    assert (unknown.status_code, unknown.json()["reason"]["what"]) == (404, "belief")
+    assert (unknown.status_code, unknown.json()["reason"]["what"]) == (404, "belief_about")
 
 
 async def test_a_belief_from_before_the_area_changed_is_rebuilt_too(client, services, flown):
