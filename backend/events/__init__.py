@@ -1,0 +1,177 @@
+"""The facts of a mission, in the past tense. The journal stores them; state is a fold of them.
+
+Every event has a `kind`, and the id of the craft or the emitter that it speaks of. A stored event is wrapped in
+`Recorded` with its sequence number and UTC time. Bearings: degrees clockwise from true north. Rejected wishes are facts
+too (`CommandRefused`): the review must show them. by: who ordered it, None when the mission did by itself.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated
+
+from pydantic import Field
+
+from backend.events.alerts import (
+    AlertAcknowledged,
+    AlertCleared,
+    AlertRaised,
+    Link,
+    LinkLost,
+    LinkRestored,
+    SafetyVetoed,
+    Topic,
+)
+from backend.events.bearings import (
+    AntennaFact,
+    BearingExcluded,
+    BearingMeasured,
+    BearingSource,
+    CraftSource,
+    ImportSource,
+    Peak,
+    PersonSource,
+    RecordingImported,
+    SweepRejected,
+)
+from backend.events.belief import BeliefUpdated, EstimateFact
+from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
+from backend.events.craft import (
+    FIRST_CRAFT,
+    AuthorityChanged,
+    FlightStarted,
+    MissionStarted,
+    Phase,
+    PhaseChanged,
+    PlaceReached,
+    SweepStarted,
+    TookOff,
+)
+from backend.events.fact import Fact, Known
+from backend.events.mission import (
+    AreaChanged,
+    MissionDrafted,
+    MissionEdited,
+    MissionEnded,
+    MissionPhase,
+    Outcome,
+    ServerRestarted,
+)
+from backend.events.orders import (
+    AbortOrdered,
+    AutomaticChanged,
+    CommandAccepted,
+    CommandRefused,
+    HoldOrdered,
+    ResumeOrdered,
+    ReturnOrdered,
+)
+from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
+from backend.spec import Model
+
+__all__ = [
+    "FIRST_CRAFT",
+    "FORM",
+    "AbortOrdered",
+    "AlertAcknowledged",
+    "AlertCleared",
+    "AlertRaised",
+    "AntennaChecked",
+    "AntennaFact",
+    "AreaChanged",
+    "AuthorityChanged",
+    "AutomaticChanged",
+    "BearingExcluded",
+    "BearingMeasured",
+    "BearingSource",
+    "BeliefUpdated",
+    "CandidateFact",
+    "CheckFact",
+    "CommandAccepted",
+    "CommandRefused",
+    "CraftSource",
+    "EstimateFact",
+    "Event",
+    "Fact",
+    "FlightStarted",
+    "HoldOrdered",
+    "ImportSource",
+    "Known",
+    "Link",
+    "LinkLost",
+    "LinkRestored",
+    "MissionDrafted",
+    "MissionEdited",
+    "MissionEnded",
+    "MissionPhase",
+    "MissionStarted",
+    "Outcome",
+    "Peak",
+    "PersonSource",
+    "Phase",
+    "PhaseChanged",
+    "PlaceReached",
+    "PlanChosen",
+    "PlanVetoed",
+    "PreflightChecked",
+    "Recorded",
+    "RecordingImported",
+    "ResumeOrdered",
+    "ReturnOrdered",
+    "SafetyVetoed",
+    "ServerRestarted",
+    "SweepRejected",
+    "SweepStarted",
+    "TookOff",
+    "Topic",
+]
+
+FORM = 2
+"""Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
+
+Event = Annotated[
+    MissionDrafted
+    | MissionEdited
+    | AreaChanged
+    | PreflightChecked
+    | AntennaChecked
+    | MissionStarted
+    | PhaseChanged
+    | TookOff
+    | PlanChosen
+    | PlanVetoed
+    | FlightStarted
+    | PlaceReached
+    | SweepStarted
+    | SweepRejected
+    | BearingMeasured
+    | RecordingImported
+    | BearingExcluded
+    | BeliefUpdated
+    | HoldOrdered
+    | ResumeOrdered
+    | ReturnOrdered
+    | AbortOrdered
+    | AutomaticChanged
+    | AuthorityChanged
+    | CommandAccepted
+    | CommandRefused
+    | SafetyVetoed
+    | LinkLost
+    | LinkRestored
+    | AlertRaised
+    | AlertAcknowledged
+    | AlertCleared
+    | ServerRestarted
+    | MissionEnded,
+    Field(discriminator="kind"),
+]
+
+
+class Recorded(Model):
+    """A stored event: `seq` counts from 1 without gaps within a mission."""
+
+    seq: int
+    mission_id: str
+    at_utc: datetime
+    event: Event

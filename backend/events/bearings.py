@@ -1,0 +1,121 @@
+"""What a bearing says and where it comes from: sweeps, recordings, people. Degrees clockwise from true north."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from backend.events.fact import Fact, Known
+from backend.reasons import Reason
+from backend.spec import Id, Place
+
+
+class AntennaFact(Fact):
+    """relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
+    front points so far clockwise of the nose."""
+
+    name: str
+    relative_bearing_deg: list[float]
+    gain_db: list[float]
+    offset_to_nose_deg: float
+    frequency_hz: Known
+
+
+class CraftSource(Fact):
+    """A craft's own sweep."""
+
+    kind: Literal["craft"] = "craft"
+    craft_id: Id
+
+
+class ImportSource(Fact):
+    """A sweep out of a recording."""
+
+    kind: Literal["import"] = "import"
+    recording_id: str
+
+
+class PersonSource(Fact):
+    """Somebody with an antenna in their hand."""
+
+    kind: Literal["person"] = "person"
+    name: str
+
+
+BearingSource = Annotated[CraftSource | ImportSource | PersonSource, Field(discriminator="kind")]
+"""Who took a bearing: each source has errors of its own."""
+
+
+class Peak(Fact):
+    bearing_deg: float
+    weight: float
+
+
+class SweepRejected(Fact):
+    kind: Literal["sweep_rejected"] = "sweep_rejected"
+    emitter_id: Id
+    source: BearingSource
+    sweep_id: str
+    place_number: int
+    attempt: int
+    quality: float
+    reason: Reason
+    place: Place
+    binned_db: list[Known]
+    fitted_db: list[Known]
+
+
+class BearingMeasured(Fact):
+    """sweep_id None, binned_db and fitted_db empty: no sweep was kept (a person's bearing). binned_db, fitted_db: 180
+    bins of 2 degrees of antenna heading (true), None where nothing was heard.
+
+    measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
+    heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
+    """
+
+    kind: Literal["bearing_measured"] = "bearing_measured"
+    emitter_id: Id
+    source: BearingSource
+    bearing_id: str
+    sweep_id: str | None
+    place_number: int
+    place: Place
+    altitude_amsl_m: float
+    bearing_deg: float
+    sigma_deg: float
+    quality: float
+    peaks: list[Peak]
+    snr_db: Known
+    drift_m: float
+    binned_db: list[Known]
+    fitted_db: list[Known]
+    measurement_time_s: Known = None
+    heading_sigma_deg: float = 0.0
+
+
+class RecordingImported(Fact):
+    """Recorded sweeps of an emitter were brought in; their facts follow. recording_id: SHA-256 of the files and of what
+    was said about them. recorded_at_utc: of the first sample, None when nobody told. remarks: what was not understood
+    and why.
+    """
+
+    kind: Literal["recording_imported"] = "recording_imported"
+    emitter_id: Id
+    recording_id: str
+    filename: str
+    by: str
+    recorded_at_utc: datetime | None
+    sweep_ids: list[str]
+    remarks: list[Reason]
+    antenna: AntennaFact | None = None
+
+
+class BearingExcluded(Fact):
+    kind: Literal["bearing_excluded"] = "bearing_excluded"
+    emitter_id: Id
+    bearing_id: str
+    by: str
+    reason: str
+    """In the operator's own words."""

@@ -1,0 +1,44 @@
+"""What is believed of an emitter after its bearings."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from backend.events.fact import Fact, Known
+from backend.reasons import Reason
+from backend.spec import Area, Id
+
+
+class EstimateFact(Fact):
+    """Axes: semi-axes of one standard deviation; `major_axis_deg` compass bearing of the longer, in [0, 180)."""
+
+    lat: float
+    lon: float
+    expected_rmse_m: float
+    c95: Area
+    c95_area_m2: float
+    major_axis_m: float
+    minor_axis_m: float
+    major_axis_deg: float
+
+
+class BeliefUpdated(Fact):
+    """The belief about one emitter after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt
+    belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
+    `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
+    against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
+    significant: then nothing is claimed."""
+
+    kind: Literal["belief_updated"] = "belief_updated"
+    emitter_id: Id
+    bearings: int
+    estimate: EstimateFact | None
+    consistent: bool
+    localized: bool
+    not_yet: list[Reason]
+    contradicting: list[str] = Field(default_factory=list[str])
+    heading_offset_deg: Known = None
+    heading_offset_std_error_deg: Known = None
+    digest: str

@@ -1,0 +1,88 @@
+"""What a craft does, where it is, and who flies it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from backend.events.bearings import AntennaFact
+from backend.events.fact import Fact
+from backend.reasons import Reason
+from backend.spec import Id, Place
+from hardware.authority import Authority
+
+FIRST_CRAFT = "craft-1"
+
+Phase = Literal[
+    "ground",  # not flying for this mission
+    "taking_off",
+    "planning",  # choosing the next place
+    "waiting",  # a place is proposed, the operator must accept
+    "flying",
+    "measuring",
+    "hold",  # hovering until an operator resumes
+    "manual",  # the pilot has control
+    "returning",
+    "landing",
+]
+"""What a craft does."""
+
+
+class MissionStarted(Fact):
+    """A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
+    None: nobody kept it."""
+
+    kind: Literal["mission_started"] = "mission_started"
+    craft_id: Id
+    by: str
+    home: Place
+    home_amsl_m: float
+    software: str
+    antenna: AntennaFact | None = None
+
+
+class PhaseChanged(Fact):
+    kind: Literal["phase_changed"] = "phase_changed"
+    craft_id: Id
+    before: Phase
+    after: Phase
+    reason: Reason
+
+
+class TookOff(Fact):
+    kind: Literal["took_off"] = "took_off"
+    craft_id: Id
+    place: Place
+    altitude_relative_m: float
+
+
+class FlightStarted(Fact):
+    kind: Literal["flight_started"] = "flight_started"
+    craft_id: Id
+    place_number: int
+    place: Place
+    altitude_amsl_m: float
+
+
+class PlaceReached(Fact):
+    kind: Literal["place_reached"] = "place_reached"
+    craft_id: Id
+    place_number: int
+    place: Place
+    distance_m: float
+    flight_time_s: float
+
+
+class SweepStarted(Fact):
+    kind: Literal["sweep_started"] = "sweep_started"
+    craft_id: Id
+    place_number: int
+    attempt: int
+
+
+class AuthorityChanged(Fact):
+    """Who flies the craft from now on. by: the operator whose deed it was, None when the vehicle showed it."""
+
+    kind: Literal["authority_changed"] = "authority_changed"
+    craft_id: Id
+    authority: Authority
+    by: str | None = None

@@ -1,0 +1,49 @@
+"""Which place comes next, and what else could have been chosen."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from backend.events.fact import Fact, Known
+from backend.reasons import Reason
+from backend.spec import Id, Place
+
+
+class CandidateFact(Fact):
+    """One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none."""
+
+    lat: float
+    lon: float
+    value_s: float
+    std_error_s: Known
+    rollouts: int
+    dropped_in_round: int | None
+
+
+class PlanChosen(Fact):
+    """The next measurement place. `emitter_id`: the emitter it is to tell most of, None of an operator's.
+    `place_number` counts places from 1. `expected_time_s`: mean time until localized by way of this place; `time_90_s`:
+    not exceeded in 90 % of the rollouts (None when not sampled)."""
+
+    kind: Literal["plan_chosen"] = "plan_chosen"
+    craft_id: Id
+    emitter_id: Id | None = None
+    place_number: int
+    place: Place
+    source: Literal["planner", "operator"]
+    reason: Reason
+    expected_time_s: Known
+    time_90_s: Known
+    candidates: list[CandidateFact]
+    rollouts: int
+    plan_ms: float
+    by: str | None = None
+
+
+class PlanVetoed(Fact):
+    """The operator refused the proposed place; the planner chooses again without it."""
+
+    kind: Literal["plan_vetoed"] = "plan_vetoed"
+    craft_id: Id
+    place: Place
+    by: str
