@@ -1,3 +1,4 @@
+import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
 
 const server = process.env.CROSSFIX_SERVER ?? "http://127.0.0.1:8600";
@@ -5,16 +6,31 @@ const server = process.env.CROSSFIX_SERVER ?? "http://127.0.0.1:8600";
 /** What the safety bar needs comes in one file instead of fifteen. */
 const bar = { name: "bar", tags: ["$initial" as const] };
 
-export default defineConfig({
+/** MapLibre and all that it imports, in one file: the page and MapLibre's worker both run it. */
+const map = { name: "maplibre", test: /maplibre-gl\/src|maplibreWorker/ };
+
+const here = (path: string) => fileURLToPath(new URL(path, import.meta.url));
+
+/** ADR 16. The development server uses the package's finished files. */
+const builtFromSources = [
+  { find: /^maplibre-gl$/, replacement: here("node_modules/maplibre-gl/src/index.ts") },
+  { find: "maplibre-gl/dist/maplibre-gl-worker.mjs?worker&url", replacement: here("src/map/maplibreWorker.ts") },
+  { find: "maplibre-gl/worker", replacement: here("node_modules/maplibre-gl/src/source/worker.ts") },
+];
+
+export default defineConfig(({ command }) => ({
   base: "./",
   worker: { format: "es" },
+  resolve: { alias: command === "build" ? builtFromSources : [] },
+  // MapLibre declares fields that its base classes fill
+  oxc: { assumptions: { setPublicClassFields: true }, typescript: { removeClassFieldsWithoutInitializer: true } },
   build: {
     target: "es2022",
     sourcemap: false,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
-    rolldownOptions: { output: { codeSplitting: { groups: [bar] } } },
+    rolldownOptions: { output: { codeSplitting: { groups: [map, bar] } } },
   },
   server: { host: "127.0.0.1", proxy: { "/api": { target: server, ws: true } } },
   test: { setupFiles: ["src/i18n/forTests.ts"], include: ["src/**/*.test.ts", "src/**/*.test.tsx"] },
-});
+}));

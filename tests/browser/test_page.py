@@ -12,6 +12,8 @@ from playwright.sync_api import Browser, Response, Route, expect
 from screen import AUTOMATIC, OpenScreen, Screen
 from served import REPOSITORY, Server
 
+from tests.benchmarks.page_weight import weights
+
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
 
 
@@ -53,25 +55,9 @@ def test_no_request_leaves_the_machine(server: Server, loaded: list[Response]) -
     print(f"page weight {sum(weight.values())} bytes gzipped in {len(weight)} files")
 
 
-@pytest.mark.xfail(strict=True, reason="620.8 kB: the sentences of the reasons in two languages")
 def test_the_whole_page_is_light() -> None:
     """Every file that is built: editor, both languages and the example too, whoever opens them."""
-    files = [path for path in (REPOSITORY / "frontend" / "dist").rglob("*") if path.is_file()]
-    assert (REPOSITORY / "frontend" / "dist" / "index.html") in files
-    assert sum(len(gzip.compress(path.read_bytes())) for path in files) < WEIGHT_LIMIT_BYTES
-
-
-@pytest.mark.parametrize(("language", "other"), [("en", ("de-", "reasons.de-")), ("de", ("reasons.en-",))])
-def test_the_whole_page_is_light_in_either_language(language: str, other: tuple[str, ...]) -> None:
-    """Every file that a flight, the editor and the review can fetch; the recorded example is not the page."""
-    files = [path for path in (REPOSITORY / "frontend" / "dist").rglob("*") if path.is_file()]
-    size = {path: len(gzip.compress(path.read_bytes())) for path in files}
-    fetched = [path for path in files if path.name != "example.json" and not path.name.startswith(other)]
-    weight = sum(size[path] for path in fetched)
-    print(f"whole page {sum(size.values())} bytes gzipped in {len(files)} files; in {language} {weight}")
-    assert (REPOSITORY / "frontend" / "dist" / "index.html") in files
-    assert len(files) - len(fetched) == 1 + len(other)
-    assert weight < WEIGHT_LIMIT_BYTES
+    assert sum(weights().values()) < WEIGHT_LIMIT_BYTES
 
 
 def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Server, browser: Browser) -> None:
