@@ -69,11 +69,29 @@ def field_problems(error: RequestValidationError) -> list[FieldProblem]:
     """pydantic's findings with the place they are about; "body" is left off, query and path names stay."""
     found: list[FieldProblem] = []
     for item in error.errors():
-        location = [str(part) for part in item["loc"]]
-        if location and location[0] in {"body", "query", "path"}:
+        location: list[int | str] = list(item["loc"])
+        if location and location[0] == "body":
+            location = without_tags(location[1:], error.body)
+        elif location and location[0] in {"query", "path"}:
             location = location[1:]
-        found.append(FieldProblem(field=".".join(location), reason=_field_reason(item)))
+        found.append(FieldProblem(field=".".join(map(str, location)), reason=_field_reason(item)))
     return found
+
+
+def without_tags(location: list[int | str], sent: object) -> list[int | str]:
+    """The place in what was sent: pydantic names the member of a union (its `kind` or `type`) as if it were a field."""
+    path: list[int | str] = []
+    for part in location:
+        if isinstance(sent, dict) and part not in sent and part in {sent.get("kind"), sent.get("type")}:
+            continue
+        path.append(part)
+        if isinstance(sent, dict):
+            sent = sent.get(part)
+        elif isinstance(sent, list) and isinstance(part, int) and part < len(sent):
+            sent = sent[part]
+        else:
+            sent = None
+    return path
 
 
 def _field_reason(item: dict[str, Any]) -> Reason:

@@ -61,6 +61,17 @@ async def test_a_wrong_field_is_named(client):
     assert [(error["field"], error["reason"]["code"]) for error in problem["errors"]] == [("colour", "field_unknown")]
 
 
+async def test_a_wrong_field_of_one_of_several_kinds_is_named_as_it_was_sent(client):
+    ring = {"kind": "ring", "centre": {"lat": 50, "lon": 7}, "inner_m": -1}
+    sent = spec(emitters=[{"prior": ring}], planner={"motion": {"kind": "linear", "speed_m_s": -3}})
+    problem = is_problem(await client.post("/api/missions", json=sent), 422)
+    assert [error["field"] for error in problem["errors"]] == [
+        "emitters.0.prior.inner_m",
+        "emitters.0.prior.outer_m",
+        "planner.motion.speed_m_s",
+    ]
+
+
 @pytest.mark.parametrize("body", [b"", b"{", b"[" * 100_000, b"\xff\xfe", b'{"name": NaN}', b"1" * 5000])
 async def test_a_body_that_is_no_json_is_a_problem(client, body):
     reply = await client.post("/api/missions", content=body, headers={"content-type": "application/json"})
