@@ -73,14 +73,15 @@ class BackAfterRestart:
 
 @dataclass(frozen=True, slots=True)
 class PilotFlies:
-    """mode: as the autopilot names it. perhaps_failsafe: its failsafe enters that mode by itself, too."""
+    """mode: as the autopilot names it, empty when the sticks took control. perhaps_failsafe: its failsafe enters that
+    mode by itself, too."""
 
     mode: str
     perhaps_failsafe: bool = False
     code: Literal["pilot_flies"] = "pilot_flies"
     english: ClassVar[Words] = Words(
-        "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control: "
-        "the vehicle is in {mode}.",
+        "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control"
+        "{mode?=, taken with the sticks|*=: the vehicle is in }{mode}.",
         "Resume when the pilot has given control back.",
     )
 

@@ -185,15 +185,6 @@ class TwoRecordings:
 
 
 @dataclass(frozen=True, slots=True)
-class IqOptionsUnused:
-    file: str
-    code: Literal["iq_options_unused"] = "iq_options_unused"
-    english: ClassVar[Words] = Words(
-        "Frequency and pulses are looked for in IQ only; the powers of {file} are taken as they are."
-    )
-
-
-@dataclass(frozen=True, slots=True)
 class ExportUnreadable:
     """What was sent cannot be read as an exported mission. later: a later Crossfix exported it."""
 
@@ -271,7 +262,6 @@ RequestReason = (
     | HalfGiven
     | TooManyFiles
     | TwoRecordings
-    | IqOptionsUnused
     | ExportUnreadable
     | UploadBrokeOff
     | NoPayloadExpected

@@ -114,13 +114,6 @@ class RecordingTooLong:
 
 
 @dataclass(frozen=True, slots=True)
-class RecordingWithoutPlace:
-    file: str
-    code: Literal["recording_without_place"] = "recording_without_place"
-    english: ClassVar[Words] = Words("The file {file} does not say where it was recorded.", "Name the place beside it.")
-
-
-@dataclass(frozen=True, slots=True)
 class RecordingTooFar:
     distance_m: float
     code: Literal["recording_too_far"] = "recording_too_far"
@@ -189,7 +182,6 @@ SearchReason = (
     | Localized
     | LocalizedAgainst
     | RecordingTooLong
-    | RecordingWithoutPlace
     | RecordingTooFar
     | ImportRemark
     | OtherFrequency

@@ -27,6 +27,7 @@ from hardware.direction_finding.recordings import RecordedSweep, Recording, moun
 from hardware.frame import LocalFrame
 from hardware.ports import DirectionFinder
 from hardware.readings import Place, Sweep
+from hardware.reasons.table import PlaceNotStated
 
 FAR_M = 50_000.0
 """A sweep taken further from the area belongs to another mission."""
@@ -146,7 +147,7 @@ def _prepared(
     elif recorded.place_known:
         place = sweep.position
     else:
-        raise MissionInputError(reasons.RecordingWithoutPlace(upload.filename), "lat")
+        raise MissionInputError(PlaceNotStated(upload.filename), "lat")
     _refuse_far(place, mission)
     if sweep.frequency_hz > 0 and abs(sweep.frequency_hz / emitter.frequency_hz - 1.0) > OTHER_FREQUENCY:
         remarks.append(reasons.OtherFrequency(upload.filename, sweep.frequency_hz, emitter.frequency_hz))

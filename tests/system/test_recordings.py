@@ -160,7 +160,7 @@ async def test_what_cannot_be_imported_leaves_nothing_behind(operator: Console, 
     for files, words, expected in (
         ((empty,), place, "file_unusable"),
         ((text,), place, "columns_unknown"),
-        ((good,), {}, "recording_without_place"),
+        ((good,), {}, "place_not_stated"),
         ((good,), {"lat": 50.6}, "half_given"),
         ((good,), {"lat": 95, "lon": 7}, "lat"),
         ((good,), place | {"at_utc": "yesterday"}, "at_utc"),

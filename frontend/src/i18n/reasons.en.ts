@@ -814,7 +814,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Look at the vehicle, then resume.",
   },
   pilot_flies: {
-    text: "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control: the vehicle is in {mode}.",
+    text: "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control{mode?=, taken with the sticks|*=: the vehicle is in }{mode}.",
     remedy: "Resume when the pilot has given control back.",
   },
   failsafe_flies: {
@@ -1092,10 +1092,6 @@ export const reasonsEn: ReasonTable = {
     text: "The files {first} and {second} are two recordings.",
     remedy: "Upload them one after the other.",
   },
-  iq_options_unused: {
-    text: "Frequency and pulses are looked for in IQ only; the powers of {file} are taken as they are.",
-    remedy: "",
-  },
   export_unreadable: {
     text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
@@ -1235,10 +1231,6 @@ export const reasonsEn: ReasonTable = {
   recording_too_long: {
     text: "The recording holds {sweeps} sweeps.",
     remedy: "Import at most {most} at once.",
-  },
-  recording_without_place: {
-    text: "The file {file} does not say where it was recorded.",
-    remedy: "Name the place beside it.",
   },
   recording_too_far: {
     text: "The recording was taken {distance_m} from the mission's area.",

@@ -50,9 +50,13 @@ function chosen(choice: string, value: unknown): string {
   return words.get(value === null ? "none" : String(value)) ?? words.get("*") ?? String(value);
 }
 
+/** Who acts while nobody signs in has a name that is no person's. */
+export const personNameIn = (language: Language, by: string): string => (by === "operator" && language === "de" ? "Bediener" : by);
+
 function put(name: string, value: unknown, decimals: number | null, shown: Shown): string {
   if (Array.isArray(value)) return several(value, (one) => put(name, one, decimals, shown), value.some(isReason) ? " " : ", ");
   if (isReason(value)) return textIn(shown, value);
+  if (name === "by") return personNameIn(shown.language, String(value));
   if (typeof value !== "number") return String(value);
   const form = FORMS.find(([suffix]) => name.endsWith(suffix))?.[1] ?? plain;
   return form(value, decimals, shown);

@@ -22,7 +22,6 @@ from backend.reasons.search import (
     OtherFrequency,
     RecordingTooFar,
     RecordingTooLong,
-    RecordingWithoutPlace,
 )
 from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
@@ -30,7 +29,7 @@ from backend.search.state import SearchState, evolve
 from backend.spec import MissionSpec
 from hardware.direction_finding.recordings import RecordedSweep, Recording
 from hardware.readings import Place, Sweep
-from hardware.reasons.table import CellUnusable
+from hardware.reasons.table import CellUnusable, PlaceNotStated
 
 TARGET = (30.0, 60.0)
 REMARK = CellUnusable("turn.csv", 7, 1, "north", "heading")
@@ -118,7 +117,7 @@ def test_a_place_that_does_not_fit_is_refused() -> None:
         assert refused.value.field == "lat"
     with pytest.raises(MissionInputError) as refused:
         facts(upload(recorded(0.0, 10.0, place_known=False)))
-    assert refused.value.reason == RecordingWithoutPlace("turn.csv")
+    assert refused.value.reason == PlaceNotStated("turn.csv")
 
 
 def test_too_many_sweeps_at_once_are_refused() -> None:

@@ -26,7 +26,7 @@ export const flight = {
   },
   back_after_restart: { text: "Der Server ist neu gestartet.", remedy: "Nach dem Fluggerät sehen, dann fortsetzen." },
   pilot_flies: {
-    text: "{perhaps_failsafe?true=Der Pilot oder der Ausfallschutz des Autopiloten|false=Der Pilot} steuert: Das Fluggerät ist in {mode}.",
+    text: "{perhaps_failsafe?true=Der Pilot oder der Ausfallschutz des Autopiloten|false=Der Pilot} steuert{mode?=, mit den Steuerknüppeln übernommen|*=: Das Fluggerät ist in }{mode}.",
     remedy: "Fortsetzen, wenn der Pilot die Steuerung zurückgegeben hat.",
   },
   failsafe_flies: {

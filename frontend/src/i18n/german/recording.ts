@@ -100,7 +100,6 @@ export const recording = {
   recording_unusable: { text: "Die Aufnahme {file} ist nicht verwendbar. {because}", remedy: "{because!remedy}" },
 
   recording_too_long: { text: "Die Aufnahme enthält {sweeps} Drehungen.", remedy: "Höchstens {most} auf einmal einlesen." },
-  recording_without_place: { text: "Die Datei {file} sagt nicht, wo aufgenommen wurde.", remedy: "Den Ort daneben nennen." },
   recording_too_far: {
     text: "Die Aufnahme entstand {distance_m} vom Gebiet der Mission entfernt.",
     remedy: "In eine Mission einlesen, deren Gebiet sie umgibt, oder den richtigen Ort nennen.",
@@ -122,8 +121,4 @@ export const recording = {
     remedy: "Eine Datei hochladen oder Meta, Daten und Kurse.",
   },
   two_recordings: { text: "Die Dateien {first} und {second} sind zwei Aufnahmen.", remedy: "Sie nacheinander hochladen." },
-  iq_options_unused: {
-    text: "Frequenz und Pulse gelten nur für IQ; die Leistungen aus {file} werden genommen, wie sie sind.",
-    remedy: "",
-  },
 } satisfies Partial<ReasonTable>;
