@@ -31,7 +31,7 @@ PROGRESS_POINTS = 360
 
 SlotKind = Literal["telemetry", "status", "sweep_progress", "belief"]
 SlotName = tuple[SlotKind, str]
-"""A kind of value, and the craft or emitter that it speaks of ("" for the server's own)."""
+"""A kind of value, and the craft, the emitter or both that it speaks of ("" for the server's own)."""
 STATUS: SlotName = ("status", "")
 ReadEvents = Callable[[str, int], Awaitable[list[Recorded]]]
 
@@ -172,7 +172,7 @@ class Hub:
             power_db=[round(power, 1) for power in power_db[::step]],
             turned_deg=turned_deg,
         )
-        self._put(mission_id, ("sweep_progress", craft_id), message.model_dump_json())
+        self._put(mission_id, ("sweep_progress", f"{craft_id}/{emitter_id}"), message.model_dump_json())
 
     def _put(self, mission_id: str, name: SlotName, value: str | BeliefFrame) -> None:
         self.feed(mission_id).slots.setdefault(name, Slot()).put(value)

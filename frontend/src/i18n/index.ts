@@ -1,31 +1,42 @@
 // All words of the page come through here. English is the reference; a missing translation does not compile.
-import { signal } from "@preact/signals";
+import { batch, signal } from "@preact/signals";
 import { type Language, locale } from "../units/locale";
 import { en, type MessageKey } from "./en";
-import { sayReasonsIn } from "./reasons";
+import { type ReasonTable, sayReasonsIn } from "./reasons";
 
 export { type Language, locale } from "../units/locale";
 export type { MessageKey } from "./en";
-export { reasonRemedy, reasonText } from "./reasons";
+export { personName, reasonRemedy, reasonText } from "./reasons";
 export type Parameters = Record<string, string | number>;
 
 const table = signal<Record<MessageKey, string>>(en);
 
-/** The sentences of reasons come after the words of the page: the safety bar does not wait for them. */
-export async function setLanguage(language: Language): Promise<void> {
-  if (language === "de") {
-    const [{ de }, { reasonsDe }] = await Promise.all([import("./de"), import("./reasons.de")]);
-    show(language, de);
-    sayReasonsIn(reasonsDe);
-  } else {
-    show(language, en);
-    sayReasonsIn((await import("./reasons.en")).reasonsEn);
-  }
+interface Tables {
+  words: Record<MessageKey, string>;
+  reasons: ReasonTable;
 }
 
-function show(language: Language, words: Record<MessageKey, string>): void {
-  table.value = words;
-  locale.value = language;
+/** The safety bar waits for none of it: it begins in English, and the sentences of reasons come later. */
+const loaders: Record<Language, () => Promise<Tables>> = {
+  en: async () => ({ words: en, reasons: (await import("./reasons.en")).reasonsEn }),
+  de: async () => {
+    const [{ de }, { reasonsDe }] = await Promise.all([import("./de"), import("./reasons.de")]);
+    return { words: de, reasons: reasonsDe };
+  },
+};
+
+let wanted: Language | null = null;
+
+/** Rejects when the words cannot be loaded: the page stays in the language it has. The last one asked for wins. */
+export async function setLanguage(language: Language): Promise<void> {
+  wanted = language;
+  const { words, reasons } = await loaders[language]();
+  if (wanted !== language) return;
+  batch(() => {
+    table.value = words;
+    locale.value = language;
+    sayReasonsIn(reasons);
+  });
   document.documentElement.lang = language;
 }
 

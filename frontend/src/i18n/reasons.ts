@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import { locale } from "../units/locale";
 import { coordinateFormat, unitSystem } from "../units/shown";
 import type { Reason, ReasonCode } from "../wire";
-import { type Coded, remedyIn, type Shown, textIn, type Words } from "./template";
+import { type Coded, personNameIn, remedyIn, type Shown, textIn, type Words } from "./template";
 
 /** A sentence and its remedy for every reason: a missing one does not compile. */
 export type ReasonTable = Record<ReasonCode, Words>;
@@ -33,3 +33,5 @@ export const reasonText = (reason: Reason): string => textIn(shown(), reason);
 
 /** How to mend it: whole sentences, or nothing when there is nothing to do. */
 export const reasonRemedy = (reason: Reason): string => remedyIn(shown(), reason);
+
+export const personName = (by: string): string => personNameIn(locale.value, by);

@@ -103,7 +103,10 @@ function putOverlays(map: GlMap): void {
   }
 }
 
-const canPropose = () => cursor.peek() === null && mission.peek().missionId !== null && inFlight(mission.peek().phase);
+function canPropose(): boolean {
+  const { missionId, ended, phase } = mission.peek();
+  return cursor.peek() === null && missionId !== null && ended === null && inFlight(phase);
+}
 
 /** Everything that follows a signal, each in its own effect so that telemetry never redraws the plan. */
 function bind(map: GlMap): () => void {

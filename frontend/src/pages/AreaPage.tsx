@@ -47,7 +47,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
   const judged = outlook.value;
   const isAsking = judged !== null && !judged.found && !judged.problem;
   const isReadable = draft.value?.hasArea && Object.keys(draft.value.text).length === 0;
-  const held = mission.value.phase === "hold";
+  const held = mission.value.phase === "hold" && mission.value.ended === null;
   return (
     <div class="edit" data-testid="area-page">
       <EditMapArea onTold={setTold} />

@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { send } from "../commands/send";
-import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
+import { type MessageKey, personName, reasonRemedy, reasonText, t } from "../i18n";
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
 import type { Alert } from "../state/mission";
 import { liveMission } from "../state/moment";
@@ -25,7 +25,7 @@ function AlertRow({ alert }: { alert: Alert }) {
         <strong>{t(`alerts.${alert.level}` satisfies MessageKey)}</strong> <span class="muted">{formatAge(age)}</span>
         <div>{reasonText(alert.reason)}</div>
         {remedy && <div class="problem-remedy">{t("problem.remedy", { remedy })}</div>}
-        {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: alert.acknowledgedBy })}</div>}
+        {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: personName(alert.acknowledgedBy) })}</div>}
         {alert.cleared && <div class="muted">{t("alerts.cleared")}</div>}
       </div>
       {isOpen(alert) && id && (

@@ -17,6 +17,7 @@ import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
 import type { MissionEnded } from "../wire";
 import { copyText } from "./clipboard";
+import { WhichShown } from "./WhichShown";
 
 const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
 
@@ -144,6 +145,7 @@ export function EstimatePanel() {
           </span>
         )}
       </h2>
+      <WhichShown />
       {!fact && <p class="muted">{t("estimate.none")}</p>}
       {fact && !estimate && <p data-testid="inconsistent">{t("estimate.inconsistent")}</p>}
       {fact && estimate && fact.contradicting.length > 0 && (

@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { cancelProposal, confirmProposal, type Proposal, proposal, propose } from "../commands/proposal";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { send } from "../commands/send";
-import { locale, reasonText, t } from "../i18n";
+import { locale, personName, reasonText, t } from "../i18n";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { source } from "../state/connection";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
@@ -160,7 +160,7 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
 }
 
 function Decision({ id }: { id: string }) {
-  const { phase, automatic } = mission.value;
+  const { phase, automatic, craftId: craft_id } = mission.value;
   const waiting = phase === "waiting";
   return (
     <div class="decision">
@@ -169,7 +169,7 @@ function Decision({ id }: { id: string }) {
         class={waiting ? "primary" : ""}
         data-testid="accept"
         disabled={!waiting}
-        onClick={() => void send("plan", id, { kind: "accept" })}
+        onClick={() => void send("plan", id, { kind: "accept", craft_id })}
       >
         {t("plan.accept")}
       </button>
@@ -177,7 +177,7 @@ function Decision({ id }: { id: string }) {
         type="button"
         data-testid="veto"
         disabled={!waiting && phase !== "flying"}
-        onClick={() => void send("plan", id, { kind: "veto" })}
+        onClick={() => void send("plan", id, { kind: "veto", craft_id })}
       >
         {t("plan.veto")}
       </button>
@@ -188,7 +188,7 @@ function Decision({ id }: { id: string }) {
         aria-checked={automatic}
         data-testid="automatic"
         title={t("plan.auto")}
-        onClick={() => void send("plan", id, { kind: "set_automatic", automatic: !automatic })}
+        onClick={() => void send("plan", id, { kind: "set_automatic", craft_id, automatic: !automatic })}
       >
         <span class="switch-knob" aria-hidden="true" />
         <span>
@@ -238,7 +238,7 @@ export function PlanPanel() {
                     candidates: fact.candidates.length,
                     time: formatNumber(fact.plan_ms, 0),
                   })
-                : t("plan.byOperator", { by: fact.by ?? "?" })}
+                : t("plan.byOperator", { by: personName(fact.by ?? "?") })}
             </span>
           </p>
           {fact.candidates.length > 0 && <CandidateTable plan={fact} />}

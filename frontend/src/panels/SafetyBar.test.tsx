@@ -3,6 +3,7 @@ import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { watchKeys } from "../app/keys";
+import { HOLD_MS } from "../commands/SlideToConfirm";
 import { urgent } from "../commands/urgent";
 import { FakeSource } from "../sources/fakeSource";
 import type { SourceMessage } from "../sources/source";
@@ -12,7 +13,7 @@ import { NOBODY } from "../state/craft";
 import { emptyLive } from "../state/live";
 import { open } from "../state/open";
 import type { Authority, CraftStatus, MissionEvent, Phase } from "../wire";
-import { phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
+import { CRAFT, phase, record, someSpec, someStatus, someTelemetry } from "../wire/examples";
 import { SafetyBar } from "./SafetyBar";
 
 watchKeys();
@@ -130,6 +131,9 @@ it("resumes only what holds or the pilot flies, and only after a slide", () => {
   act(() => part("resume")!.click());
   expect(part("resume-slider")).not.toBeNull();
   expect(source.sent).toEqual([]);
+  act(() => void part("resume-slider")!.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true })));
+  act(() => void vi.advanceTimersByTime(2 * HOLD_MS));
+  expect(source.sent).toMatchObject([{ missionId: "m", kind: "resume", craftId: CRAFT }]);
 });
 
 /** The page's clock started with the page, before this test's time. */

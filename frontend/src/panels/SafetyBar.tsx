@@ -57,7 +57,7 @@ function Resume() {
         testId="resume-slider"
         onConfirm={() => {
           setArmed(false);
-          void send("bar", target.id, { kind: "resume" });
+          void send("bar", target.id, { kind: "resume", craft_id: target.craftId });
         }}
         onCancel={() => setArmed(false)}
       />

@@ -105,10 +105,9 @@ export function SweepPanel() {
   const [picked, setPicked] = useState<number | null>(null);
   const state = mission.value;
   const sweeps = sweepsOf(state);
-  const running = cursor.value === null && state.phase === "measuring" ? sweepHeard.value?.value : undefined;
+  const running = cursor.value === null && state.phase === "measuring" ? sweepHeard.value : null;
   const sweep = sweeps.find((s) => s.seq === picked) ?? sweeps[0];
-  const isOfThis = running?.mission_id === state.missionId && running?.emitter_id === state.emitterId;
-  const showRunning = running && isOfThis && picked === null;
+  const showRunning = running?.mission_id === state.missionId && picked === null;
   return (
     <section class="panel sweep" data-testid="sweep" data-tour="4" aria-label={t("sweep.title")}>
       <h2>
@@ -136,7 +135,7 @@ export function SweepPanel() {
         </span>
       </h2>
       <ProblemNote desk="sweep" />
-      {showRunning ? (
+      {running && showRunning ? (
         <Running running={running} attempt={state.attempt} />
       ) : sweep ? (
         <div class="sweep-body">

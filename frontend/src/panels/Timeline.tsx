@@ -2,8 +2,8 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { type MessageKey, t } from "../i18n";
-import { eventWords, isMain, toneOf } from "../state/eventWords";
-import { isOver } from "../state/mission";
+import { isMain, toneOf } from "../state/eventWeight";
+import { eventWords } from "../state/eventWords";
 import { cursor, events, liveMission, look } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
@@ -35,6 +35,7 @@ function usePlayback(all: readonly Recorded[]): [number | null, (speed: number |
 function Strip({ all }: { all: readonly Recorded[] }) {
   const first = all[0];
   const last = all.at(-1);
+  const emitters = mission.value.spec?.emitters ?? [];
   if (!first || !last) return null;
   const begin = Date.parse((all.find((e) => e.event.kind === "mission_started") ?? first).at_utc);
   const end = Math.max(begin + 1000, Date.parse(last.at_utc));
@@ -79,7 +80,7 @@ function Strip({ all }: { all: readonly Recorded[] }) {
         type="range"
         data-testid="scrub"
         aria-label={t("timeline.scrub")}
-        aria-valuetext={`${formatClock(at.at_utc)} ${eventWords(at, settings.value.units)}`}
+        aria-valuetext={`${formatClock(at.at_utc)} ${eventWords(at, settings.value.units, emitters)}`}
         min={0}
         max={(end - begin) / 1000}
         step={0.1}
@@ -107,6 +108,7 @@ export function stepEvent(step: -1 | 1): void {
 
 function Log({ all }: { all: readonly Recorded[] }) {
   const list = useRef<HTMLOListElement>(null);
+  const emitters = mission.value.spec?.emitters ?? [];
   const at = cursor.value;
   const shown = showAll.value ? all : all.filter((e) => isMain(e.event));
   const current = at === null ? null : shown.findLast((e) => e.seq <= at)?.seq;
@@ -136,7 +138,7 @@ function Log({ all }: { all: readonly Recorded[] }) {
             onClick={() => look(recorded.seq === all.at(-1)?.seq ? null : recorded.seq)}
           >
             <time>{formatClock(recorded.at_utc)}</time>
-            <span>{eventWords(recorded, settings.value.units)}</span>
+            <span>{eventWords(recorded, settings.value.units, emitters)}</span>
           </button>
         </li>
       ))}
@@ -145,7 +147,7 @@ function Log({ all }: { all: readonly Recorded[] }) {
 }
 
 function liveLabel(reviewing: boolean): MessageKey {
-  const over = isOver(liveMission.value.phase);
+  const over = liveMission.value.ended !== null;
   if (reviewing) return over ? "timeline.toEnd" : "timeline.goLive";
   return over ? "timeline.review" : "timeline.live";
 }

@@ -8,7 +8,7 @@ export class FakeSource implements Source {
   readonly happensNow: boolean = true;
   readonly takesCommands: boolean = true;
   readonly keptByServer: boolean = true;
-  readonly sent: { missionId: string; kind: Command["kind"]; commandId: string }[] = [];
+  readonly sent: { missionId: string; kind: Command["kind"]; commandId: string; craftId?: string | null }[] = [];
   answer: () => Promise<CommandReply> = () => Promise.resolve(accepted);
   stopped = false;
   private listener: (message: SourceMessage) => void = () => undefined;
@@ -24,8 +24,9 @@ export class FakeSource implements Source {
   tell(...messages: SourceMessage[]): void {
     for (const message of messages) this.listener(message);
   }
-  send(missionId: string, { kind }: Command, commandId = ""): Promise<CommandReply> {
-    this.sent.push({ missionId, kind, commandId });
+  send(missionId: string, command: Command, commandId = ""): Promise<CommandReply> {
+    const craft = "craft_id" in command ? { craftId: command.craft_id } : {};
+    this.sent.push({ missionId, kind: command.kind, commandId, ...craft });
     return this.answer();
   }
   belief: Source["belief"] = () => Promise.resolve(null);

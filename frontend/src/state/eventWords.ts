@@ -1,68 +1,12 @@
-// The events of a mission as sentences, and how much each matters.
-import { type MessageKey, reasonText, t } from "../i18n";
+// The events of a mission as sentences.
+import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
-import type { BeliefUpdated, Command, EventOf, MissionEvent, Recorded } from "../wire";
+import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
+import { emitterName } from "./emitterName";
 import { checkName, phaseName } from "./words";
 
-/** How much an event matters to somebody who skims. */
-export function isMain(event: MissionEvent): boolean {
-  switch (event.kind) {
-    case "phase_changed":
-    case "command_accepted":
-    case "sweep_started":
-    case "alert_acknowledged":
-    case "alert_cleared":
-    case "belief_updated":
-      return false;
-    case "authority_changed":
-      return event.by !== null || event.authority.taken_by !== null;
-    default:
-      return true;
-  }
-}
-
-export type EventTone = "bearing" | "decision" | "alert" | "mode" | "other";
-
-export function toneOf(event: MissionEvent): EventTone {
-  switch (event.kind) {
-    case "bearing_measured":
-    case "sweep_rejected":
-    case "bearing_excluded":
-    case "recording_imported":
-      return "bearing";
-    case "plan_chosen":
-    case "plan_vetoed":
-      return "decision";
-    case "alert_raised":
-    case "link_lost":
-    case "safety_vetoed":
-    case "command_refused":
-      return "alert";
-    case "phase_changed":
-    case "authority_changed":
-    case "hold_ordered":
-    case "resume_ordered":
-    case "return_ordered":
-    case "abort_ordered":
-    case "automatic_changed":
-    case "area_changed":
-    case "mission_started":
-    case "mission_ended":
-      return "mode";
-    default:
-      return "other";
-  }
-}
-
-/** Who orders before users sign in has a name that is no person's. */
-const ROLES: Readonly<Record<string, MessageKey>> = { operator: "by.operator" };
-
 /** null: the mission by itself. */
-function byWords(by: string | null): string {
-  if (by === null) return t("by.mission");
-  const role = ROLES[by];
-  return role ? t(role) : by;
-}
+const byWords = (by: string | null): string => (by === null ? t("by.mission") : personName(by));
 
 const COMMANDS: Record<Command["kind"], MessageKey> = {
   start: "command.start",
@@ -111,7 +55,14 @@ function beliefWords({ estimate, consistent, localized, contradicting, bearings,
   return against > 0 ? t("event.belief_localized_against", { against, bearings, rmse }) : t("event.belief_localized", { rmse });
 }
 
-export function eventWords({ event }: Recorded, units: UnitSystem): string {
+/** emitters: all that the mission looks for; with several, an event says whom it is about. */
+export function eventWords({ event }: Recorded, units: UnitSystem, emitters: readonly EmitterSpec[]): string {
+  const about = "emitter_id" in event && emitters.length > 1 ? event.emitter_id : null;
+  const words = wordsOf(event, units);
+  return about === null ? words : `${emitterName(emitters, about)}: ${words}`;
+}
+
+function wordsOf(event: MissionEvent, units: UnitSystem): string {
   switch (event.kind) {
     case "mission_drafted":
       return t("event.mission_drafted");

@@ -2,7 +2,7 @@
 import { computed } from "@preact/signals";
 import type { CraftStatus, SweepProgress, TelemetryMessage } from "../wire";
 import { live } from "./connection";
-import type { Received } from "./live";
+import { type Received, turnOf } from "./live";
 import { liveMission } from "./moment";
 import { selectedCraft } from "./selection";
 
@@ -23,4 +23,7 @@ export const craftStatus = computed<Received<CraftStatus> | null>(() => {
   return status && value ? { value, atMs: status.atMs } : null;
 });
 
-export const sweep = computed<Received<SweepProgress> | null>(() => live.value.sweeps.get(craftShown.value ?? "") ?? null);
+/** Of the turn under way. */
+export const sweep = computed<SweepProgress | null>(() =>
+  turnOf(live.value.sweeps.get(craftShown.value ?? ""), liveMission.value.emitterId ?? ""),
+);

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { SourceMessage } from "../sources/source";
 import type { MissionEvent, TelemetryMessage } from "../wire";
 import { CRAFT, EMITTER, leadingTo, record, someBearing, someTelemetry, started } from "../wire/examples";
-import { emptyLive, type LiveState, reduceLive } from "./live";
+import { emptyLive, type LiveState, reduceLive, turnOf } from "./live";
 
 const telemetry = (lat: number, lon: number, changes: Partial<TelemetryMessage> = {}) => someTelemetry({ lat, lon, ...changes });
 
@@ -42,10 +42,32 @@ describe("reduceLive", () => {
       power_db: [-60],
       turned_deg: 3,
     };
-    expect(run(progress).sweeps.get(CRAFT)?.value.turned_deg).toBe(3);
+    expect(run(progress).sweeps.get(CRAFT)?.get(EMITTER)?.value.turned_deg).toBe(3);
     expect(run(progress, ...told(someBearing())).sweeps.has(CRAFT)).toBe(false);
     const foreign = someBearing({ source: { kind: "person", name: "Ada" } });
-    expect(run(progress, ...told(foreign)).sweeps.get(CRAFT)?.value.turned_deg).toBe(3);
+    expect(
+      run(progress, ...told(foreign))
+        .sweeps.get(CRAFT)
+        ?.get(EMITTER)?.value.turned_deg,
+    ).toBe(3);
+  });
+
+  it("tells of a turn what was heard of the emitter asked for, and how far the craft has turned", () => {
+    const progress = (emitter_id: string, power_db: number[], turned_deg: number): SourceMessage => ({
+      type: "sweep_progress",
+      mission_id: "m",
+      craft_id: CRAFT,
+      emitter_id,
+      place_number: 1,
+      heading_deg: power_db.map((_, i) => i),
+      power_db,
+      turned_deg,
+    });
+    const turn = run(progress("a", [-60], 10), progress("b", [-70, -71], 20)).sweeps.get(CRAFT);
+    expect(turnOf(turn, "a")).toMatchObject({ emitter_id: "a", power_db: [-60], turned_deg: 20 });
+    expect(turnOf(turn, "b")).toMatchObject({ power_db: [-70, -71], turned_deg: 20 });
+    expect(turnOf(turn, "silent")).toMatchObject({ emitter_id: "silent", power_db: [], turned_deg: 20 });
+    expect(turnOf(undefined, "a")).toBeNull();
   });
 
   it("keeps two craft apart: what they tell and where they flew", () => {

@@ -17,10 +17,11 @@ export interface LiveState {
   lastMessageMs: number | null;
   events: readonly Recorded[];
   mission: MissionState;
-  /** By craft, as are the running sweeps and the paths. */
+  /** By craft, as are the paths. */
   telemetry: ReadonlyMap<string, Received<TelemetryMessage>>;
   status: Received<StatusMessage> | null;
-  sweeps: ReadonlyMap<string, Received<SweepProgress>>;
+  /** The running turn by craft, and in it by emitter. */
+  sweeps: ReadonlyMap<string, ReadonlyMap<string, Received<SweepProgress>>>;
   paths: ReadonlyMap<string, readonly LonLat[]>;
   /** The newest frame of each emitter. */
   beliefs: ReadonlyMap<string, BeliefFrame>;
@@ -41,6 +42,14 @@ export const emptyLive: LiveState = {
   beliefs: new Map(),
   unreadable: 0,
 };
+
+/** The turn under way, and what was heard of this emitter in it; null: none. Other emitters' samples tell how far it is. */
+export function turnOf(heard: ReadonlyMap<string, Received<SweepProgress>> | undefined, emitterId: string): SweepProgress | null {
+  const newest = [...(heard?.values() ?? [])].reduce<Received<SweepProgress> | null>((a, b) => (a && a.atMs > b.atMs ? a : b), null);
+  if (!newest) return null;
+  const own = heard?.get(emitterId)?.value ?? { ...newest.value, emitter_id: emitterId, heading_deg: [], power_db: [] };
+  return { ...own, turned_deg: newest.value.turned_deg };
+}
 
 /** About what the vehicle covers on the map; each step draws the whole map again. */
 const PATH_STEP_M = 5.0;
@@ -90,8 +99,11 @@ export function reduceLive(state: LiveState, message: SourceMessage, nowMs: numb
         telemetry: withEntry(heard.telemetry, message.craft_id, { value: message, atMs: nowMs }),
         paths: extendPaths(heard, message),
       };
-    case "sweep_progress":
-      return { ...heard, sweeps: withEntry(heard.sweeps, message.craft_id, { value: message, atMs: nowMs }) };
+    case "sweep_progress": {
+      const { craft_id: craft, emitter_id: emitter } = message;
+      const turn = withEntry(heard.sweeps.get(craft) ?? new Map(), emitter, { value: message, atMs: nowMs });
+      return { ...heard, sweeps: withEntry(heard.sweeps, craft, turn) };
+    }
     case "status":
       return { ...heard, status: { value: message, atMs: nowMs } };
     case "belief":

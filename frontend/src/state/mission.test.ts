@@ -220,7 +220,7 @@ it("a mission of one craft and one emitter is seen whole: the recorded flight", 
   expect(view).toMatchObject({ phase: "done", ended: { fact: told("mission_ended")[0] }, home: told("mission_started")[0]?.home });
   const phases = told("phase_changed").map((event) => event.after);
   const during = flown.flatMap(({ seq, event }) => (event.kind === "phase_changed" ? [viewOf(missionAt(flown, seq)).phase] : []));
-  expect(during).toEqual(phases.map((after) => (after === "ground" ? "searching" : after)));
+  expect(during).toEqual(phases);
 });
 
 it("says in one word what the craft does, else how far the search is", () => {
@@ -230,9 +230,15 @@ it("says in one word what the craft does, else how far the search is", () => {
   expect(word({ kind: "preflight_checked", passed: false, checks: [] })).toBe("draft");
   expect(word(started())).toBe("searching");
   expect(word(started(), phase("measuring"))).toBe("measuring");
-  expect(word(started(), phase("measuring"), phase("ground"))).toBe("searching");
+  expect(word(started(), phase("measuring"), phase("ground"))).toBe("ground");
   for (const outcome of ["aborted", "failed"] as const) expect(word(started(), phase("returning"), ended(outcome))).toBe(outcome);
   for (const outcome of ["localized", "not_localized"] as const) expect(word(started(), phase("ground"), ended(outcome))).toBe("done");
+});
+
+it("says of an ended mission whose craft was held, or taken over, that it stands still in the air", () => {
+  const aborted = [started(), phase("returning"), ended("aborted")];
+  for (const still of ["hold", "manual"] as const) expect(seen(...aborted, phase(still)).phase).toBe(still);
+  for (const on of ["returning", "landing", "ground"] as const) expect(seen(...aborted, phase("hold"), phase(on)).phase).toBe("aborted");
 });
 
 it("a mission flies or is over, never both", () => {

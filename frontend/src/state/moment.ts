@@ -13,6 +13,9 @@ export const events = computed(() => live.value.events);
 const stateNow = computed(() => live.value.mission);
 const stateThen = computed(() => (cursor.value === null ? stateNow.value : missionAt(events.value, cursor.value)));
 
+/** All craft that fly, or flew, for the mission. */
+export const craftIds = computed<readonly string[]>(() => [...stateNow.value.crafts.keys()]);
+
 export const liveMission = computed<MissionView>(() => viewOf(stateNow.value, selectedCraft.value, selectedEmitter.value));
 
 export const happened = computed<MissionView>(() =>

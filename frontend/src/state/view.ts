@@ -34,13 +34,18 @@ export interface MissionView extends Omit<MissionState, "emitters" | "crafts" | 
   lost: Readonly<Partial<Record<LinkName, Lost>>>;
 }
 
-/** What the craft does while it flies, else the stage of the search. */
+/**
+ * What the craft does while it flies, else the stage of the search. Of a search that has ended its outcome, unless its
+ * craft stands still in the air and waits for somebody.
+ */
 function phaseOf({ ended, startedAt, preflightPassed }: MissionState, craft: CraftState): MissionPhase {
-  if (ended) {
+  const waits = craft.engaged && (craft.phase === "hold" || craft.phase === "manual");
+  if (ended && !waits) {
     const { outcome } = ended.fact;
     return outcome === "localized" || outcome === "not_localized" ? "done" : outcome;
   }
   if (craft.engaged && craft.phase !== "ground") return craft.phase;
+  if (!craft.engaged && craft.phaseSince !== null) return "ground";
   return startedAt !== null ? "searching" : preflightPassed ? "ready" : "draft";
 }
 

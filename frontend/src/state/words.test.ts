@@ -2,14 +2,15 @@
 import { afterEach, describe, expect, it } from "vitest";
 import { reasonText, setLanguage, t } from "../i18n";
 import type { EventOf, MissionEvent } from "../wire";
-import { CRAFT, ended, flown, leadingTo, phase, record, someReason } from "../wire/examples";
+import { CRAFT, EMITTER, ended, flown, leadingTo, phase, record, someBearing, someReason, someSpec, started } from "../wire/examples";
 import { NOBODY } from "./craft";
-import { eventWords, isMain } from "./eventWords";
+import { isMain } from "./eventWeight";
+import { eventWords } from "./eventWords";
 import { missionAt } from "./mission";
 import { viewOf } from "./view";
 import { checkName, stateWords } from "./words";
 
-const words = (event: MissionEvent) => eventWords(record(event)[0]!, "metric");
+const words = (event: MissionEvent) => eventWords(record(event)[0]!, "metric", []);
 const doing = (...events: MissionEvent[]) => stateWords(viewOf(missionAt(record(...events), Infinity)), null);
 
 const held = (by: string | null, reason: EventOf<"hold_ordered">["reason"]): MissionEvent => ({
@@ -62,8 +63,31 @@ describe("in each language", () => {
 
   it.each(["en", "de"] as const)("the recorded flight has words for every event: %s", async (language) => {
     await setLanguage(language);
-    for (const recorded of flown) expect(eventWords(recorded, "metric")).not.toMatch(/\{|undefined|\[object/);
+    for (const recorded of flown) expect(eventWords(recorded, "metric", [])).not.toMatch(/\{|undefined|\[object/);
   });
+});
+
+it("names the emitter that an event is about where the mission looks for several", () => {
+  const [first] = someSpec().emitters;
+  const several = [first!, { ...first!, emitter_id: "e2" }, { ...first!, emitter_id: "e3", label: "collar" }];
+  const said = (emitter_id: string, emitters = several) => eventWords(record(someBearing({ emitter_id }))[0]!, "metric", emitters);
+  expect(said("e2")).toBe(`${first!.label} 2: ${said("e2", [])}`);
+  expect(said("e3")).toBe(`collar: ${said("e3", [])}`);
+  expect(said(EMITTER, [first!])).toBe(said(EMITTER, []));
+  expect(eventWords(record(phase("hold"))[0]!, "metric", several)).toBe(words(phase("hold")));
+});
+
+it("says no longer of a link that is back that it is lost", () => {
+  const reason = { code: "no_console", stage: "hold" } as const;
+  const lost: MissionEvent = { kind: "link_lost", craft_id: CRAFT, link: "console", reason };
+  const back: MissionEvent = { kind: "link_restored", craft_id: CRAFT, link: "console", outage_s: 40 };
+  expect(doing(started(), lost, phase("hold", reason))).toBe(t("state.hold", { reason: reasonText(reason) }));
+  expect(doing(started(), lost, phase("hold", reason), back)).toBe(t("state.hold.back", { link: t("link.console") }));
+});
+
+it("says after an abort that was held why it holds, not why it ended", () => {
+  const because = { code: "ordered", order: "hold", by: "Ada" } as const;
+  expect(doing(...leadingTo("aborted"), phase("hold", because))).toBe(t("state.hold", { reason: reasonText(because) }));
 });
 
 it("says what the mission does in every phase, and why it ended", () => {

@@ -1,17 +1,32 @@
 // The state of the mission as sentences.
 import { type MessageKey, reasonText, t } from "../i18n";
 import { formatClock, formatDuration } from "../units/quantities";
-import type { CheckFact, MissionPhase } from "../wire";
+import type { CheckFact, LinkName, MissionPhase, ReasonCode } from "../wire";
+import { isOver } from "./mission";
 import type { MissionView } from "./view";
 
 export const phaseName = (phase: MissionPhase): string => t(`phase.${phase}` satisfies MessageKey);
 
 export const checkName = (name: CheckFact["name"]): string => t(`check.${name}` satisfies MessageKey);
 
+/** What holds a craft for as long as a link is away. */
+const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {
+  no_console: "console",
+  vehicle_link_lost: "vehicle",
+  receiver_trouble: "receiver",
+  payload_link_lost: "payload",
+};
+
+/** Why the craft stands still; a link that is back since is said to be back. */
+function holdWords({ phaseReason, lost }: MissionView, reason: string): string {
+  const link = phaseReason && HOLDING_LINK[phaseReason.code];
+  return link && !lost[link] ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) }) : t("state.hold", { reason });
+}
+
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionView, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.nextPlaceNumber;
-  const because = mission.ended?.fact.reason ?? mission.phaseReason;
+  const because = isOver(mission.phase) ? mission.ended?.fact.reason : mission.phaseReason;
   const reason = because ? reasonText(because) : phaseName(mission.phase);
   switch (mission.phase) {
     case "flying":
@@ -22,13 +37,13 @@ export function stateWords(mission: MissionView, etaS: number | null): string {
       return mission.attempt > 1 ? t("state.measuringAgain", { number, attempt: mission.attempt }) : t("state.measuring", { number });
     case "draft":
       return t(mission.preflightPassed === false ? "state.refused" : "state.draft");
+    case "hold":
+      return holdWords(mission, reason);
+    case "ready":
     case "ground":
     case "searching":
-      return t("state.searching");
-    case "ready":
     case "taking_off":
     case "waiting":
-    case "hold":
     case "manual":
     case "returning":
     case "landing":

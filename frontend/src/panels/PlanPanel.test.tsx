@@ -1,0 +1,82 @@
+// @vitest-environment happy-dom
+import { render } from "preact";
+import { act } from "preact/test-utils";
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import { FakeSource } from "../sources/fakeSource";
+import { open } from "../state/open";
+import { selectedCraft } from "../state/selection";
+import { mission } from "../state/shown";
+import type { MissionEvent } from "../wire";
+import { CRAFT, phase, record, someSpec, started } from "../wire/examples";
+import { PlanPanel } from "./PlanPanel";
+import { WhichShown } from "./WhichShown";
+
+const OTHER = "craft-of-others";
+
+const part = <E extends HTMLElement = HTMLElement>(testId: string) => document.querySelector<E>(`[data-testid=${testId}]`);
+
+function show(...events: MissionEvent[]): FakeSource {
+  const source = new FakeSource();
+  act(() => {
+    open(source);
+    for (const recorded of record(...events)) source.tell({ type: "event", recorded });
+    render(
+      <>
+        <WhichShown />
+        <PlanPanel />
+      </>,
+      document.body,
+    );
+    vi.advanceTimersByTime(200);
+  });
+  return source;
+}
+
+const choose = (testId: string, value: string) =>
+  act(() => {
+    const select = part<HTMLSelectElement>(testId)!;
+    select.value = value;
+    select.dispatchEvent(new Event("change", { bubbles: true }));
+  });
+
+const drafted = (emitters: number): MissionEvent => {
+  const spec = someSpec();
+  const [first] = spec.emitters;
+  const several = Array.from({ length: emitters }, (_, i) => ({ ...first!, emitter_id: `e${i + 1}` }));
+  return { kind: "mission_drafted", spec: { ...spec, emitters: several } };
+};
+
+beforeEach(() => vi.useFakeTimers());
+afterEach(() => {
+  act(() => render(null, document.body));
+  vi.useRealTimers();
+});
+
+it("names the craft in what it sends, the one chosen where several fly", () => {
+  const source = show(drafted(1), started(), started({ craft_id: OTHER }), phase("waiting"), { ...phase("waiting"), craft_id: OTHER });
+  act(() => part("accept")!.click());
+  choose("which-craft", OTHER);
+  expect(selectedCraft.value).toBe(OTHER);
+  for (const button of ["accept", "veto", "automatic"]) act(() => part(button)!.click());
+  expect(source.sent.map(({ kind, craftId }) => [kind, craftId])).toEqual([
+    ["accept", CRAFT],
+    ["accept", OTHER],
+    ["veto", OTHER],
+    ["set_automatic", OTHER],
+  ]);
+});
+
+it("shows nothing to choose with one craft and one emitter", () => {
+  show(drafted(1), started());
+  expect(part("which-shown")).toBeNull();
+});
+
+it("shows another emitter of several, and the first again in another mission", () => {
+  show(drafted(2), started());
+  expect(part("which-craft")).toBeNull();
+  expect(mission.value.emitterId).toBe("e1");
+  choose("which-emitter", "e2");
+  expect(mission.value.emitterId).toBe("e2");
+  show(drafted(2));
+  expect(mission.value.emitterId).toBe("e1");
+});

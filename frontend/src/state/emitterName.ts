@@ -1,0 +1,10 @@
+// What an emitter is called among those of its mission.
+import type { EmitterSpec } from "../wire";
+
+/** Its label; with its number in the specification when another one has the same. */
+export function emitterName(emitters: readonly EmitterSpec[], id: string): string {
+  const index = emitters.findIndex((emitter) => emitter.emitter_id === id);
+  const label = emitters[index]?.label;
+  if (!label) return id;
+  return emitters.some((other, i) => i !== index && other.label === label) ? `${label} ${index + 1}` : label;
+}
