@@ -2,7 +2,10 @@ import { render } from "preact";
 import { App } from "./app/App";
 import { followRoute } from "./app/follow";
 import { watchKeys } from "./app/keys";
+import { report } from "./commands/send";
+import { t } from "./i18n";
 import { watchAlerts } from "./panels/alertSounds";
+import { localProblem } from "./sources/problem";
 import { overlay } from "./state/overlay";
 import { applySettings } from "./state/settings";
 import "./style.css";
@@ -10,7 +13,12 @@ import "./style.css";
 /** The example needs this long until there is something to show. */
 const TOUR_AFTER_MS = 4000;
 
-applySettings();
+applySettings((wanted) =>
+  report(
+    "bar",
+    localProblem(t("settings.languageLost", { language: t(`settings.language.${wanted}`) }), t("settings.languageLost.detail")),
+  ),
+);
 watchKeys();
 watchAlerts();
 render(<App />, document.getElementById("app")!);

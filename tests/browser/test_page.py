@@ -78,7 +78,8 @@ def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Se
     made = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
     page.goto(f"{server.url}#/mission/{made}")
     expect(page.get_by_test_id("link")).to_contain_text("connected")
-    expect(page.get_by_role("alert")).to_contain_text("could not be loaded")
+    expect(page.get_by_role("main").get_by_role("alert")).to_contain_text("could not be loaded")
+    expect(page.get_by_test_id("problem-bar")).to_contain_text("could not be loaded: English")
     weight = sum(len(gzip.compress(r.body())) for r in fetched if "/assets/" in r.url and r.ok)
     print(f"safety bar {weight} bytes gzipped")
     assert weight < BAR_LIMIT_BYTES

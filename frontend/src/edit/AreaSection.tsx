@@ -34,7 +34,7 @@ async function importFile(file: File, kind: What): Promise<string[]> {
 }
 
 const importProblem = (name: string, error: unknown): string => {
-  const reason = error instanceof NotAPlan ? error.message : problemWords(asProblem(error));
+  const reason = error instanceof NotAPlan ? t(error.flaw) : problemWords(asProblem(error));
   return t("edit.importFailed", { name, reason });
 };
 

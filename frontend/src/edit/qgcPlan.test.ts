@@ -70,4 +70,5 @@ it.each([
   ["no radius", plan({ circles: [{ circle: { center: [1, 2] } }] })],
 ])("says why it cannot read a plan: %s", (_name, text) => {
   expect(() => readPlan(text)).toThrow(NotAPlan);
+  expect(() => readPlan(text)).toThrow(/^edit\.plan\./);
 });

@@ -1,5 +1,6 @@
 // The geofence of a QGroundControl .plan file: inclusion polygons and circles as fence, exclusions as no-fly areas.
 
+import type { MessageKey } from "../i18n";
 import { closeRing, type Rings } from "../state/areas";
 import { circle } from "../state/geometry";
 import type { LonLat } from "../wire/beliefFrame";
@@ -9,7 +10,12 @@ export interface PlanFence {
   exclusions: Rings[];
 }
 
-export class NotAPlan extends Error {}
+/** flaw: what is wrong with the file, in the page's words. */
+export class NotAPlan extends Error {
+  constructor(readonly flaw: Extract<MessageKey, `edit.plan.${string}`>) {
+    super(flaw);
+  }
+}
 
 interface PlanFile {
   fileType?: string;
@@ -27,18 +33,18 @@ export function readPlan(text: string): PlanFence {
   try {
     plan = JSON.parse(text) as PlanFile;
   } catch {
-    throw new NotAPlan("it is not JSON");
+    throw new NotAPlan("edit.plan.notJson");
   }
-  if (plan.fileType !== "Plan") throw new NotAPlan('its fileType is not "Plan"');
+  if (plan.fileType !== "Plan") throw new NotAPlan("edit.plan.otherFile");
   const found: PlanFence = { inclusions: [], exclusions: [] };
   for (const { inclusion, polygon } of plan.geoFence?.polygons ?? []) {
-    if (!polygon || polygon.length < 3) throw new NotAPlan("one of its fence polygons has fewer than three corners");
+    if (!polygon || polygon.length < 3) throw new NotAPlan("edit.plan.tooFewCorners");
     (inclusion === false ? found.exclusions : found.inclusions).push([closeRing(polygon.map(swap))]);
   }
   for (const { inclusion, circle: round } of plan.geoFence?.circles ?? []) {
-    if (!round?.center || !(Number(round.radius) > 0)) throw new NotAPlan("one of its fence circles has no centre or radius");
+    if (!round?.center || !(Number(round.radius) > 0)) throw new NotAPlan("edit.plan.noCircle");
     (inclusion === false ? found.exclusions : found.inclusions).push([circle(swap(round.center), round.radius!, 48)]);
   }
-  if (found.inclusions.length + found.exclusions.length === 0) throw new NotAPlan("it holds no fence");
+  if (found.inclusions.length + found.exclusions.length === 0) throw new NotAPlan("edit.plan.noFence");
   return found;
 }

@@ -1,6 +1,11 @@
 // @vitest-environment happy-dom
-import { expect, it } from "vitest";
-import { defaultSettings, readSettings } from "./settings";
+import { expect, it, vi } from "vitest";
+import { setLanguage } from "../i18n";
+import { applySettings, change, defaultSettings, readSettings, settings } from "./settings";
+
+vi.mock("../i18n", async (original) => ({ ...(await original<typeof import("../i18n")>()), setLanguage: vi.fn() }));
+
+const settled = () => new Promise((resolve) => setTimeout(resolve));
 
 it("keeps what is known and right, and nothing else", () => {
   const read = readSettings(JSON.stringify({ theme: "indoor", scale: "huge", stranger: 1 }));
@@ -11,4 +16,16 @@ it("keeps what is known and right, and nothing else", () => {
 
 it("bears what is no settings at all", () => {
   for (const stored of [null, "", "{", "null", "7", "[]"]) expect(readSettings(stored)).toEqual(defaultSettings);
+});
+
+it("stays in its language when the words of another cannot be loaded, and says so", async () => {
+  vi.mocked(setLanguage).mockImplementation((language) => (language === "de" ? Promise.reject(new Error("gone")) : Promise.resolve()));
+  const lost = vi.fn();
+  change("language", "en");
+  applySettings(lost);
+  await settled();
+  change("language", "de");
+  await settled();
+  expect(lost).toHaveBeenCalledExactlyOnceWith("de");
+  expect(settings.value.language).toBe("en");
 });

@@ -52,14 +52,25 @@ export function change<K extends keyof Settings>(key: K, value: Settings[K]): vo
   settings.value = { ...settings.value, [key]: value };
 }
 
-export function applySettings(): void {
+/** onLanguageLost: its words could not be loaded; a language chosen before stays chosen. */
+export function applySettings(onLanguageLost: (wanted: Language) => void): void {
+  let spoken: Language | null = null;
+  const speak = async (wanted: Language) => {
+    try {
+      await setLanguage(wanted);
+      spoken = wanted;
+    } catch {
+      if (spoken !== null && settings.peek().language === wanted) change("language", spoken);
+      onLanguageLost(wanted);
+    }
+  };
   effect(() => {
     localStorage.setItem(KEY, JSON.stringify(settings.value));
     document.documentElement.dataset.theme = settings.value.theme;
     document.documentElement.style.fontSize = `${settings.value.scale * 100}%`;
   });
   effect(() => {
-    void setLanguage(settings.value.language);
+    void speak(settings.value.language);
     unitSystem.value = settings.value.units;
     coordinateFormat.value = settings.value.coordinates;
   });
