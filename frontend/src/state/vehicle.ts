@@ -6,7 +6,7 @@ import type { LonLat } from "../wire/beliefFrame";
 import { live, source } from "./connection";
 import { craftShown, telemetry } from "./heard";
 import { cursor, liveMission, reviewTimeMs } from "./moment";
-import { steady, unseen, type VehicleView } from "./vehicleView";
+import { unseen, type VehicleView, withoutTremble } from "./vehicleView";
 
 /** The stored path: what was flown before this page was opened. */
 export const track = signal<readonly TrackFact[]>([]);
@@ -55,7 +55,7 @@ const seen = computed<VehicleView>(() => {
 
 export const vehicle = signal<VehicleView>(unseen);
 effect(() => {
-  vehicle.value = reviewing.value ? seen.value : steady(vehicle.peek(), seen.value);
+  vehicle.value = reviewing.value ? seen.value : withoutTremble(vehicle.peek(), seen.value);
 });
 
 const NO_PATH: readonly LonLat[] = [];

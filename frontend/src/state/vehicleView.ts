@@ -23,7 +23,7 @@ const turned = (before: number | null, now: number | null) =>
   before === null || now === null ? now : before + ((((now - before + 180) % 360) + 360) % 360) - 180;
 
 /** The same object while nothing has moved by a step since it was drawn. */
-export function steady(before: VehicleView, now: VehicleView): VehicleView {
+export function withoutTremble(before: VehicleView, now: VehicleView): VehicleView {
   const stood = before.at === null || now.at === null ? before.at === now.at : distanceM(before.at, now.at) < STEP_M;
   const same =
     stood && near(before.headingDeg, turned(before.headingDeg, now.headingDeg), STEP_DEG) && near(before.speedMs, now.speedMs, STEP_M_S);
