@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gzip
+import re
 from pathlib import Path
 
 from tests.benchmarks.figures.circumstances import ROOT, begin
@@ -23,9 +24,8 @@ def weights(folder: Path = BUILT) -> dict[str, int]:
 
 
 def part(name: str) -> str:
-    """What a built file is called before the build adds a hash to it."""
-    stem, *_ = name.rsplit(".", 1)
-    return stem.rsplit("-", 1)[0] if "-" in stem else stem
+    """What a built file is called before the build puts a hash of eight characters into its name."""
+    return re.sub(r"-[\w-]{8}(?=\.\w+$)", "", name)
 
 
 def main() -> None:
