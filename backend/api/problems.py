@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 from uuid import uuid4
 
 from fastapi import FastAPI, Request
@@ -82,15 +82,17 @@ def without_tags(location: list[int | str], sent: object) -> list[int | str]:
     """The place in what was sent: pydantic names the member of a union (its `kind` or `type`) as if it were a field."""
     path: list[int | str] = []
     for part in location:
-        if isinstance(sent, dict) and part not in sent and part in {sent.get("kind"), sent.get("type")}:
-            continue
-        path.append(part)
         if isinstance(sent, dict):
-            sent = sent.get(part)
-        elif isinstance(sent, list) and isinstance(part, int) and part < len(sent):
-            sent = sent[part]
+            fields = cast("dict[int | str, object]", sent)
+            if part not in fields and part in (fields.get("kind"), fields.get("type")):
+                continue
+            sent = fields.get(part)
+        elif isinstance(sent, list):
+            members = cast("list[object]", sent)
+            sent = members[part] if isinstance(part, int) and part < len(members) else None
         else:
             sent = None
+        path.append(part)
     return path
 
 

@@ -72,6 +72,12 @@ async def test_a_wrong_field_of_one_of_several_kinds_is_named_as_it_was_sent(cli
     ]
 
 
+async def test_a_kind_that_is_no_word_is_refused_like_any_other(client):
+    for odd in ([], {}, 7, None):
+        problem = is_problem(await client.post("/api/missions", json={"name": "Search", "kind": odd, "type": odd}), 422)
+        assert "area" in [error["field"] for error in problem["errors"]]
+
+
 @pytest.mark.parametrize("body", [b"", b"{", b"[" * 100_000, b"\xff\xfe", b'{"name": NaN}', b"1" * 5000])
 async def test_a_body_that_is_no_json_is_a_problem(client, body):
     reply = await client.post("/api/missions", content=body, headers={"content-type": "application/json"})
