@@ -131,7 +131,10 @@ async def open_simulation(
             if not unfinished:  # a mission in flight needs its page at once
                 await warming
             services = Services(missions, journal, hub, settings, clock.now, payload, finder=finder, pattern=pattern)
-            yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
+            try:
+                yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
+            finally:
+                await services.workers.close()
         finally:
             await asyncio.gather(warming, return_exceptions=True)
             in_flight = missions is not None and missions.flights.active is not None

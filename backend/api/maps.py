@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+import errno
+from collections.abc import AsyncIterator, Awaitable, Callable
 from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path as FilePath
@@ -22,6 +23,7 @@ from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
 from backend.maps.refusal import MapRefused, NotStored
 from backend.reasons.maps import NoRoomForMap
 from backend.reasons.request import BodyTooLarge, UploadBrokeOff
+from backend.reasons.work import DiskFull
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -36,6 +38,8 @@ from backend.wire.maps import (
 router = APIRouter(prefix="/api", tags=["maps"], responses=PROBLEM_RESPONSES)
 
 T = TypeVar("T")
+
+DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 ContentId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
 Name = Annotated[str, Query(max_length=120, description="What to call it; the file's own name when left out")]
@@ -67,7 +71,8 @@ def map_folder(services: ServicesDep) -> MapFolder:
 
 
 def overlay_folder(services: ServicesDep) -> OverlayFolder:
-    return OverlayFolder(services.settings.data_dir / "overlays")
+    settings = services.settings
+    return OverlayFolder(settings.data_dir / "overlays", settings.disk_low_bytes)
 
 
 MapFolderDep = Annotated[MapFolder, Depends(map_folder)]
@@ -75,13 +80,22 @@ OverlayFolderDep = Annotated[OverlayFolder, Depends(overlay_folder)]
 
 
 async def _in_thread(what: Literal["map", "overlay"], work: Callable[..., T], *arguments: object) -> T:
-    """Disk work off the event loop; what the map room refuses becomes a problem."""
+    """Disk work off the event loop."""
+    return await _told(what, asyncio.to_thread(work, *arguments))
+
+
+async def _told(what: Literal["map", "overlay"], doing: Awaitable[T]) -> T:
+    """What the map room refuses becomes a problem."""
     try:
-        return await asyncio.to_thread(work, *arguments)
+        return await doing
     except NotStored as error:
         raise ApiProblem(404, error.reason) from error
     except FileNotFoundError as error:  # deleted meanwhile
         raise not_found(what, FilePath(error.filename).stem) from error
+    except OSError as error:
+        if error.errno not in DISK_IS_FULL:
+            raise
+        raise ApiProblem(507, DiskFull()) from error
     except MapRefused as error:
         raise _refused(error) from error
 
@@ -108,14 +122,18 @@ async def list_maps(folder: MapFolderDep) -> MapList:
 
 @router.post("/maps", status_code=201, openapi_extra=RAW_BODY)
 async def upload_map(
-    request: Request, folder: MapFolderDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
+    request: Request,
+    folder: MapFolderDep,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    name: Name = "",
+    filename: Filename = "",
 ) -> MapPackage:
     """Store a PMTiles v3 archive: the request's body is the file itself."""
     try:
         label, size = _label(name, filename), _announced_bytes(request)
-        return await folder.store(request.stream(), label, size, datetime.now(UTC))
-    except MapRefused as error:
-        raise _refused(error) from error
+        now = datetime.now(UTC)
+        return await _told("map", folder.store(request.stream(), label, size, now, services.workers))
     except ClientDisconnect as error:
         raise ApiProblem(400, UploadBrokeOff()) from error
 
@@ -168,16 +186,23 @@ async def map_tiles(map_id: ContentId, folder: MapFolderDep) -> Response:
 @router.get("/overlays")
 async def list_overlays(folder: OverlayFolderDep) -> OverlayList:
     """The overlays on this machine."""
-    return OverlayList(overlays=await _in_thread("overlay", folder.overlays))
+    overlays, unusable = await _in_thread("overlay", folder.overlays)
+    return OverlayList(overlays=overlays, unusable=[*unusable])
 
 
 @router.post("/overlays", status_code=201, openapi_extra=RAW_BODY)
 async def upload_overlay(
-    request: Request, folder: OverlayFolderDep, principal: PrincipalDep, name: Name = "", filename: Filename = ""
+    request: Request,
+    folder: OverlayFolderDep,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    name: Name = "",
+    filename: Filename = "",
 ) -> Overlay:
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
     content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
-    return await _in_thread("overlay", folder.store, content, _label(name, filename), datetime.now(UTC))
+    label, now = _label(name, filename), datetime.now(UTC)
+    return await _told("overlay", services.workers.run(folder.store, content, label, now))
 
 
 async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
@@ -189,10 +214,10 @@ async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
     return bytes(held)
 
 
-@router.get("/overlays/{overlay_id}")
-async def get_overlay(overlay_id: ContentId, folder: OverlayFolderDep) -> OverlayCollection:
-    """One overlay as a GeoJSON FeatureCollection."""
-    return await _in_thread("overlay", folder.collection, overlay_id)
+@router.get("/overlays/{overlay_id}", response_class=Response, responses={200: {"model": OverlayCollection}})
+async def get_overlay(overlay_id: ContentId, folder: OverlayFolderDep) -> Response:
+    """One overlay as a GeoJSON FeatureCollection, as it was checked and stored."""
+    return FileResponse(await _in_thread("overlay", folder.path, overlay_id), media_type="application/json")
 
 
 @router.delete("/overlays/{overlay_id}", status_code=204)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from fastapi import APIRouter
 
 from backend.api.areas import read_area
@@ -64,6 +62,6 @@ async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
 
 
 @router.post("/areas")
-async def import_area(upload: AreaUpload) -> AreaImport:
+async def import_area(upload: AreaUpload, services: ServicesDep) -> AreaImport:
     """Read the polygons of a GeoJSON or KML file as a mission area; 422 says what cannot be read."""
-    return await asyncio.to_thread(read_area, upload)
+    return await services.workers.run(read_area, upload)

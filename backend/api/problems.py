@@ -18,6 +18,7 @@ from backend.reasons import request as reasons
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.store.reading import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem, problem
+from backend.workers import WorkersBusy, WorkStopped
 from planner.reason import ReasonedError, text_of
 from planner.types import PlannerError
 
@@ -39,6 +40,8 @@ STATUSES: tuple[tuple[type[ReasonedError], int], ...] = (
     (FactRefused, 409),
     (JournalUnavailable, 503),
     (PlannerError, 422),
+    (WorkStopped, 422),
+    (WorkersBusy, 503),
 )
 """Errors of the rooms below, and the status that they are answered with."""
 

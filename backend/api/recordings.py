@@ -24,6 +24,7 @@ from backend.search.errors import MissionInputError
 from backend.search.importing import Upload
 from backend.spec import Id, Model, Place
 from backend.wire.resources import ImportedSweep, RecordingImport
+from backend.workers import Workers
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.reasons.iq_recording import NotIq
@@ -84,14 +85,14 @@ async def import_recording(
     One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
     """
-    upload = await _read(form)
+    upload = await _read(form, services.workers)
     facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
     if already:
         response.status_code = 200
     return _reply(facts, already)
 
 
-async def _read(form: RecordingForm) -> Upload:
+async def _read(form: RecordingForm, workers: Workers) -> Upload:
     """Raises MissionInputError."""
     if (form.lat is None) != (form.lon is None):
         raise MissionInputError(reasons.HalfGiven("place"), "lat")
@@ -103,7 +104,8 @@ async def _read(form: RecordingForm) -> Upload:
         owners = {str(path): name for path, name in names.items()}
         recording_id = await asyncio.to_thread(_identity, names, form)
         try:
-            recording = await asyncio.to_thread(_parsed, names, form)
+            pulses = _pulses(form)
+            recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
         except (RecordingError, SpectrumError) as error:
             raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
     first = next(iter(names.values()))
@@ -145,13 +147,18 @@ def _identity(names: dict[Path, str], form: RecordingForm) -> str:
     return digest.hexdigest()
 
 
-def _parsed(names: dict[Path, str], form: RecordingForm) -> Recording:
+def _pulses(form: RecordingForm) -> PulseSetting | None:
+    width, period = form.pulse_width_s, form.pulse_period_s
+    return None if width is None or period is None else PulseSetting(width, period)
+
+
+def _parsed(
+    names: dict[Path, str], tag: str | None, frequency_hz: float | None, pulses: PulseSetting | None
+) -> Recording:
     recording = next(iter(names))
     headings = next((path for path in names if path.name == "headings.csv"), None)
-    width, period = form.pulse_width_s, form.pulse_period_s
-    pulses = None if width is None or period is None else PulseSetting(width, period)
-    read = read_sweeps(recording, form.tag, IqReading(headings, form.frequency_hz, pulses))
-    if is_sigmf(recording) or (form.frequency_hz is None and pulses is None):
+    read = read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
+    if is_sigmf(recording) or (frequency_hz is None and pulses is None):
         return read
     return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from backend.live.hub import Hub
 from backend.settings import Settings
 from backend.store.journal import SqlJournal
+from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.payload.session import PayloadHub
 from hardware.ports import DirectionFinder
@@ -25,6 +26,7 @@ class Services:
 
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
+    workers: read what comes from outside.
     """
 
     missions: MissionRoom
@@ -35,5 +37,6 @@ class Services:
     finder: DirectionFinder = field(kw_only=True)
     pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None
+    workers: Workers = field(default_factory=Workers)
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)

@@ -36,8 +36,9 @@ from backend.reasons.maps import (
 from backend.wire.maps import TileType as TileName
 
 HEADER_BYTES = 127
-MOST_DIRECTORY_BYTES = 64 * 2**20
-MOST_METADATA_BYTES = 16 * 2**20
+MOST_DIRECTORY_BYTES = 4 * 2**20
+"""Unpacked; 400,000 tiles. Those of a map of the whole planet have some hundred kilobytes."""
+MOST_METADATA_BYTES = 4 * 2**20
 MOST_TILE_BYTES = 16 * 2**20
 DEEPEST_DIRECTORY = 4
 FINEST_ZOOM = 24
@@ -150,7 +151,7 @@ class Archive:
         )
         try:
             data: JsonValue = json.loads(raw) if raw else {}
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise _damaged("metadata", "unreadable") from error
         if not isinstance(data, dict):
             raise _damaged("metadata", "senseless")
@@ -216,7 +217,7 @@ class Archive:
         return _gunzip(data, most, part) if self.header["internal_compression"] is Compression.GZIP else data
 
     def _read(self, offset: int, length: int, part: ArchivePart) -> bytes:
-        if offset < 0 or not 0 <= length <= MOST_DIRECTORY_BYTES or offset + length > self.size:
+        if offset < 0 or not 0 <= length <= MOST_TILE_BYTES or offset + length > self.size:
             raise _damaged(part, "cut_off")
         with self.path.open("rb") as file:
             file.seek(offset)

@@ -11,10 +11,12 @@ from pmtiles.tile import TileType
 from pydantic import JsonValue
 
 from backend.maps.archive import TILE_NAMES, Archive, bounds
+from backend.maps.features import MARKUP, MOST_NAME, storable
 from backend.wire.maps import MapPackage, VectorLayer
 
 MOST_VECTOR_LAYERS = 200
 MOST_WORDS = 500
+MOST_FIELDS = 200
 
 
 def describe(archive: Archive, map_id: str, name: str, added_at: datetime) -> MapPackage:
@@ -45,7 +47,7 @@ def plain_text(markup: Any) -> str:
     """Attribution comes as HTML from an untrusted file: only its words are kept."""
     if not isinstance(markup, str):
         return ""
-    return re.sub(r"\s+", " ", html.unescape(re.sub(r"<[^>]*>", "", markup))).strip()[:MOST_WORDS]
+    return storable(re.sub(r"\s+", " ", html.unescape(MARKUP.sub("", markup))).strip()[:MOST_WORDS])
 
 
 def vector_layers(stated: JsonValue) -> list[VectorLayer]:
@@ -61,11 +63,15 @@ def vector_layers(stated: JsonValue) -> list[VectorLayer]:
         fields = entry.get("fields")
         layers.append(
             VectorLayer(
-                id=layer_id,
-                description=str(entry.get("description") or "")[:MOST_WORDS],
+                id=storable(layer_id[:MOST_WORDS]),
+                description=storable(str(entry.get("description") or "")[:MOST_WORDS]),
                 min_zoom=low,
                 max_zoom=high,
-                fields=sorted(map(str, fields)) if isinstance(fields, dict) else [],
+                fields=sorted(storable(name[:MOST_NAME]) for name in list(fields)[:MOST_FIELDS])
+                if isinstance(fields, dict)
+                else [],
             )
         )
-    return layers[:MOST_VECTOR_LAYERS]
+        if len(layers) == MOST_VECTOR_LAYERS:
+            break
+    return layers

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from backend.maps.refusal import MapRefused
 from backend.reasons.maps import GeometryFault, LeftOut, MoreLeftOut, PartLeftOut, TooManyFeatures
-from backend.wire.maps import Box, OverlayCollection, OverlayFeature
+from backend.wire.maps import Box, OverlayFeature
 
 MOST_FEATURES = 50_000
 MOST_NOTES = 20
@@ -17,6 +18,13 @@ MOST_PROPERTIES = 50
 MOST_TEXT = 4000
 MOST_NAME = 200
 """Characters of a name in a note."""
+MARKUP = re.compile(r"<[^<>]*>")
+"""A tag of HTML. One that never closes ends at the next "<": a search through n of them takes n steps, not n²."""
+
+
+def storable(text: str) -> str:
+    """With a question mark for each half of a surrogate pair, which JSON can name and UTF-8 cannot hold."""
+    return text.encode("utf-8", "replace").decode()
 
 
 @dataclass
@@ -38,15 +46,12 @@ class Reading:
 
     def leave_out(self, part: Literal["feature", "placemark"], number: int, name: object, fault: GeometryFault) -> None:
         """name: as the file calls it; only a text that is not empty is one."""
-        called = f' "{name[:MOST_NAME]}"' if isinstance(name, str) and name else ""
+        called = f' "{storable(name[:MOST_NAME])}"' if isinstance(name, str) and name else ""
         self.note(PartLeftOut(part, f"{number}{called}", fault))
 
     def all_notes(self) -> list[LeftOut]:
         more = [MoreLeftOut(self.unnamed_notes)] if self.unnamed_notes else []
         return [*self.notes, *more]
-
-    def collection(self) -> OverlayCollection:
-        return OverlayCollection(features=self.features)
 
     def bounds(self) -> Box:
         positions = [position for feature in self.features for position in _positions(feature.geometry["coordinates"])]
@@ -66,10 +71,11 @@ def plain_properties(properties: dict[str, Any]) -> dict[str, Any]:
     """Numbers, truth values and texts as they are, anything nested as JSON text; long texts are cut."""
     plain: dict[str, Any] = {}
     for name, value in list(properties.items())[:MOST_PROPERTIES]:
+        key = storable(str(name)[:MOST_NAME])
         if isinstance(value, str):
-            plain[str(name)] = value[:MOST_TEXT]
+            plain[key] = storable(value[:MOST_TEXT])
         elif value is None or isinstance(value, bool | int | float):
-            plain[str(name)] = value
+            plain[key] = value
         else:
-            plain[str(name)] = json.dumps(value)[:MOST_TEXT]
+            plain[key] = json.dumps(value)[:MOST_TEXT]
     return plain

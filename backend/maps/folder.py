@@ -23,6 +23,7 @@ import anyio.to_thread
 
 from backend.maps.archive import HEADER_BYTES, Archive, read_header
 from backend.maps.description import describe
+from backend.maps.features import storable
 from backend.maps.refusal import ArchiveUnusable, MapRefused, NotStored
 from backend.reasons.maps import (
     MapLabelDamaged,
@@ -32,6 +33,7 @@ from backend.reasons.maps import (
     UploadIncomplete,
 )
 from backend.wire.maps import MapPackage
+from backend.workers import Workers
 from hardware.reasons.table import FileUnreadable
 
 BLOCK_BYTES = 2**20
@@ -80,14 +82,13 @@ class MapFolder:
 
     def package(self, map_id: str) -> MapPackage:
         """What is known of one map. NotStored when there is none."""
-        archive = _opened(self.path(map_id))
-        name, added_at = self._label(map_id)
-        return describe(archive, map_id, name, added_at)
+        path = self.path(map_id)
+        return _described(path, map_id, *self._label(map_id))
 
     def _label(self, map_id: str) -> tuple[str, datetime]:
         try:
             label = json.loads((self.directory / f"{map_id}.json").read_text("utf-8"))
-            return str(label["name"]), datetime.fromisoformat(label["added_at_utc"])
+            return storable(str(label["name"])), datetime.fromisoformat(label["added_at_utc"])
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise ArchiveUnusable(MapLabelDamaged()) from error
 
@@ -96,11 +97,11 @@ class MapFolder:
         (self.directory / f"{map_id}.json").unlink(missing_ok=True)
 
     async def store(
-        self, body: AsyncIterator[bytes], name: str, announced_bytes: int | None, now: datetime
+        self, body: AsyncIterator[bytes], name: str, announced_bytes: int | None, now: datetime, workers: Workers
     ) -> MapPackage:
         """Write an upload to disk block by block, check it, and make it a map. Nothing is left of a refused one.
 
-        Raises MapRefused as soon as the header shows that the file is none, or when it does not fit.
+        Raises MapRefused as soon as the header shows that the file is none, or when it does not fit; WorkStopped.
         """
         if announced_bytes is not None:
             self._must_fit(announced_bytes, self.room_bytes())
@@ -116,7 +117,10 @@ class MapFolder:
             await anyio.to_thread.run_sync(self._write, upload, bytes(held))
             if announced_bytes is not None and upload.size != announced_bytes:
                 raise MapRefused(UploadIncomplete(upload.size, announced_bytes))
-            return await anyio.to_thread.run_sync(self._keep, upload, name, now)
+            await anyio.to_thread.run_sync(upload.finish)
+            package = await workers.run(read_archive, upload.path, upload.map_id, name, now)
+            await anyio.to_thread.run_sync(self._keep, upload, package)
+            return package
         finally:
             upload.discard()
 
@@ -136,19 +140,20 @@ class MapFolder:
         if size > room:
             raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
 
-    def _keep(self, upload: _Upload, name: str, added_at: datetime) -> MapPackage:
-        upload.finish()
-        archive = Archive(upload.path)
-        archive.check()
-        map_id = upload.digest.hexdigest()[:ID_DIGITS]
-        stated = archive.metadata().get("name")
-        label = name.strip() or (str(stated).strip() if isinstance(stated, str) else "") or f"Map {map_id[:6]}"
-        package = describe(archive, map_id, label[:120], added_at)
-        kept = {"name": package.name, "added_at_utc": added_at.isoformat()}
-        _replace_text(self.directory / f"{map_id}.json", json.dumps(kept))
-        os.replace(upload.path, self.directory / f"{map_id}.pmtiles")
+    def _keep(self, upload: _Upload, package: MapPackage) -> None:
+        kept = {"name": package.name, "added_at_utc": package.added_at_utc.isoformat()}
+        _replace_text(self.directory / f"{package.map_id}.json", json.dumps(kept))
+        os.replace(upload.path, self.directory / f"{package.map_id}.pmtiles")
         _sync_directory(self.directory)
-        return package
+
+
+def read_archive(path: Path, map_id: str, name: str, added_at: datetime) -> MapPackage:
+    """An archive checked and described. name: "" for the one that it states itself. Raises ArchiveUnusable."""
+    archive = Archive(path)
+    archive.check()
+    stated = archive.metadata().get("name")
+    label = name.strip() or (stated.strip() if isinstance(stated, str) else "") or f"Map {map_id[:6]}"
+    return describe(archive, map_id, storable(label[:120]), added_at)
 
 
 class _Upload:
@@ -161,6 +166,10 @@ class _Upload:
         self.path = Path(path)
         self.digest = hashlib.sha256()
         self.size = 0
+
+    @property
+    def map_id(self) -> str:
+        return self.digest.hexdigest()[:ID_DIGITS]
 
     def write(self, block: bytes) -> None:
         self.file.write(block)
@@ -181,6 +190,11 @@ class _Upload:
 def _opened(path: Path) -> Archive:
     """Archives do not change once they have a name made from their content."""
     return Archive(path)
+
+
+@lru_cache(maxsize=64)
+def _described(path: Path, map_id: str, name: str, added_at: datetime) -> MapPackage:
+    return describe(_opened(path), map_id, name, added_at)
 
 
 def _replace_text(path: Path, text: str) -> None:

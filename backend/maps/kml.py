@@ -18,7 +18,7 @@ from xml.etree.ElementTree import Element, ParseError
 from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import fromstring
 
-from backend.maps.features import MOST_NAME, Reading
+from backend.maps.features import MARKUP, MOST_NAME, Reading
 from backend.maps.geojson import DEEPEST_COLLECTION, plain_geometries
 from backend.maps.refusal import MapRefused, PartUnusable
 from backend.reasons.maps import FileLeftOut, KindLeftOut, NotDrawn, NotReadableAs
@@ -129,7 +129,7 @@ def _rings(polygon: Element) -> Iterator[list[list[float]]]:
 
 def _coordinates(element: Element) -> list[list[float]]:
     """Tuples "lon,lat[,height]" apart by white space; some programs put blanks behind the commas."""
-    text = re.sub(r"\s*,\s*", ",", _text(element, "coordinates"))
+    text = ",".join(part.strip() for part in _text(element, "coordinates").split(","))
     return [_numbers(part.split(",")) for part in text.split()]
 
 
@@ -150,7 +150,7 @@ def _attributes(placemark: Element) -> dict[str, Any]:
         elif name and _tag(data) == "SimpleData":
             attributes[name] = (data.text or "").strip()
     for name in ("name", "description"):
-        if words := re.sub(r"<[^>]*>", " ", _text(placemark, name)).strip():
+        if words := MARKUP.sub(" ", _text(placemark, name)).strip():
             attributes[name] = words
     return attributes
 

@@ -8,67 +8,87 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from backend.maps.features import Reading
+from backend.maps.features import Reading, storable
 from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml, read_kmz
 from backend.maps.refusal import MapRefused, NotStored
-from backend.reasons.maps import NothingToDraw, NotReadableAs, OverlayFormat
+from backend.maps.simplify import simplified
+from backend.reasons.maps import NoRoomForMap, NothingToDraw, NotReadableAs, OverlayFormat, OverlayUnusable
 from backend.wire.maps import Overlay, OverlayCollection
 
 MOST_OVERLAY_BYTES = 20 * 10**6
+MOST_STORED_BYTES = 500 * 10**6
+"""Of all overlays together."""
 ID_DIGITS = 16
 
 
 @dataclass(frozen=True)
 class OverlayFolder:
+    """`reserve_bytes`: disk that no upload may take, kept for the journal."""
+
     directory: Path
+    reserve_bytes: int = 0
 
-    def overlays(self) -> list[Overlay]:
-        """By name."""
-        found = [_description(path) for path in self.directory.glob("*.json")]
-        return sorted(found, key=lambda overlay: overlay.name.casefold())
-
-    def collection(self, overlay_id: str) -> OverlayCollection:
-        return OverlayCollection.model_validate_json(self._path(overlay_id).read_bytes())
+    def overlays(self) -> tuple[list[Overlay], list[OverlayUnusable]]:
+        """All overlays by name, and the descriptions that are none."""
+        found: list[Overlay] = []
+        unusable: list[OverlayUnusable] = []
+        for path in sorted(self.directory.glob("*.json")):
+            try:
+                found.append(_description(path))
+            except (OSError, ValueError, KeyError, TypeError, RecursionError):
+                unusable.append(OverlayUnusable(path.name))
+        return sorted(found, key=lambda overlay: overlay.name.casefold()), unusable
 
     def delete(self, overlay_id: str) -> None:
-        path = self._path(overlay_id)
+        path = self.path(overlay_id)
         path.with_suffix(".json").unlink(missing_ok=True)
         path.unlink()
 
     def store(self, content: bytes, name: str, added_at: datetime) -> Overlay:
-        """Read a file and keep what it holds. MapRefused when there is nothing in it that can be drawn."""
+        """Read a file and keep what it holds. MapRefused when there is nothing in it that can be drawn, or no room."""
         kind, reading = read_overlay(content)
         if not reading.features:
             raise MapRefused(NothingToDraw(tuple(reading.all_notes())))
+        features, thinned = simplified(reading.features)
         overlay_id = hashlib.sha256(content).hexdigest()[:ID_DIGITS]
         overlay = Overlay(
             overlay_id=overlay_id,
-            name=name or f"Overlay {overlay_id[:6]}",
+            name=storable(name) or f"Overlay {overlay_id[:6]}",
             format=kind,
-            features=len(reading.features),
+            features=len(features),
             bounds=reading.bounds(),
-            notes=[*reading.all_notes()],
+            notes=[*([] if thinned is None else [thinned]), *reading.all_notes()],
             added_at_utc=added_at,
         )
-        self.directory.mkdir(parents=True, exist_ok=True)
-        self._write(f"{overlay_id}.geojson", reading.collection().model_dump_json())
-        self._write(f"{overlay_id}.json", overlay.model_dump_json())
+        collection = OverlayCollection(features=features).model_dump_json().encode()
+        self._must_fit(len(collection))
+        self._write(f"{overlay_id}.geojson", collection)
+        self._write(f"{overlay_id}.json", overlay.model_dump_json().encode())
         return overlay
 
-    def _path(self, overlay_id: str) -> Path:
+    def _must_fit(self, size: int) -> None:
+        self.directory.mkdir(parents=True, exist_ok=True)
+        used = sum(path.stat().st_size for path in self.directory.glob("*.geojson"))
+        free = shutil.disk_usage(self.directory).free - self.reserve_bytes
+        room = max(0, min(free, MOST_STORED_BYTES - used))
+        if size > room:
+            raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
+
+    def path(self, overlay_id: str) -> Path:
         path = self.directory / f"{overlay_id}.geojson"
         if not path.is_file():
             raise NotStored("overlay", overlay_id)
         return path
 
-    def _write(self, name: str, text: str) -> None:
+    def _write(self, name: str, content: bytes) -> None:
         part = self.directory / f"{name}.part"
-        part.write_text(text, "utf-8")
+        part.write_bytes(content)
         os.replace(part, self.directory / name)
 
 

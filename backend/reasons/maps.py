@@ -162,7 +162,7 @@ class NoRoomForMap:
     code: Literal["no_room_for_map"] = "no_room_for_map"
     english: ClassVar[Words] = Words(
         "The file does not fit: {needed_bytes} more are needed, {room_bytes} may be used.",
-        "Delete maps that are not needed. {reserve_bytes} stay free for the journal.",
+        "Delete maps or overlays that are not needed. {reserve_bytes} stay free for the journal.",
     )
 
 
@@ -306,8 +306,31 @@ class PolygonsUnited:
     english: ClassVar[Words] = Words("{polygons} polygons that touch or overlap were merged into {areas}.")
 
 
+@dataclass(frozen=True, slots=True)
+class PositionsThinned:
+    """tolerance_m: how far a line may lie from where it was; for a large overlay, drawn at every look at the map."""
+
+    before: int
+    after: int
+    tolerance_m: float
+    code: Literal["positions_thinned"] = "positions_thinned"
+    english: ClassVar[Words] = Words(
+        "Of {before} positions {after} are drawn; lines lie within {tolerance_m:1} of the file's."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class OverlayUnusable:
+    """A description in the overlay folder."""
+
+    file: str
+    code: Literal["overlay_unusable"] = "overlay_unusable"
+    english: ClassVar[Words] = Words("Overlay {file}: its description is damaged.", "Upload the overlay again.")
+
+
 LeftOut = Annotated[
-    PartLeftOut | FileLeftOut | KindLeftOut | MoreLeftOut | NotAreas | PolygonsUnited, Field(discriminator="code")
+    PartLeftOut | FileLeftOut | KindLeftOut | MoreLeftOut | NotAreas | PolygonsUnited | PositionsThinned,
+    Field(discriminator="code"),
 ]
 """What was left out or changed while a file was read."""
 
@@ -357,5 +380,7 @@ MapReason = (
     | NothingToDraw
     | NotAreas
     | PolygonsUnited
+    | PositionsThinned
+    | OverlayUnusable
     | NoPolygon
 )

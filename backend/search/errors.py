@@ -14,6 +14,9 @@ class MissionInputError(ReasonedError, ValueError):
         super().__init__(reason)
         self.field = field
 
+    def __reduce__(self) -> tuple[type[MissionInputError], tuple[Reason, str]]:
+        return type(self), (self.reason, self.field)
+
     @property
     def reason(self) -> Reason:
         return carried(super().reason)

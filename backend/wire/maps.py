@@ -121,7 +121,10 @@ class Overlay(Model):
 
 
 class OverlayList(Model):
+    """By name. `unusable`: files in the overlay folder that describe none."""
+
     overlays: list[Overlay]
+    unusable: list[Reason]
 
 
 class OverlayFeature(Model):

@@ -885,7 +885,7 @@ export const reasonsEn: ReasonTable = {
   },
   no_room_for_map: {
     text: "The file does not fit: {needed_bytes} more are needed, {room_bytes} may be used.",
-    remedy: "Delete maps that are not needed. {reserve_bytes} stay free for the journal.",
+    remedy: "Delete maps or overlays that are not needed. {reserve_bytes} stay free for the journal.",
   },
   map_drawn_plainly: {
     text: "{because?layers_not_named=The archive does not say which layers its tiles have, so nothing of it can be drawn|schema_unknown=The map's layers follow no schema that is known here; all of them are drawn alike}.",
@@ -938,6 +938,14 @@ export const reasonsEn: ReasonTable = {
   polygons_united: {
     text: "{polygons} polygons that touch or overlap were merged into {areas}.",
     remedy: "",
+  },
+  positions_thinned: {
+    text: "Of {before} positions {after} are drawn; lines lie within {tolerance_m:1} of the file's.",
+    remedy: "",
+  },
+  overlay_unusable: {
+    text: "Overlay {file}: its description is damaged.",
+    remedy: "Upload the overlay again.",
   },
   no_polygon: {
     text: "The file holds no polygon.",
@@ -1287,6 +1295,18 @@ export const reasonsEn: ReasonTable = {
   foreign_spool: {
     text: "What lies at {path} is not a journal spool.",
     remedy: "Move it away and start again.",
+  },
+  file_too_heavy: {
+    text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",
+    remedy: "Simplify it or divide it, and upload the parts.",
+  },
+  readers_busy: {
+    text: "{waiting|other file is|other files are} waiting to be read.",
+    remedy: "Wait a moment, then upload it again.",
+  },
+  disk_full: {
+    text: "The disk is full. Nothing of the file was kept.",
+    remedy: "Delete maps, overlays or other files, then upload it again.",
   },
   told_before: {
     text: "{text}",

@@ -159,6 +159,11 @@ export function MapsPage() {
       </div>
       <p>{t("maps.overlaysExplain")}</p>
       {overlays && <Overlays list={overlays} onChange={read} />}
+      {overlays?.unusable.map((reason, i) => (
+        <p class="refused" key={i}>
+          {reasonText(reason)}
+        </p>
+      ))}
     </div>
   );
 }

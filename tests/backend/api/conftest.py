@@ -26,6 +26,7 @@ from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.spool import Spool
+from backend.workers import Workers
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.payload.session import PayloadHub
@@ -56,7 +57,7 @@ def settings(tmp_path: Path) -> Settings:
 
 
 @asynccontextmanager
-async def running_services(settings: Settings, vehicle: PaperVehicle) -> AsyncIterator[Services]:
+async def running_services(settings: Settings, vehicle: PaperVehicle, workers: Workers) -> AsyncIterator[Services]:
     await migrate(settings.async_database_url)
     spool = Spool(settings.spool_path, 64 * 1024)
     journal = SqlJournal(make_engine(settings.async_database_url, 2.0), spool, lambda: NOW_S)
@@ -66,7 +67,7 @@ async def running_services(settings: Settings, vehicle: PaperVehicle) -> AsyncIt
     room = mission_room(MissionEquipment({FIRST_CRAFT: craft}, journal, hub, clock, "test"))
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
-        yield Services(room, journal, hub, settings, lambda: NOW_S, payload, finder=finder, pattern=pattern)
+        yield Services(room, journal, hub, settings, lambda: NOW_S, payload, workers, finder=finder, pattern=pattern)
     finally:
         await journal.close()
 
@@ -77,8 +78,8 @@ def vehicle() -> PaperVehicle:
 
 
 @pytest.fixture
-async def services(settings: Settings, vehicle: PaperVehicle) -> AsyncIterator[Services]:
-    async with running_services(settings, vehicle) as services:
+async def services(settings: Settings, vehicle: PaperVehicle, workers: Workers) -> AsyncIterator[Services]:
+    async with running_services(settings, vehicle, workers) as services:
         yield services
 
 

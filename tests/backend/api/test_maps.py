@@ -140,7 +140,7 @@ async def test_overlays(client: httpx.AsyncClient) -> None:
     reply = await client.post("/api/overlays", params={"name": "Nests"}, content=GEOJSON)
     assert reply.status_code == 201
     overlay = reply.json()
-    assert (await client.get("/api/overlays")).json() == {"overlays": [overlay]}
+    assert (await client.get("/api/overlays")).json() == {"overlays": [overlay], "unusable": []}
     collection = (await client.get(f"/api/overlays/{overlay['overlay_id']}")).json()
     assert collection["features"][0]["properties"] == {"name": "nest"}
     assert (await client.delete(f"/api/overlays/{overlay['overlay_id']}")).status_code == 204
@@ -150,4 +150,4 @@ async def test_overlays(client: httpx.AsyncClient) -> None:
 async def test_overlays_that_cannot_be_read(client: httpx.AsyncClient) -> None:
     assert_problem(await client.post("/api/overlays", content=b"lat,lon\n1,2"), 422, "it is something else")
     assert_problem(await client.post("/api/overlays", content=b"<" * 21_000_000), 413, "at most")
-    assert (await client.get("/api/overlays")).json() == {"overlays": []}
+    assert (await client.get("/api/overlays")).json() == {"overlays": [], "unusable": []}

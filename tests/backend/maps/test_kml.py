@@ -142,3 +142,16 @@ def test_a_kmz_without_kml_or_damaged_is_refused() -> None:
         read_kmz(kmz(a_png=b"x"))
     with pytest.raises(MapRefused, match="cannot be unpacked"):
         read_kmz(b"PK\x03\x04 nonsense")
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        f"<Point><coordinates>7,{' ' * 2_000_000}50</coordinates></Point>",
+        f"<LineString><coordinates>{' ' * 2_000_000}7,50 8,51</coordinates></LineString>",
+        f"<description>{'&lt;' * 500_000}</description>{POINT}",
+    ],
+)
+def test_blanks_and_brackets_without_end_take_as_long_as_their_number(inside: str) -> None:
+    """A pattern that tries each blank against all others needs hours for these; the suite's time limit ends it."""
+    assert len(read_kml(kml(placemark(inside))).features) == 1

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
+from backend.maps import overlay_folder
 from backend.maps.overlay_folder import OverlayFolder
 from backend.maps.refusal import MapRefused, NotStored
+from backend.reasons.maps import NoRoomForMap, OverlayUnusable
 
 NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
 GEOJSON = b'\xef\xbb\xbf {"type": "Point", "coordinates": [7.1, 50.2]}'
@@ -21,17 +24,18 @@ def folder(tmp_path: Path) -> OverlayFolder:
 
 
 def test_stored_listed_read_and_deleted(folder: OverlayFolder) -> None:
-    assert folder.overlays() == []
+    assert folder.overlays() == ([], [])
     second = folder.store(KML, "tracks", NOW)
     first = folder.store(GEOJSON, "Nests", NOW)
-    assert folder.overlays() == [first, second]
+    assert folder.overlays() == ([first, second], [])
     assert (first.format, first.features, first.bounds) == ("geojson", 1, (7.1, 50.2, 7.1, 50.2))
     assert second.format == "kml"
-    assert folder.collection(first.overlay_id).features[0].geometry == {"type": "Point", "coordinates": [7.1, 50.2]}
+    stored = json.loads(folder.path(first.overlay_id).read_bytes())
+    assert stored["features"][0]["geometry"] == {"type": "Point", "coordinates": [7.1, 50.2]}
     folder.delete(first.overlay_id)
-    assert folder.overlays() == [second]
+    assert folder.overlays() == ([second], [])
     with pytest.raises(NotStored):
-        folder.collection(first.overlay_id)
+        folder.path(first.overlay_id)
 
 
 @pytest.mark.parametrize(
@@ -47,11 +51,40 @@ def test_stored_listed_read_and_deleted(folder: OverlayFolder) -> None:
 def test_nothing_is_kept_of_what_cannot_be_drawn(folder: OverlayFolder, content: bytes, words: str) -> None:
     with pytest.raises(MapRefused, match=words):
         folder.store(content, "bad", NOW)
-    assert folder.overlays() == []
+    assert folder.overlays() == ([], [])
 
 
 def test_notes_of_before_they_had_names_are_dropped(folder: OverlayFolder) -> None:
     stored = folder.store(GEOJSON, "Nests", NOW)
     label = folder.directory / f"{stored.overlay_id}.json"
     label.write_text(label.read_text().replace('"notes":[]', '"notes":["Feature 2 is left out."]'))
-    assert folder.overlays() == [stored]
+    assert folder.overlays() == ([stored], [])
+
+
+@pytest.mark.parametrize("damaged", [b"", b"{}", b'{"name": "\\ud800"}', b"[" * 100_000, b"\xff", b"null"])
+def test_a_damaged_description_is_named_and_the_others_are_listed(folder: OverlayFolder, damaged: bytes) -> None:
+    stored = folder.store(GEOJSON, "Nests", NOW)
+    (folder.directory / "broken.json").write_bytes(damaged)
+    assert folder.overlays() == ([stored], [OverlayUnusable("broken.json")])
+
+
+def test_half_a_surrogate_in_a_file_or_a_name_does_no_harm(folder: OverlayFolder) -> None:
+    feature = (
+        b'{"type": "Feature", "properties": {"name": "\\ud800", "\\udfff": 1},'
+        b' "geometry": {"type": "Point", "coordinates": [7, 50]}}'
+    )
+    stored = folder.store(feature, "nest \ud800", NOW)
+    assert stored.name == "nest ?"
+    assert folder.overlays() == ([stored], [])
+    (read,) = json.loads(folder.path(stored.overlay_id).read_bytes())["features"]
+    assert read["properties"] == {"name": "?", "?": 1}
+
+
+def test_there_is_room_for_a_few_overlays_only(folder: OverlayFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = folder.store(GEOJSON, "Nests", NOW)
+    used = folder.path(first.overlay_id).stat().st_size
+    monkeypatch.setattr(overlay_folder, "MOST_STORED_BYTES", used + 10)
+    with pytest.raises(MapRefused) as refused:
+        folder.store(KML, "tracks", NOW)
+    assert isinstance(refused.value.reason, NoRoomForMap)
+    assert folder.overlays() == ([first], [])

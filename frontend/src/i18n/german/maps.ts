@@ -31,9 +31,29 @@ export const maps = {
     text: "Nur {arrived_bytes} von {announced_bytes} kamen an.",
     remedy: "Die Datei noch einmal hochladen; nichts wurde behalten.",
   },
+  positions_thinned: {
+    text: "Von {before} Positionen werden {after} gezeichnet; Linien liegen höchstens {tolerance_m:1} neben denen der Datei.",
+    remedy: "",
+  },
+  overlay_unusable: {
+    text: "Überlagerung {file}: Ihre Beschreibung ist beschädigt.",
+    remedy: "Die Überlagerung noch einmal hochladen.",
+  },
+  file_too_heavy: {
+    text: "Die Datei wurde nicht zu Ende gelesen: {limit?time=Es dauerte zu lange|memory=Es brauchte zu viel Speicher|depth=Sie ist zu tief verschachtelt|process=Der Prozess, der sie las, ist beendet} (eine Datei darf {most_s} und {most_bytes} Speicher brauchen). Nichts davon wurde behalten.",
+    remedy: "Vereinfachen oder teilen Sie die Datei, und laden Sie die Teile hoch.",
+  },
+  readers_busy: {
+    text: "{waiting|andere Datei wartet|andere Dateien warten} darauf, gelesen zu werden.",
+    remedy: "Warten Sie einen Augenblick, und laden Sie die Datei dann noch einmal hoch.",
+  },
+  disk_full: {
+    text: "Die Festplatte ist voll. Von der Datei wurde nichts behalten.",
+    remedy: "Löschen Sie Karten, Überlagerungen oder andere Dateien, und laden Sie sie dann noch einmal hoch.",
+  },
   no_room_for_map: {
     text: "Die Datei passt nicht: {needed_bytes} mehr sind nötig, {room_bytes} dürfen belegt werden.",
-    remedy: "Karten löschen, die nicht gebraucht werden. {reserve_bytes} bleiben frei für das Journal.",
+    remedy: "Karten oder Überlagerungen löschen, die nicht gebraucht werden. {reserve_bytes} bleiben frei für das Journal.",
   },
   map_drawn_plainly: {
     text: "{because?layers_not_named=Das Archiv sagt nicht, welche Ebenen seine Kacheln haben; darum ist nichts davon zu zeichnen|schema_unknown=Die Ebenen der Karte folgen keinem hier bekannten Schema; alle werden gleich gezeichnet}.",

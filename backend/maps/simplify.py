@@ -1,0 +1,53 @@
+"""Fewer positions for a large overlay: every look at the map draws all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import shapely
+from shapely.geometry import mapping, shape
+from shapely.geometry.base import BaseGeometry
+
+from backend.reasons.maps import PositionsThinned
+from backend.wire.maps import OverlayFeature
+
+MOST_POSITIONS = 100_000
+FIRST_TOLERANCE_DEG = 1e-6
+"""A tenth of a metre."""
+METRES_A_DEGREE = 111_320.0
+LARGEST_TOLERANCE_DEG = 1.0
+
+
+def simplified(
+    features: Sequence[OverlayFeature], most: int = MOST_POSITIONS
+) -> tuple[list[OverlayFeature], PositionsThinned | None]:
+    """Lines and rings by Douglas and Peucker's rule (Cartographica 10, 1973), with the tolerance doubled until at most
+    `most` positions are left, or none of them can be spared. None: nothing was changed."""
+    shapes = [shape(feature.geometry) for feature in features]
+    before = _positions(shapes)
+    if before <= most:
+        return list(features), None
+    tolerance_deg, after, thinner = FIRST_TOLERANCE_DEG, before, shapes
+    while after > most and tolerance_deg <= LARGEST_TOLERANCE_DEG:
+        thinner = [_thinned(one, tolerance_deg) for one in shapes]
+        after = _positions(thinner)
+        tolerance_deg *= 2
+    changed = [
+        feature if one is was else feature.model_copy(update={"geometry": dict(mapping(one))})
+        for feature, was, one in zip(features, shapes, thinner, strict=True)
+    ]
+    return changed, PositionsThinned(before, after, tolerance_deg / 2 * METRES_A_DEGREE)
+
+
+def _positions(shapes: Sequence[BaseGeometry]) -> int:
+    counts = shapely.get_num_coordinates(shapes)  # pyright: ignore[reportUnknownMemberType]: its stubs lack a type
+    return int(counts.sum())
+
+
+def _thinned(one: BaseGeometry, tolerance_deg: float) -> BaseGeometry:
+    if one.geom_type in ("Point", "MultiPoint"):
+        return one
+    thinner = one.simplify(tolerance_deg, preserve_topology=False)
+    if thinner.is_empty or thinner.geom_type != one.geom_type:
+        thinner = one.simplify(tolerance_deg, preserve_topology=True)
+    return thinner
