@@ -15,14 +15,17 @@ MOST_POSITIONS = 100_000
 FIRST_TOLERANCE_DEG = 1e-6
 """A tenth of a metre."""
 METRES_A_DEGREE = 111_320.0
-LARGEST_TOLERANCE_DEG = 1.0
+LARGEST_TOLERANCE_DEG = 1e-3
 
 
 def simplified(
     features: Sequence[OverlayFeature], most: int = MOST_POSITIONS
 ) -> tuple[list[OverlayFeature], PositionsThinned | None]:
-    """Lines and rings by Douglas and Peucker's rule (Cartographica 10, 1973), with the tolerance doubled until at most
-    `most` positions are left, or none of them can be spared. None: nothing was changed."""
+    """A position of a line or ring is left out when it lies within a tolerance of the one before; the tolerance is
+    doubled until at most `most` are left, or it is as large as an overlay can bear. None: nothing was changed.
+
+    Time grows with the number of positions; Douglas and Peucker's rule took 50 s for a zigzag of 700,000.
+    """
     shapes = [shape(feature.geometry) for feature in features]
     before = _positions(shapes)
     if before <= most:
@@ -47,7 +50,7 @@ def _positions(shapes: Sequence[BaseGeometry]) -> int:
 def _thinned(one: BaseGeometry, tolerance_deg: float) -> BaseGeometry:
     if one.geom_type in ("Point", "MultiPoint"):
         return one
-    thinner = one.simplify(tolerance_deg, preserve_topology=False)
-    if thinner.is_empty or thinner.geom_type != one.geom_type:
-        thinner = one.simplify(tolerance_deg, preserve_topology=True)
-    return thinner
+    try:
+        return shapely.remove_repeated_points(one, tolerance_deg)
+    except shapely.errors.GEOSException:  # a ring smaller than the tolerance
+        return one

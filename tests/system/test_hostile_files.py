@@ -1,0 +1,44 @@
+"""Files from outside, uploaded while a mission flies: an order is answered before the file is read to its end."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+from console import Console
+from hostile_files import HostileFile, hostile_files
+
+pytestmark = pytest.mark.system
+
+
+async def upload(operator: Console, file: HostileFile) -> int:
+    kind = "application/json" if file.path == "/api/areas" else "application/octet-stream"
+    reply = await operator.client.post(file.path, content=file.content, headers={"content-type": kind}, timeout=120)
+    if reply.status_code >= 400:
+        assert reply.json()["reason"]["code"], reply.text
+    return reply.status_code
+
+
+async def test_no_file_holds_up_an_order_or_stops_the_server(operator: Console) -> None:
+    await operator.start()
+    await operator.until_phase("flying")
+    waiting = asyncio.create_task(upload(operator, next(f for f in hostile_files() if not f.accepted)))
+    await asyncio.sleep(0.3)  # it is being read
+    assert (await operator.order("hold"))["accepted"]
+    assert not waiting.done()
+    await waiting
+
+    for file in hostile_files():
+        reading = asyncio.create_task(upload(operator, file))
+        looks = 0
+        while not reading.done():
+            assert (await operator.client.get("/api/health")).status_code == 200
+            looks += 1
+            await asyncio.sleep(0.05)
+        assert (reading.result() < 400) == file.accepted, (file.name, reading.result())
+        assert reading.result() < 500, file.name
+        assert looks > 0
+    for listed in ("/api/maps", "/api/overlays"):
+        assert (await operator.client.get(listed)).status_code == 200
+    assert operator.phases[-1] == "hold"
+    assert (await operator.order("abort"))["accepted"]
