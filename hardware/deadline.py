@@ -17,4 +17,5 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
+        """Asked afresh each time; once true it stays so."""
         return self._clock.now() >= self._end and time.monotonic() >= self._wall_end

@@ -24,6 +24,7 @@ class LocalFrame:
         return float(east), float(north)
 
     def to_geo(self, east: float, north: float) -> Place:
+        """(east, north) in metres at the origin's height to WGS84 degrees."""
         lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat, self.origin.lon, 0.0)
         return Place(float(lat), float(lon))
 

@@ -27,7 +27,9 @@ class IqSource(Protocol):
     """A tuned stream of IQ. Gain is set once, at `open`; no automatic gain: a sweep compares powers."""
 
     @property
-    def sample_rate_hz(self) -> float: ...
+    def sample_rate_hz(self) -> float:
+        """Complex samples a second; the band is as wide, half of it on either side of the centre."""
+        ...
 
     @property
     def gain_db(self) -> float:
@@ -46,7 +48,9 @@ class IqSource(Protocol):
         """Raises ReceiverError when the device is gone; ends at the end of a recording or when closed."""
         ...
 
-    async def close(self) -> None: ...
+    async def close(self) -> None:
+        """Ends `blocks`. Harmless when closed already; `open` may follow."""
+        ...
 
 
 def from_unsigned_bytes(raw: bytes) -> tuple[NDArray[np.complex64], NDArray[np.bool_]]:

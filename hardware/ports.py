@@ -51,6 +51,7 @@ class ReceiverError(HardwareError):
 
     @property
     def reason(self) -> HardwareReason:
+        """The receiver's own, or of what it listens through: a file, a driver, the payload link."""
         return self._hardware_reason
 
 
@@ -73,7 +74,9 @@ class Vehicle(Protocol):
         """Open the link and wait for an autopilot. Raises VehicleUnreachable."""
         ...
 
-    async def close(self) -> None: ...
+    async def close(self) -> None:
+        """Lets go of the link; the vehicle goes on with what it does."""
+        ...
 
     def telemetry(self) -> Telemetry:
         """The latest snapshot; never blocks."""
@@ -91,7 +94,10 @@ class Vehicle(Protocol):
         """Checks of link, GPS, heading, battery, fence and failsafe parameters."""
         ...
 
-    async def take_off(self, altitude_relative_m: float) -> None: ...
+    async def take_off(self, altitude_relative_m: float) -> None:
+        """Arm and climb, in the air already: climb or descend; returns once telemetry says that the altitude is
+        reached."""
+        ...
 
     async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
         """Fly there and return once telemetry says arrived and settled."""
@@ -101,7 +107,9 @@ class Vehicle(Protocol):
         """Turn once through 360 degrees on the spot; returns once telemetry has seen the whole circle."""
         ...
 
-    async def hold(self) -> None: ...
+    async def hold(self) -> None:
+        """Brake and hover, at any time: a flight or turn in progress ends with an error. Returns once it hovers."""
+        ...
 
     async def return_home(self) -> None:
         """Start the autopilot's own return; returns once its mode confirms (not once it has landed)."""
@@ -130,7 +138,9 @@ class Receiver(Protocol):
         """
         ...
 
-    async def close(self) -> None: ...
+    async def close(self) -> None:
+        """Ends samples(). Harmless when closed already; `open` may follow."""
+        ...
 
     def samples(self) -> AsyncIterator[PowerSample]:
         """Power samples from now on, those of each channel in time order and with that channel's exact frequency.
@@ -143,4 +153,6 @@ class Receiver(Protocol):
 class DirectionFinder(Protocol):
     """Sweep to bearing. Pure; called off the event loop."""
 
-    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading: ...
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        """Never raises for a bad sweep: the reading is then not accepted and says why."""
+        ...

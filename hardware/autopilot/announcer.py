@@ -15,6 +15,7 @@ class Wakeup:
         self._event = asyncio.Event()
 
     def wake(self) -> None:
+        """From the event loop only: whoever waits runs at its next turn."""
         self._event.set()
 
     async def wait(self, wall_s: float = 0.1) -> None:
@@ -33,6 +34,7 @@ class Announcer:
         self._queues: set[asyncio.Queue[Announcement | None]] = set()
 
     def say(self, announcement: Announcement) -> None:
+        """To everyone who listens now; never waits."""
         for queue in self._queues:
             if queue.full():
                 queue.get_nowait()
@@ -45,9 +47,11 @@ class Announcer:
         return queue
 
     def forget(self, queue: asyncio.Queue[Announcement | None]) -> None:
+        """Harmless for a queue that is already forgotten."""
         self._queues.discard(queue)
 
     def end(self) -> None:
+        """Tells every listener that nothing more comes; a full queue loses its oldest for that."""
         for queue in self._queues:
             if queue.full():
                 queue.get_nowait()

@@ -20,6 +20,7 @@ class Control:
         return self.authority.who == "ours"
 
     def see(self, seen: Seen) -> None:
+        """Fold what the vehicle showed or somebody did; `changed` is called before this returns."""
         self._become(authority_after(self.authority, seen))
 
     def restore(self, authority: Authority) -> None:

@@ -31,6 +31,7 @@ class FailsafeRule:
         return self.set_to if self.bit is None or value is None else int(value) | self.bit
 
     def holds(self, value: float) -> bool:
+        """value: the parameter as a number; of a bit mask only `bit` is looked at."""
         return bool(int(value) & self.bit) if self.bit is not None else int(value) in self.safe
 
 
@@ -80,9 +81,11 @@ class Dialect:
     failsafes: tuple[FailsafeRule, ...]
 
     def mode_name(self, custom_mode: int) -> str:
+        """As pilots know it; "mode N" for one that this dialect does not name."""
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")
 
     def mode_kind(self, custom_mode: int) -> ModeKind:
+        """What the raw mode means for who flies; "other" may be the pilot."""
         if custom_mode in self.waiting_modes:
             return "waiting"
         if custom_mode in self.returning_modes:

@@ -17,4 +17,5 @@ def north_east_m(a: Place, b: Place) -> tuple[float, float]:
 
 
 def distance_m(a: Place, b: Place) -> float:
+    """Between two places, whatever their altitudes."""
     return math.hypot(*north_east_m(a, b))

@@ -50,6 +50,7 @@ def set_mode(custom: tuple[float, float]) -> Outgoing:
 
 
 def arm() -> Outgoing:
+    """Without force: the autopilot's own prearm checks still refuse."""
     return command_long(ARM, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -78,6 +79,7 @@ def pause() -> Outgoing:
 
 
 def message_interval(message_id: int, hz: float) -> Outgoing:
+    """hz: how often the autopilot is to send that message from now on."""
     return command_long(SET_MESSAGE_INTERVAL, float(message_id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -87,4 +89,5 @@ def result_of(number: int) -> CommandResult:
 
 
 def request_message(message_id: int) -> Outgoing:
+    """The message once, now."""
     return command_long(REQUEST_MESSAGE, float(message_id), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -228,6 +228,7 @@ class Monitor:
         self.wakeup.wake()
 
     def announce(self, news: VehicleNews) -> None:
+        """To the log and to every listener, stamped with the mission's clock."""
         log.info("%s", text_of(news))
         self._announcer.say(Announcement(self.clock.now(), news))
 
@@ -244,6 +245,7 @@ class Monitor:
             raise VehicleUnreachable(VehicleNotConnected(self.link.url))
 
     def telemetry(self) -> Telemetry:
+        """The latest of everything; None where nothing was heard yet. Never blocks."""
         mode, dialect = self.snapshot.custom_mode, self._dialect
         return self.snapshot.telemetry(
             self.clock.now(),

@@ -15,6 +15,7 @@ class Silence:
         self.seconds = 0.0
 
     def heard(self) -> None:
+        """Something came in: the count starts again."""
         self.seconds = 0.0
 
     def look(self, elapsed_s: float) -> None:

@@ -77,6 +77,7 @@ class Snapshot:
 
     @property
     def reboots(self) -> int:
+        """How often the autopilot's time since boot began anew while we listened."""
         return self._boot_clock.reboots
 
     @property
@@ -86,6 +87,7 @@ class Snapshot:
 
     @property
     def in_air(self) -> bool | None:
+        """The autopilot's landed state; without one, armed and more than 1 m up. None: not yet known."""
         if self.landed_state != _UNDEFINED:
             return self.landed_state != _ON_GROUND
         if self.armed is None or self.altitude_relative_m is None:
@@ -94,6 +96,7 @@ class Snapshot:
 
     @property
     def speed_m_s(self) -> float | None:
+        """In three dimensions, climb included. None: not yet heard."""
         return None if self.velocity_ned is None else math.hypot(*self.velocity_ned)
 
     def fold(self, name: str, fields: Fields, heard_at_s: float) -> None:
@@ -192,6 +195,7 @@ class Snapshot:
         authority: Authority,
         autopilot: Literal["px4", "ardupilot", "unknown"],
     ) -> Telemetry:
+        """now_s: UTC epoch seconds of the reading. Whoever holds the snapshot knows link, mode and authority."""
         north, east, down = self.velocity_ned or (None, None, None)
         return Telemetry(
             connected=connected,

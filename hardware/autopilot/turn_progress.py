@@ -32,6 +32,7 @@ class TurnProgress:
 
     @property
     def done(self) -> bool:
+        """The furthest it came round counts: swinging back after the circle does not undo it."""
         return self.furthest_deg >= FULL_CIRCLE - TOLERANCE
 
 

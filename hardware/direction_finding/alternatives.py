@@ -49,6 +49,7 @@ class Alternatives:
 
     @classmethod
     def of(cls, pattern: AntennaPattern) -> Alternatives:
+        """The templates of one antenna, whose strongest gain counts as 1."""
         x: NDArray[np.float64] = np.arange(0.0, 360.0, BIN_DEG)
         peak_db = float(pattern.gain_db.max())
 

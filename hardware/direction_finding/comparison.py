@@ -126,6 +126,7 @@ class Score:
 
 
 def score(readings: list[BearingReading], truths: list[float]) -> Score:
+    """truths: degrees, one a reading. NaN where every accepted reading is an outlier, or none is accepted."""
     pairs = [(r, t) for r, t in zip(readings, truths, strict=True) if r.accepted]
     error = np.array([(r.bearing_deg - t + 180.0) % 360.0 - 180.0 for r, t in pairs])
     sigma = np.array([r.sigma_deg for r, _ in pairs])

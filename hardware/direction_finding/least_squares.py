@@ -26,6 +26,7 @@ class LeastSquaresDirectionFinder:
     minimum_quality: float = MINIMUM_QUALITY
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        """sigma from the misfit's curvature; a sweep that cannot be used gives a refused reading."""
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal is not None:
@@ -54,6 +55,7 @@ class CorrelationDirectionFinder:
     minimum_quality: float = MINIMUM_QUALITY
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        """sigma from the distance's curvature; a sweep that cannot be used gives a refused reading."""
         binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
         refusal = unusable(sweep, binned)
         if refusal is not None:

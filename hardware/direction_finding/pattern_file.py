@@ -49,6 +49,7 @@ class PatternError(ReasonedError):
 
     @property
     def reason(self) -> PatternReason:
+        """Which entry of the file cannot be used, and why."""
         return self._pattern_reason
 
 

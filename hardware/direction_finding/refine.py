@@ -69,9 +69,11 @@ class PatternCurve:
         self.beam_deg = float(np.sum(table > self.peak_db - 3.0) * _STEP_DEG)
 
     def gain_db(self, relative_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+        """relative_deg: any shape, source bearing - antenna heading, any turn of the circle."""
         return self._look_up(self._table, relative_deg)
 
     def slope_db_deg(self, relative_deg: NDArray[np.float64]) -> NDArray[np.float64]:
+        """dG/dx in dB per degree, same argument as `gain_db`."""
         return self._look_up(self._rise, relative_deg)
 
     @staticmethod

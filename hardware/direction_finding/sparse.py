@@ -44,6 +44,7 @@ class PatternBank:
 
     @classmethod
     def of(cls, pattern: AntennaPattern) -> PatternBank:
+        """Columns of the pattern's gain interpolated at every half degree."""
         gain_db = pattern.gain_at(np.linspace(0.0, 360.0, COLUMNS, endpoint=False))
         power = 10.0 ** (gain_db / 10.0)
         scale = 1.0 / np.sqrt(np.sum(power**2) / _PER_BIN)

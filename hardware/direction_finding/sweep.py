@@ -40,6 +40,7 @@ class SweepError(ReasonedError):
 
     @property
     def reason(self) -> SweepReason:
+        """What is missing of the sweep, or does not fit."""
         return self._sweep_reason
 
 

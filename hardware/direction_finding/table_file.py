@@ -23,6 +23,7 @@ class RecordingError(ReasonedError):
 
     @property
     def reason(self) -> RecordingReason:
+        """Which line or column cannot be used, and why."""
         return self._recording_reason
 
 

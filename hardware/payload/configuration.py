@@ -61,6 +61,7 @@ class PayloadConfiguration(BaseModel):
     @field_validator("servers")
     @classmethod
     def websocket_addresses(cls, servers: tuple[str, ...]) -> tuple[str, ...]:
+        """A server without a path gets /api/payload. Raises ValueError for what is no websocket address."""
         for server in servers:
             parts = urlsplit(server)
             if parts.scheme not in {"ws", "wss"} or not parts.hostname:

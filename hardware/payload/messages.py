@@ -44,10 +44,13 @@ class PayloadProtocolError(ReasonedError):
 
     @property
     def reason(self) -> PayloadLinkReason:
+        """What was wrong with the message, or with its turn."""
         return self._link_reason
 
 
 class Message(BaseModel):
+    """Of fields that are all known and numbers that are all finite: anything else is refused when it is parsed."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
@@ -115,6 +118,8 @@ class Status(Message):
 
 
 class Ping(Message):
+    """agent_s: UTC by the agent's clock; comes back in Pong, for the round trip and the offset."""
+
     type: Literal["ping"] = "ping"
     agent_s: Seconds
 
@@ -138,10 +143,12 @@ class WireChannel(Message):
 
     @classmethod
     def of(cls, channel: Channel) -> WireChannel:
+        """As the payload is asked to listen to it."""
         pulses = None if channel.pulses is None else WirePulses(**asdict(channel.pulses))
         return cls(frequency_hz=channel.frequency_hz, pulses=pulses)
 
     def channel(self) -> Channel:
+        """As the receiver on the payload takes it."""
         return Channel(self.frequency_hz, None if self.pulses is None else Pulses(**self.pulses.model_dump()))
 
 
@@ -157,6 +164,8 @@ class Welcome(Message):
 
 
 class Ack(Message):
+    """The server has everything up to `seq`; the agent may forget it."""
+
     type: Literal["ack"] = "ack"
     seq: int = Field(ge=0)
 
@@ -169,11 +178,15 @@ class Resend(Message):
 
 
 class Tune(Message):
+    """From now on listen to these channels, and to no others."""
+
     type: Literal["tune"] = "tune"
     channels: WireChannels
 
 
 class Pong(Message):
+    """agent_s: of the Ping. server_s: UTC by the server's clock when it was answered."""
+
     type: Literal["pong"] = "pong"
     agent_s: Seconds
     server_s: Seconds

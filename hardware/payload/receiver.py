@@ -45,6 +45,7 @@ class PayloadReceiver:
         self._subscription = self._hub.subscribe()
 
     async def close(self) -> None:
+        """Ends samples(); the payload itself listens on."""
         if self._subscription is not None:
             self._hub.unsubscribe(self._subscription)
         self._subscription = None

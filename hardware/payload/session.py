@@ -75,6 +75,7 @@ class Subscription:
     _ready: asyncio.Event = field(default_factory=asyncio.Event)
 
     def put(self, sample: PowerSample) -> None:
+        """Never waits: beyond `capacity` the oldest sample goes."""
         self._samples.append(sample)
         if len(self._samples) > self.capacity:
             self._samples.popleft()
@@ -82,6 +83,7 @@ class Subscription:
         self._ready.set()
 
     async def get(self) -> PowerSample:
+        """Waits for the next sample, for ever if none comes."""
         while not self._samples:
             self._ready.clear()
             await self._ready.wait()
@@ -114,15 +116,18 @@ class PayloadHub:
             session.send(Tune(channels=self.channels))
 
     def subscribe(self) -> Subscription:
+        """Samples of all agents from now on; `unsubscribe` it when done."""
         subscription = Subscription()
         self._subscriptions.append(subscription)
         return subscription
 
     def unsubscribe(self, subscription: Subscription) -> None:
+        """Harmless for a subscription that has ended already."""
         if subscription in self._subscriptions:
             self._subscriptions.remove(subscription)
 
     def connected(self) -> bool:
+        """Whether any payload is on the line now."""
         return any(agent.connected for agent in self.agents.values())
 
     async def serve(self, receive: Callable[[], Awaitable[str]], send: Callable[[str], Awaitable[None]]) -> None:
@@ -161,6 +166,7 @@ class PayloadHub:
         return received
 
     def leave(self, session: PayloadSession, agent: str) -> None:
+        """Does nothing when a newer connection of that agent has taken the session's place."""
         if self._sessions.get(agent) is session:
             del self._sessions[agent]
             self.agents[agent] = replace(self.agents[agent], connected=False)
@@ -198,9 +204,11 @@ class PayloadSession:
         self.outgoing: asyncio.Queue[str] = asyncio.Queue()
 
     def send(self, message: Message) -> None:
+        """Queues the message; never waits."""
         self.outgoing.put_nowait(message.model_dump_json())
 
     def refuse(self, reason: PayloadLinkReason) -> None:
+        """The last message: what is received after it is ignored."""
         self.send(Refused(reason=sentence_of(reason)[:300]))
         self.refused = True
 
@@ -241,5 +249,6 @@ class PayloadSession:
         joined.cancel()
 
     def close(self) -> None:
+        """Marks the agent as disconnected; its state and numbers stay for when it comes back."""
         if self._hello is not None:
             self._hub.leave(self, self._hello.agent)

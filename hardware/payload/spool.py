@@ -29,6 +29,7 @@ class SpoolError(ReasonedError):
 
     @property
     def reason(self) -> SpoolUnusable | SpoolNotWritten:
+        """Whether the file is unusable from the start, or one write failed."""
         return self._spool_reason
 
 
@@ -130,10 +131,12 @@ class Spool:
         return 1 if row is None else int(row[0]) + 1
 
     def waiting(self) -> int:
+        """How many samples have not been acknowledged."""
         with self._lock:
             return self._count()
 
     def close(self) -> None:
+        """What was appended stays in the file; every later call fails."""
         with self._lock:
             self._db.close()
 

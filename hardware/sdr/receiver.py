@@ -69,6 +69,7 @@ class IqReceiver:
             raise ReceiverError(error.reason) from error
 
     async def close(self) -> None:
+        """Closes the source too."""
         self._meters = []
         await self._source.close()
 

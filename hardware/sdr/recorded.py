@@ -34,6 +34,8 @@ class RecordedReceiver:
         self._open = False
 
     async def open(self, channels: Sequence[Channel]) -> None:
+        """Raises ReceiverError for a frequency that is not the recorded one (within 1 %); a sweep without one takes
+        any."""
         recorded, wanted = self._sweep.frequency_hz, only_carrier(channels).frequency_hz
         if recorded > 0 and abs(wanted - recorded) > SAME_FREQUENCY * recorded:
             raise ReceiverError(RecordedElsewhere(recorded, wanted))
@@ -41,6 +43,7 @@ class RecordedReceiver:
         self._open = True
 
     async def close(self) -> None:
+        """Playback ends at the next sample."""
         self._open = False
 
     async def samples(self) -> AsyncIterator[PowerSample]:

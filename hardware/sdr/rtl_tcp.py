@@ -53,13 +53,16 @@ class RtlTcpSource:
 
     @property
     def sample_rate_hz(self) -> float:
+        """As asked for: the server never says what the chip made of it."""
         return self._rate
 
     @property
     def gain_db(self) -> float:
+        """As asked for: the chip takes the nearest of its steps and does not say which."""
         return self._gain
 
     async def open(self, centre_hz: float) -> float:
+        """Tunes to whole hertz. Raises ReceiverError when nobody answers or it is no rtl_tcp server."""
         if not 0 < centre_hz < 2**32:
             raise ReceiverError(FrequencyOutOfRange(centre_hz))
         await self.close()
@@ -92,6 +95,7 @@ class RtlTcpSource:
             raise ReceiverError(NotRtlTcp(self._address))
 
     async def set_gain(self, gain_db: float) -> None:
+        """Before `open`: what the gain will be. Raises ReceiverError when the connection is gone."""
         if self._writer is not None:
             await self._command(SET_GAIN, round(gain_db * 10.0) & 0xFFFFFFFF)
         self._gain = gain_db
@@ -106,6 +110,7 @@ class RtlTcpSource:
             raise ReceiverError(RtlTcpEnded(self._address, broken=True)) from error
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
+        """20 ms each. Time is counted in samples and held to the wall's clock (SampleClock)."""
         reader = self._reader
         if reader is None:
             raise ReceiverError(ReceiverNotOpen())
@@ -131,6 +136,7 @@ class RtlTcpSource:
                 yield IqBlock(at_s, samples, clipped)
 
     async def close(self) -> None:
+        """Whoever iterates over `blocks` comes to an end without an error."""
         writer, self._reader, self._writer = self._writer, None, None
         if writer is not None:
             writer.close()

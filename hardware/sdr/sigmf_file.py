@@ -68,6 +68,7 @@ class SigmfRecording:
 
     @property
     def duration_s(self) -> float:
+        """By its sample count: gaps between segments do not count."""
         return self.samples.size / self.sample_rate_hz
 
     def time_of(self, sample: int) -> float:

@@ -33,14 +33,17 @@ class SigmfSource:
 
     @property
     def sample_rate_hz(self) -> float:
+        """As the recording states it."""
         return self._rate
 
     @property
     def gain_db(self) -> float:
+        """0: a recording's powers are taken as they are."""
         return 0.0
 
     @property
     def duration_s(self) -> float:
+        """By its sample count."""
         return self._samples.size / self._rate
 
     async def open(self, centre_hz: float) -> float:
@@ -51,9 +54,11 @@ class SigmfSource:
         return self._centre
 
     async def set_gain(self, gain_db: float) -> None:
+        """Raises ReceiverError: what is recorded has its gain."""
         raise ReceiverError(GainFixed("recording"))
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
+        """Ends with the recording, or within a block after `close`."""
         size = max(int(self._block_s * self._rate), 1)
         begin_s = self._start_s if self._clock is None else self._clock.now()
         for start in range(0, self._samples.size, size):
@@ -68,4 +73,5 @@ class SigmfSource:
             yield IqBlock(at_s, part, clipped_at_full_scale(part))
 
     async def close(self) -> None:
+        """Ends `blocks` at the next block; `open` allows it to be played again."""
         self._closed = True

@@ -153,13 +153,16 @@ class SoapySource:
 
     @property
     def sample_rate_hz(self) -> float:
+        """What the radio settled for; what was asked for until it is open."""
         return self._wanted_rate if self._radio is None else self._radio.rate_hz
 
     @property
     def gain_db(self) -> float:
+        """What the radio settled for; what was asked for until it is open."""
         return self._wanted_gain if self._radio is None else self._radio.gain_db
 
     async def open(self, centre_hz: float) -> float:
+        """Raises ReceiverError when the device is not found, in use, or refuses the settings."""
         await self.close()
         radio = _Radio(self._device_string, self._arguments, self._channel)
         try:
@@ -177,6 +180,7 @@ class SoapySource:
         self._wanted_gain = gain_db
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
+        """Samples that the driver lost are counted in `lost` of the next block."""
         radio = self._radio
         if radio is None:
             raise ReceiverError(ReceiverNotOpen())
@@ -199,6 +203,7 @@ class SoapySource:
                 received, end_s, gap = received + samples.size, at_s + samples.size / radio.rate_hz, False
 
     async def close(self) -> None:
+        """Returns when the driver has let go of the device."""
         radio, self._radio = self._radio, None
         if radio is not None:
             await radio.end()

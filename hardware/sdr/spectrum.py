@@ -31,6 +31,7 @@ class SpectrumError(ReasonedError):
 
     @property
     def reason(self) -> OutsideBand | SampleRateTooLow | ImpossiblePulses:
+        """Which rate, frequency or pulse does not fit the others."""
         return self._spectrum_reason
 
 

@@ -50,13 +50,16 @@ class SimulatedIq:
 
     @property
     def sample_rate_hz(self) -> float:
+        """As given; every emitter inside this band is heard."""
         return self._rate
 
     @property
     def gain_db(self) -> float:
+        """dB from the front end's input in dBm to full scale."""
         return self._extra_gain_db - self._world.front_end.clip_dbm
 
     async def open(self, centre_hz: float) -> float:
+        """Any frequency can be tuned to, and exactly."""
         self._centre_hz = centre_hz
         return centre_hz
 
@@ -65,9 +68,11 @@ class SimulatedIq:
         self._extra_gain_db = gain_db + self._world.front_end.clip_dbm
 
     async def close(self) -> None:
+        """`blocks` ends after the block at hand."""
         self._centre_hz = None
 
     async def blocks(self) -> AsyncIterator[IqBlock]:
+        """As late as the telemetry: no block is made for a time at which the pose is not yet known."""
         centre_hz = self._centre_hz
         if centre_hz is None:
             raise ReceiverError(ReceiverNotOpen())

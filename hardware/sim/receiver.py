@@ -66,6 +66,7 @@ class SimulatedReceiver:
         self._hearings = [_Hearing(channel, RadioLink(self._world, channel.frequency_hz)) for channel in channels]
 
     async def close(self) -> None:
+        """Ends samples(). A receiver that was unplugged stays so."""
         self._hearings = []
 
     def silence(self, silent: bool) -> None:

@@ -53,6 +53,7 @@ def measure_pattern(world: World, step_deg: float = 5.0, turns: int = 10) -> Ant
 
 
 def main() -> None:
+    """Writes the measured pattern; the seed is the world's."""
     parser = argparse.ArgumentParser(description="Measure the simulated antenna on a simulated turntable.")
     parser.add_argument("file", nargs="?", default=str(SMALL_YAGI), help="where to write the pattern (JSON)")
     parser.add_argument("--seed", type=int, default=1)

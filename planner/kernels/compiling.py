@@ -17,7 +17,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 class Compiler(Protocol):
     """A decorator: what it returns is called as the function that it is given."""
 
-    def __call__(self, function: Function, /) -> Function: ...
+    def __call__(self, function: Function, /) -> Function:
+        """Compiles at the first call, not here."""
+        ...
 
 
 _FLAGS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}

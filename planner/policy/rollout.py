@@ -129,6 +129,7 @@ class Rollout:
     def __call__(
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
     ) -> Decision:
+        """Raises PlannerError when no place of the action space may be flown to."""
         simulation = simulate(
             problem,
             belief,

@@ -19,7 +19,9 @@ class Policy(Protocol):
 
     def __call__(
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
-    ) -> Decision: ...
+    ) -> Decision:
+        """The place, and what the other candidates were worth."""
+        ...
 
 
 class DeterministicPolicy(Protocol):
@@ -31,4 +33,6 @@ class DeterministicPolicy(Protocol):
         belief: GridBelief,
         platform: tuple[float, float],
         rng: np.random.Generator | None = None,
-    ) -> Decision: ...
+    ) -> Decision:
+        """Equal beliefs get equal decisions; `rng` is ignored."""
+        ...

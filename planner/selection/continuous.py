@@ -15,7 +15,9 @@ from planner.types import FloatArray, IntArray, PlannerError
 class SamplePlaces(Protocol):
     """Costs (k, path_to - path_from), s, of places (k, 2), m, on the sample paths path_from <= j < path_to."""
 
-    def __call__(self, places: FloatArray, path_from: int, path_to: int, /) -> FloatArray: ...
+    def __call__(self, places: FloatArray, path_from: int, path_to: int, /) -> FloatArray:
+        """Row i is the cost of places[i], column j that on path path_from + j."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

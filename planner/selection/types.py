@@ -17,7 +17,9 @@ from planner.types import FloatArray, IntArray
 class Sample(Protocol):
     """Costs (k, path_to - path_from), s, of actions (k,) on the sample paths path_from <= j < path_to."""
 
-    def __call__(self, actions: IntArray, path_from: int, path_to: int, /) -> FloatArray: ...
+    def __call__(self, actions: IntArray, path_from: int, path_to: int, /) -> FloatArray:
+        """Row i is the cost of actions[i], column j that on path path_from + j."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,4 +41,6 @@ class SelectionResult:
 class Selection(Protocol):
     """Chooses among `n_actions` within `budget` samples; `rng` is the only source of its own randomness."""
 
-    def __call__(self, sample: Sample, n_actions: int, budget: int, rng: np.random.Generator) -> SelectionResult: ...
+    def __call__(self, sample: Sample, n_actions: int, budget: int, rng: np.random.Generator) -> SelectionResult:
+        """budget: samples of all actions together."""
+        ...

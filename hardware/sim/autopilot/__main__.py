@@ -64,6 +64,7 @@ def _wind(text: str) -> Wind:
 
 
 def parser() -> argparse.ArgumentParser:
+    """The options as `launch.Setting` writes them."""
     p = argparse.ArgumentParser(
         prog="python -m hardware.sim.autopilot",
         description="A simulated multicopter that speaks MAVLink on UDP as PX4 or ArduCopter would. "
@@ -130,6 +131,7 @@ def _leave(_signal: int, _frame: FrameType | None) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
+    """Flies until it is stopped; the exit status, 2 when it cannot start."""
     arguments = parser().parse_args(argv)
     try:
         schedule = Schedule(arguments.speedup, arguments.station_timeout, arguments.parent, arguments.linger)

@@ -47,6 +47,8 @@ GUIDED_AFTER = 9.0
 
 
 class ArduCopter(Firmware):
+    """Mode numbers and parameter defaults are ArduCopter's own."""
+
     name: ClassVar[str] = "ardupilot"
     mav_autopilot: ClassVar[int] = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     modes: ClassVar[dict[str, int]] = {

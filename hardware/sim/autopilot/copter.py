@@ -74,10 +74,12 @@ class Copter:
 
     @property
     def on_ground(self) -> bool:
+        """The ground is flat, at home's height."""
         return self.up <= 0.0
 
     @property
     def battery_percent(self) -> float:
+        """Of the energy left, not of a voltage."""
         return 100.0 * max(0.0, self.energy) / self.airframe.capacity
 
     def step(self, dt: float, demand: Demand | None, error: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:

@@ -73,6 +73,7 @@ class Faults:
 
 
 def deg_or_none(value: float) -> float | None:
+    """MAVLink's NaN means "not given"."""
     return None if math.isnan(value) else value
 
 
@@ -126,6 +127,7 @@ class Firmware(ABC):
 
     @property
     def custom_mode(self) -> int:
+        """The mode's number in this flavour's own coding."""
         return self.modes[self.mode]
 
     def set_mode(self, mode: str) -> None:
@@ -141,6 +143,7 @@ class Firmware(ABC):
         """Begin the flight task of a mode."""
 
     def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
+        """As STATUSTEXT, cut to its 50 bytes."""
         self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
 
     # -- commands --------------------------------------------------------------------------------------------------
@@ -188,9 +191,11 @@ class Firmware(ABC):
 
     @property
     def prearm_ok(self) -> bool:
+        """Also false when a test ordered it so."""
         return self.time >= self.ready_after and not self.faults.no_prearm
 
     def arm(self) -> int:
+        """MAV_RESULT: temporarily rejected until the prearm checks pass. Armed already is accepted."""
         if not self.prearm_ok:
             self.say("Preflight Fail: not ready", mavlink.MAV_SEVERITY_CRITICAL)
             return TEMPORARILY_REJECTED
@@ -200,6 +205,7 @@ class Firmware(ABC):
         return ACCEPTED
 
     def disarm(self) -> int:
+        """MAV_RESULT: denied in the air."""
         if self.flight.in_air:
             return DENIED
         self.flight.disarm()
@@ -224,6 +230,7 @@ class Firmware(ABC):
     # -- time ------------------------------------------------------------------------------------------------------
 
     def step(self, dt: float) -> None:
+        """Advance by dt seconds of simulated time: first the flight, then the failsafes."""
         self.time += dt
         self.flight.step(dt)
         if self.flight.armed:

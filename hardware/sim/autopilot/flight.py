@@ -28,14 +28,17 @@ class Flight:
 
     @property
     def in_air(self) -> bool:
+        """In truth, not by the estimate."""
         return not self.copter.on_ground
 
     def arm(self) -> None:
+        """The motors turn and the copter stays on the ground."""
         self.armed = True
         self.task = "idle"
         self.grounded_for = 0.0
 
     def disarm(self) -> None:
+        """At once, in the air too: who may do so is the firmware's matter."""
         self.armed = False
         self.task = "idle"
         self.copter.yaw_rate = 0.0
@@ -54,6 +57,7 @@ class Flight:
         )
 
     def take_off(self, up: float) -> None:
+        """Straight up to `up` metres above home, on the heading it has."""
         self.demand = self._here()
         self.demand.up = up
         self.task = "take_off"
@@ -86,6 +90,7 @@ class Flight:
         self.task = "return"
 
     def land(self) -> None:
+        """Straight down from where braking ends, at 1 m/s, more slowly below 8 m."""
         self.stop()
         self.task = "land"
         self.demand.descend = 1.0
@@ -113,6 +118,7 @@ class Flight:
         self.demand.yaw_rate_limit = rate_limit
 
     def step(self, dt: float) -> None:
+        """Advance by dt seconds: navigation first, so that the task acts on the newest estimate."""
         self.navigation.step(dt)
         if self.armed and self.task == "return":
             self._advance_return(dt)

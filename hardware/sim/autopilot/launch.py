@@ -47,6 +47,7 @@ class Setting:
     station_timeout_s: float = 8.0
 
     def arguments(self, connect_port: int) -> list[str]:
+        """The command line of `python -m hardware.sim.autopilot`."""
         home = self.home
         arguments = [
             "--flavour", self.flavour,

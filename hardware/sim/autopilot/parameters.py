@@ -11,6 +11,8 @@ INT32, REAL32, INT8, INT16 = 6, 9, 2, 4
 
 @dataclass(slots=True)
 class Parameter:
+    """kind: MAV_PARAM_TYPE."""
+
     value: float
     kind: int
 
@@ -32,9 +34,11 @@ class Parameters:
         return len(self._table)
 
     def names(self) -> list[str]:
+        """In the order in which PARAM_VALUE numbers them."""
         return sorted(self._table)
 
     def kind(self, name: str) -> int:
+        """MAV_PARAM_TYPE. Raises KeyError for a parameter it has not."""
         return self._table[name].kind
 
     def set(self, name: str, value: float) -> None:

@@ -67,6 +67,7 @@ class Process:
 
     @property
     def control_port(self) -> int:
+        """The UDP port that orders go to, also when any free one was asked for."""
         return self._control.getsockname()[1]
 
     def run(self) -> None:
@@ -136,5 +137,6 @@ class Process:
                     self._send(packet)
 
     def close(self) -> None:
+        """Frees both ports."""
         self._link.close()
         self._control.close()

@@ -24,6 +24,7 @@ from hardware.sim.autopilot.parameters import INT32, REAL32, Parameters
 
 
 def px4_mode(main: int, sub: int = 0) -> int:
+    """custom_mode of HEARTBEAT: main mode in bits 16 to 23, sub mode in 24 to 31 (px4_custom_mode.h)."""
     return main << 16 | sub << 24
 
 
@@ -55,6 +56,8 @@ DEFAULTS: dict[str, tuple[float, int]] = {
 
 
 class Px4(Firmware):
+    """Mode numbers and parameter defaults are PX4's own."""
+
     name: ClassVar[str] = "px4"
     mav_autopilot: ClassVar[int] = mavlink.MAV_AUTOPILOT_PX4
     modes: ClassVar[dict[str, int]] = {

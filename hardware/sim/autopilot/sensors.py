@@ -31,6 +31,7 @@ class Navigation:
         self._jump, self._jump_left = (north, east), seconds
 
     def step(self, dt: float) -> None:
+        """Advance by dt seconds; the position error changes with each fix, every 0.2 s."""
         self._age += dt
         self._jump_left = max(0.0, self._jump_left - dt)
         if self._age < self._next_fix:
@@ -48,14 +49,17 @@ class Navigation:
 
     @property
     def north(self) -> float:
+        """Estimated, m from home."""
         return self._copter.north + self.error[0]
 
     @property
     def east(self) -> float:
+        """Estimated, m from home."""
         return self._copter.east + self.error[1]
 
     @property
     def up(self) -> float:
+        """Estimated, m above home."""
         return self._copter.up + self.error[2]
 
     def heading_deg(self) -> float:

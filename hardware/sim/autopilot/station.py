@@ -54,6 +54,7 @@ class Station:
     # -- out -------------------------------------------------------------------------------------------------------
 
     def pack(self, message: Any) -> bytes:
+        """With the next MAVLink sequence number."""
         return bytes(message.pack(self._encoder))
 
     def due(self) -> Iterator[bytes]:

@@ -45,6 +45,7 @@ def below_threshold(weight, along, across, cells, ea, eb, second_moment, m0, thr
 
 @jit
 def distance_sum(weight, along, across, first, last, ea, eb):
+    """Sum of weight times distance to (ea, eb) over the cells first <= i < last: metres times weight."""
     total = 0.0
     w, a, b = weight[first:last], along[first:last], across[first:last]
     for i in range(last - first):
