@@ -104,6 +104,7 @@ def _pattern(mission: MissionSpec, equipment: CraftEquipment) -> CheckFact:
 
 
 def check_fact(check: PreflightCheck) -> CheckFact:
+    """The hardware's check, as facts and the wire carry it."""
     return CheckFact(name=check.name, ok=check.ok, reason=carried(check.reason), blocking=check.blocking)
 
 

@@ -20,6 +20,8 @@ class CancelWork:
 
 @dataclass(frozen=True, slots=True)
 class TakeOff:
+    """In the air already: fly to the flight altitude over the place where it is."""
+
     altitude_relative_m: float
 
 
@@ -33,6 +35,8 @@ class PlanNext:
 
 @dataclass(frozen=True, slots=True)
 class FlyTo:
+    """The way round no-fly zones, at the flight altitude, is the work's matter."""
+
     place_number: int
     place: Place
 
@@ -47,6 +51,8 @@ class Measure:
 
 @dataclass(frozen=True, slots=True)
 class HoldVehicle:
+    """Brake and hover where it is."""
+
     pass
 
 
@@ -59,6 +65,8 @@ class ReturnHome:
 
 @dataclass(frozen=True, slots=True)
 class Land:
+    """Where it is."""
+
     pass
 
 
@@ -77,6 +85,8 @@ class StartTimer:
 
 @dataclass(frozen=True, slots=True)
 class CancelTimer:
+    """Harmless when it does not run."""
+
     name: TimerName
 
 

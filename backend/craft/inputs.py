@@ -66,6 +66,8 @@ class NothingToPlan:
 
 @dataclass(frozen=True, slots=True)
 class Arrived:
+    """distance_m: how far from where it was sent to. flight_time_s: by the mission's clock."""
+
     place: Place
     distance_m: float
     flight_time_s: float
@@ -112,12 +114,16 @@ class FailsafeEnded:
 
 @dataclass(frozen=True, slots=True)
 class LinkDown:
+    """because: what was lost, as the alert will say it."""
+
     link: Link
     because: Reason
 
 
 @dataclass(frozen=True, slots=True)
 class LinkUp:
+    """outage_s: how long nothing came over it."""
+
     link: Link
     outage_s: float
 
@@ -146,6 +152,8 @@ class Landed:
 
 @dataclass(frozen=True, slots=True)
 class TimerExpired:
+    """A timer that was cancelled does not expire any more."""
+
     name: TimerName
 
 

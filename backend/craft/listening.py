@@ -44,9 +44,11 @@ class Listening:
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
+        """In the background until `stop`; whatever is wrong with the receiver shows in `trouble`."""
         self._task = asyncio.create_task(self._listen())
 
     async def stop(self) -> None:
+        """Closes the receiver; afterwards the state is "off"."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -109,6 +111,7 @@ class Listening:
         return None if self._heard_at_s is None else self._clock.now() - self._heard_at_s
 
     def last(self, frequency_hz: float) -> PowerSample | None:
+        """The newest sample of a channel, None before the first. Raises KeyError for a channel not listened to."""
         return self._ears[frequency_hz].last
 
     def between(self, begin_s: float, end_s: float, frequency_hz: float) -> list[PowerSample]:

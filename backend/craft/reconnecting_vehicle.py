@@ -30,7 +30,10 @@ class MendsFailsafes(Protocol):
 
 
 class ReconnectingVehicle:
-    """The Vehicle port on a link that is opened when somebody answers. `make` builds one not yet connected."""
+    """The Vehicle port on a link that is opened when somebody answers. `make` builds one not yet connected.
+
+    Until then commands raise VehicleUnreachable, telemetry is not connected, `changes` waits, and preflight says why.
+    """
 
     def __init__(self, make: Callable[[], Vehicle], clock: Clock, where: str) -> None:
         self._make = make

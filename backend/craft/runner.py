@@ -73,6 +73,7 @@ class CraftRunner:
 
     @property
     def limits(self) -> Limits:
+        """Of the search area of now: they change with it."""
         return self.work.limits
 
     def begin(self) -> None:
@@ -119,6 +120,7 @@ class CraftRunner:
                 return ()
 
     def carry_out(self, effect: effects.CraftEffect) -> None:
+        """Begins the work and returns; what comes of it is given to the machine."""
         vehicle = self.equipment.vehicle
         match effect:
             case effects.CancelWork():
@@ -249,6 +251,7 @@ class CraftRunner:
             self.flush_track()
 
     def flush_track(self) -> None:
+        """Hands over what was not kept yet, at once."""
         points = self.watch.track.take()
         if points:
             self._keep_track(points)

@@ -78,6 +78,7 @@ def battery_to_return_percent(limits: Limits, position: Place, drain_percent_s: 
 
 
 def limits_of(task: SearchTask) -> Limits:
+    """From the specification and the home at the start; geometry in the task's own frame."""
     flight = task.mission.flight
     return Limits(
         frame=task.frame,

@@ -70,6 +70,7 @@ class CraftState:
 
     @property
     def taken_over(self) -> bool:
+        """A pilot flies, or did last and nobody has taken control back."""
         return pilot_has(self.authority)
 
     @property

@@ -60,6 +60,7 @@ class CraftStep:
         return self.craft.authority.who == "failsafe"
 
     def do(self, effect: CraftEffect) -> None:
+        """Ask for it, after what was asked for before; the state does not change."""
         self.effects.append(effect)
 
     def record(self, event: Event) -> None:
@@ -69,6 +70,7 @@ class CraftStep:
         self.effects.append(Record(event))
 
     def go(self, after: Phase, reason: Reason) -> None:
+        """Nothing is recorded when the craft is in that phase already."""
         before = self.craft.phase
         if before != after:
             self.record(PhaseChanged(craft_id=self.craft.craft_id, before=before, after=after, reason=reason))
@@ -100,11 +102,13 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
 
 
 def take_off(step: CraftStep, reason: Reason) -> None:
+    """To the mission's flight altitude, metres above home."""
     step.go("taking_off", reason)
     step.do(TakeOff(step.search.mission.flight.altitude_relative_m))
 
 
 def measure(step: CraftStep, reason: Reason) -> None:
+    """One more attempt at the place where it is."""
     step.go("measuring", reason)
     number, attempt = step.craft.place_number, step.craft.attempt + 1
     step.record(SweepStarted(craft_id=step.craft.craft_id, place_number=number, attempt=attempt))
@@ -112,6 +116,7 @@ def measure(step: CraftStep, reason: Reason) -> None:
 
 
 def go_home(step: CraftStep, reason: Reason) -> None:
+    """Whatever work runs is dropped; the autopilot's own return brings the vehicle down."""
     step.do(CancelWork())
     step.go("returning", reason)
     bring_down(step, ReturnHome())
@@ -139,6 +144,7 @@ def come_down(step: CraftStep, reason: Reason, outcome: Outcome | None = None) -
 
 
 def cancel_timers(step: CraftStep) -> None:
+    """All that a craft can have, whether they run or not."""
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("landing"))
@@ -153,6 +159,7 @@ def alert(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "a
 
 
 def clear_alerts(step: CraftStep, *topics: Topic) -> None:
+    """Of this craft only."""
     for raised in step.craft.open_alerts:
         if raised.topic in topics:
             step.record(AlertCleared(alert_id=raised.alert_id))
@@ -165,6 +172,7 @@ def clear_failsafe(step: CraftStep) -> None:
 
 
 def record_vetoes(step: CraftStep, vetoes: tuple[Reason, ...]) -> None:
+    """One fact a veto; nothing is ordered."""
     for reason in vetoes:
         step.record(SafetyVetoed(craft_id=step.craft.craft_id, reason=reason))
 

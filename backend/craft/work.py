@@ -42,6 +42,7 @@ class Work:
     keep_sweep: Callable[[Measured, int, int], None]
 
     async def take_off(self, effect: effects.TakeOff) -> inputs.CraftInput:
+        """InTheAir, or WorkVetoed. Raises VehicleError."""
         vehicle, now = self.equipment.vehicle, await recent(self.situation)
         position = now.telemetry.position
         if now.telemetry.in_air and position is not None:
@@ -59,6 +60,7 @@ class Work:
         return inputs.InTheAir(self._here(), heard.altitude_relative_m or effect.altitude_relative_m)
 
     async def fly(self, effect: effects.FlyTo) -> inputs.CraftInput:
+        """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""
         began_s, speed = self.equipment.clock.now(), self.task.mission.flight.speed_m_s
         end, altitude = self.task.frame.to_enu(effect.place), self.task.altitude_at(effect.place)
         try:
@@ -77,6 +79,7 @@ class Work:
         return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)
 
     async def measure(self, effect: effects.Measure) -> inputs.CraftInput:
+        """SweepTaken, a rejected sweep too, or WorkVetoed. Raises HardwareError."""
         vetoes = turn_vetoes(self.limits, await recent(self.situation))
         if vetoes:
             return inputs.WorkVetoed(vetoes)
@@ -88,6 +91,7 @@ class Work:
         return inputs.SweepTaken(tuple(measured.fact for measured in found))
 
     async def plan(self, effect: effects.PlanNext) -> inputs.CraftInput:
+        """Planned, or NothingToPlan; the planner runs in a thread. Raises VehicleError when the place is unknown."""
         position = (await recent(self.situation)).telemetry.position
         if position is None:
             raise VehicleError(PositionLost())

@@ -30,6 +30,7 @@ class Beliefs:
         self._newest.clear()
 
     def update(self, emitter: EmitterState) -> None:
+        """Begins to fold the emitter's bearings; an older request about it is dropped. Returns at once."""
         running = self._running.pop(emitter.emitter_id, None)
         if running is not None:
             running.cancel()
@@ -53,6 +54,7 @@ class Beliefs:
         return belief, self._task.emitters[emitter_id].corners_lon_lat(belief)
 
     async def close(self) -> None:
+        """What is being folded is given to nobody any more."""
         tasks = list(self._running.values())
         for task in tasks:
             task.cancel()

@@ -18,6 +18,8 @@ TICKS_A_STATUS = 10
 
 @dataclass(slots=True)
 class Display:
+    """Shows, and stores nothing: what must survive a restart is a fact."""
+
     equipment: MissionEquipment
     flights: Flights
 
@@ -34,6 +36,7 @@ class Display:
             await asyncio.sleep(TELEMETRY_S)
 
     def status(self) -> Status:
+        """As the page gets it; mission_id None: nothing flies."""
         active = self.flights.active
         failing = active is not None and active.outbox.failing
         return Status(

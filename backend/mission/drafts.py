@@ -26,6 +26,8 @@ log = logging.getLogger("crossfix.mission")
 
 @dataclass(slots=True)
 class Drafts:
+    """Every change is a fact in the journal before the call returns."""
+
     equipment: MissionEquipment
     records: Records
     flights: Flights

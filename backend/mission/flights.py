@@ -59,6 +59,7 @@ class Flights:
         return None if self.active is None else self.active.crafts.get(craft_id)
 
     def listening(self, craft_id: str) -> Listening | None:
+        """None while the craft does not fly: then nobody drains its receiver."""
         craft = self.craft(craft_id)
         return None if craft is None else craft.listening
 

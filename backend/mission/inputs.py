@@ -13,6 +13,8 @@ from backend.search.inputs import SearchInput
 
 @dataclass(frozen=True, slots=True)
 class ToCraft:
+    """A craft that the mission does not know yet is met as a newcomer."""
+
     craft_id: str
     given: CraftInput
 

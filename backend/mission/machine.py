@@ -180,5 +180,6 @@ def crafts_meant(state: MissionState, command: ForCraft, joining: Collection[str
 
 
 def open_alert_ids(state: MissionState) -> frozenset[str]:
+    """Of the search and of all craft: those raised and not cleared, acknowledged or not."""
     owners = (state.search, *state.crafts.values())
     return frozenset(raised.alert_id for owner in owners for raised in owner.open_alerts)

@@ -24,6 +24,8 @@ from backend.spec import MissionSpec, Place, SearchArea
 
 @dataclass(slots=True)
 class Questions:
+    """Heavy answers are computed in threads; a mission that flies goes on meanwhile."""
+
     equipment: MissionEquipment
     records: Records
     flights: Flights

@@ -32,6 +32,7 @@ class Records:
         self._locks: dict[str, asyncio.Lock] = {}
 
     def lock(self, mission_id: str) -> asyncio.Lock:
+        """The same one for every caller, made at the first call."""
         return self._locks.setdefault(mission_id, asyncio.Lock())
 
     async def read(self, mission_id: str) -> list[Recorded]:

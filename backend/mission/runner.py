@@ -60,6 +60,7 @@ class MissionRunner:
 
     @property
     def state(self) -> MissionState:
+        """Folded from all facts so far, stored already or still on their way to the journal."""
         return self._state
 
     def join(self, craft: CraftEquipment) -> CraftRunner:

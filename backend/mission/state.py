@@ -56,6 +56,7 @@ class MissionState:
 
     @property
     def phase(self) -> MissionPhase:
+        """What a craft does as long as one is engaged, else the stage of the search."""
         search = self.search
         engaged: list[Phase] = [craft.phase for craft in self.engaged]
         return phase_of(search.outcome, search.started_at_s is not None, search.passed, engaged)

@@ -11,6 +11,7 @@ from hardware.direction_finding.antenna import AntennaPattern
 
 
 def antenna_fact(pattern: AntennaPattern) -> AntennaFact:
+    """The whole pattern: a later change of its file does not change what a mission says of itself."""
     return AntennaFact(
         name=pattern.name,
         relative_bearing_deg=pattern.relative_bearing_deg.tolist(),

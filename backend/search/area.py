@@ -98,6 +98,7 @@ def fence(mission: MissionSpec, area: BaseGeometry, frame: LocalFrame) -> BaseGe
 
 
 def no_fly(mission: MissionSpec, frame: LocalFrame) -> tuple[BaseGeometry, ...]:
+    """One geometry a zone, m ENU of `frame`. Raises MissionInputError."""
     return tuple(
         area_geometry(zone, frame, f"flight.no_fly.{i}", "no_fly") for i, zone in enumerate(mission.flight.no_fly)
     )

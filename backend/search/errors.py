@@ -19,6 +19,7 @@ class MissionInputError(ReasonedError, ValueError):
 
     @property
     def reason(self) -> Reason:
+        """Of any room: the wire's union holds them all."""
         return carried(super().reason)
 
 
@@ -34,4 +35,5 @@ class MissionConflict(ReasonedError, RuntimeError):
 
     @property
     def reason(self) -> Reason:
+        """Of any room: the wire's union holds them all."""
         return carried(super().reason)

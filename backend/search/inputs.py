@@ -12,11 +12,15 @@ from backend.spec import MissionSpec
 
 @dataclass(frozen=True, slots=True)
 class Edited:
+    """The whole specification, not what changed of it."""
+
     spec: MissionSpec
 
 
 @dataclass(frozen=True, slots=True)
 class PreflightDone:
+    """The whole checklist, in its order."""
+
     checks: tuple[CheckFact, ...]
 
 

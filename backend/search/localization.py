@@ -72,6 +72,7 @@ class Localization:
 
     @property
     def home(self) -> Place:
+        """Degrees; (0, 0) of the frame."""
         return self.frame.origin
 
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
@@ -174,6 +175,7 @@ class Localization:
         return self.frame.to_lon_lat(np.array([(west, south), (east, south), (east, north), (west, north)]))
 
     def place(self, x: float, y: float) -> Place:
+        """(x, y) in m ENU to degrees."""
         point = self.frame.to_geo(x, y)
         return point
 

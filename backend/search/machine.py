@@ -48,6 +48,7 @@ class SearchStep:
     effects: list[SearchEffect] = field(default_factory=list[SearchEffect])
 
     def do(self, effect: SearchEffect) -> None:
+        """Ask for it, after what was asked for before; the state does not change."""
         self.effects.append(effect)
 
     def record(self, event: Event) -> None:
@@ -208,6 +209,7 @@ def alert(step: SearchStep, topic: Topic, level: Literal["warning", "caution", "
 
 
 def clear_alerts(step: SearchStep, *topics: Topic) -> None:
+    """Of the search only; those of its craft stay."""
     for alert in step.state.open_alerts:
         if alert.topic in topics:
             step.record(AlertCleared(alert_id=alert.alert_id))

@@ -37,6 +37,7 @@ def task_in(state: SearchState, area: SearchArea) -> SearchTask:
 
 
 def task_or_reason(state: SearchState, area: SearchArea) -> SearchTask | Reason:
+    """The reason instead of MissionInputError: it is refused like an order."""
     try:
         return task_in(state, area)
     except MissionInputError as error:

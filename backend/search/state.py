@@ -64,14 +64,17 @@ class EmitterState:
 
     @property
     def bearing_ids(self) -> tuple[str, ...]:
+        """Of those that count, in the order in which they are folded."""
         return tuple(b.bearing_id for b in self.bearings)
 
     @property
     def localized(self) -> bool:
+        """Never by a belief that bearings or the area have outrun."""
         return self.belief_current and self.belief is not None and self.belief.localized
 
     @property
     def not_yet(self) -> tuple[Reason, ...]:
+        """What is missing for "localized"; nothing before the first belief."""
         return () if self.belief is None else tuple(self.belief.not_yet)
 
 
@@ -97,6 +100,7 @@ class SearchState:
 
     @property
     def stage(self) -> Stage:
+        """ "ready": the last checklist passed; "open": a craft has started."""
         if self.outcome is not None:
             return "ended"
         if self.started_at_s is not None:
@@ -105,6 +109,7 @@ class SearchState:
 
     @property
     def mission(self) -> MissionSpec:
+        """Raises ValueError for a journal without a draft."""
         if self.spec is None:
             raise ValueError("this mission has no specification: its journal does not begin with mission_drafted")
         return self.spec
@@ -116,6 +121,7 @@ class SearchState:
 
     @property
     def beliefs_current(self) -> bool:
+        """True also of a search without emitters."""
         return all(emitter.belief_current for emitter in self.emitters.values())
 
     @property
@@ -131,6 +137,7 @@ class SearchState:
 
     @property
     def not_yet(self) -> tuple[Reason, ...]:
+        """Of every emitter still looked for."""
         return tuple(reason for emitter in self.wanted for reason in emitter.not_yet)
 
     @property
@@ -139,6 +146,7 @@ class SearchState:
         return tuple(bearing for emitter in self.emitters.values() for bearing in emitter.measured)
 
     def bearing(self, bearing_id: str) -> tuple[EmitterState, BearingMeasured] | None:
+        """Also one that was excluded; None for an unknown id."""
         for emitter in self.emitters.values():
             for bearing in emitter.measured:
                 if bearing.bearing_id == bearing_id:

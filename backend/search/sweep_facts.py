@@ -77,6 +77,7 @@ def rejected(
     binned_db: list[float | None] | None = None,
     fitted_db: list[float | None] | None = None,
 ) -> SweepRejected:
+    """binned_db, fitted_db: (180,) dB, None for a sweep that never got that far."""
     nothing: list[float | None] = [None] * BINS
     return SweepRejected(
         emitter_id=taken.emitter_id,

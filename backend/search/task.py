@@ -27,6 +27,7 @@ class SearchTask:
 
     @property
     def home(self) -> Place:
+        """Degrees; (0, 0) of the frame."""
         return self.frame.origin
 
     @property
@@ -35,6 +36,7 @@ class SearchTask:
         return next(iter(self.emitters.values()))
 
     def place(self, x: float, y: float) -> Place:
+        """(x, y) in m ENU to degrees."""
         return self.frame.to_geo(x, y)
 
     def altitude_at(self, place: Place) -> float:

@@ -15,6 +15,8 @@ RECOVERED_PERCENT = 2.0
 
 @dataclass(slots=True)
 class BatteryWatch:
+    """Alerts once a cause, and again when the cause or who flies changes."""
+
     _alerted: tuple[str, str] = ("", "")
     """The code of the veto, and who flew then: a change of either raises an alert again."""
     _unheard_since_s: float | None = None

@@ -22,6 +22,7 @@ class Drain:
     percent_s: float = NOMINAL_DRAIN_PERCENT_S
 
     def update(self, telemetry: Telemetry, now_s: float) -> None:
+        """Until MEASURED_DRAIN_PERCENT is used the rate stays the nominal one; a fuller battery starts again."""
         charge, at_s = telemetry.battery_percent, telemetry.battery_at_s or now_s
         if telemetry.in_air is False:
             self.began = None

@@ -19,6 +19,7 @@ class Track:
     _tracked_at_s: float = -math.inf
 
     def update(self, telemetry: Telemetry, now_s: float) -> None:
+        """Nothing is kept of a vehicle that is not heard, or whose place, altitude or heading is unknown."""
         position = telemetry.position
         values = (telemetry.altitude_amsl_m, telemetry.altitude_relative_m, telemetry.heading_deg)
         if now_s - self._tracked_at_s < TRACK_S or position is None or None in values or not telemetry.connected:
@@ -39,5 +40,6 @@ class Track:
         )
 
     def take(self) -> list[TrackPoint]:
+        """What has collected since the last call, oldest first."""
         points, self.points = self.points, []
         return points

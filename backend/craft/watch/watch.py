@@ -45,10 +45,12 @@ class Watch:
         self._authority = AuthorityWatch(self.equipment.vehicle.telemetry().authority)
 
     def situation(self) -> Situation:
+        """The vehicle as heard now, with what its battery drains; no tick needed."""
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         return Situation(telemetry, now, self.drain.percent_s, self._links.vehicle_since_s)
 
     async def run(self) -> None:
+        """Until cancelled, every TICK_S of the mission's clock."""
         while True:
             self.tick()
             await self.equipment.clock.sleep(TICK_S)

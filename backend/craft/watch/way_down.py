@@ -16,6 +16,8 @@ LANDED_FOR_S = 1.0
 
 @dataclass(slots=True)
 class WayDown:
+    """Remembers whether the vehicle was seen flying: what never rose has not landed."""
+
     _flown: bool = False
     _on_ground_since_s: float | None = None
 
