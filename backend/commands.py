@@ -21,10 +21,14 @@ class CraftCommand(Model):
 
 
 class Start(CraftCommand):
+    """Runs the checklist first; refused unless every blocking check passes."""
+
     kind: Literal["start"] = "start"
 
 
 class Hold(CraftCommand):
+    """Brake and hover, whatever the craft does."""
+
     kind: Literal["hold"] = "hold"
 
 
@@ -35,6 +39,8 @@ class Resume(CraftCommand):
 
 
 class Return(CraftCommand):
+    """The autopilot's own return; on the way the craft may still be held, and the search resumed."""
+
     kind: Literal["return"] = "return"
 
 
@@ -52,14 +58,20 @@ class Override(CraftCommand):
 
 
 class Accept(CraftCommand):
+    """Of the proposed place: fly there."""
+
     kind: Literal["accept"] = "accept"
 
 
 class Veto(CraftCommand):
+    """Of the proposed place: the planner chooses again without it."""
+
     kind: Literal["veto"] = "veto"
 
 
 class SetAutomatic(CraftCommand):
+    """automatic: places are flown to without being accepted."""
+
     kind: Literal["set_automatic"] = "set_automatic"
     automatic: bool
 
@@ -72,6 +84,8 @@ class ChangeArea(Model):
 
 
 class ExcludeBearing(Model):
+    """The belief is folded again without it; it stays in the journal."""
+
     kind: Literal["exclude_bearing"] = "exclude_bearing"
     bearing_id: str
     reason: str = Field(default="", max_length=200)
@@ -79,6 +93,8 @@ class ExcludeBearing(Model):
 
 
 class AcknowledgeAlert(Model):
+    """Somebody has seen it; it stays open until its cause is gone."""
+
     kind: Literal["acknowledge_alert"] = "acknowledge_alert"
     alert_id: str
 
@@ -89,6 +105,8 @@ Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
 
 
 class CommandRequest(Model):
+    """command_id: made by the client; sent twice, the command is carried out once."""
+
     command_id: UUID
     command: Command
 

@@ -47,7 +47,9 @@ class Journal(Protocol):
         """For a person to look at: facts that were refused. They are counted and block nothing."""
         ...
 
-    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]: ...
+    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
+        """The events after number `after`, in order; empty for an unknown mission. Raises JournalUnavailable."""
+        ...
 
     async def save_sweep(
         self,
@@ -62,7 +64,9 @@ class Journal(Protocol):
         """craft_id None: an import's. Raises JournalUnavailable, FactRefused (then it was kept aside)."""
         ...
 
-    async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None: ...
+    async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None:
+        """Oldest first. Raises JournalUnavailable, FactRefused (then they were kept aside)."""
+        ...
 
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft still flies: what a restart must bring back."""
@@ -95,9 +99,13 @@ class Status:
 class Publisher(Protocol):
     """Shows facts and newest-wins values to whoever watches; never blocks, never raises for a slow client."""
 
-    def events(self, recorded: Sequence[Recorded]) -> None: ...
+    def events(self, recorded: Sequence[Recorded]) -> None:
+        """Only what is durable already. None is ever dropped: a viewer that fell behind reads the journal."""
+        ...
 
-    def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None: ...
+    def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None:
+        """now_s: UTC epoch seconds, against which ages are told."""
+        ...
 
     def sweep_progress(
         self,
@@ -108,7 +116,9 @@ class Publisher(Protocol):
         heading_deg: list[float],
         power_db: list[float],
         turned_deg: float,
-    ) -> None: ...
+    ) -> None:
+        """heading_deg, power_db: all samples of the turn so far. turned_deg: of 360."""
+        ...
 
     def belief(
         self,
@@ -122,7 +132,9 @@ class Publisher(Protocol):
         """seq: of its BeliefUpdated, shown right before. corners_lon_lat: SW, SE, NE, NW of the grid's outer edge."""
         ...
 
-    def status(self, status: Status) -> None: ...
+    def status(self, status: Status) -> None:
+        """The newest takes the place of the one before."""
+        ...
 
     def watchers(self) -> int:
         """How many consoles watch now (for the console-lost timers)."""

@@ -63,6 +63,7 @@ class Settings(BaseSettings):
     @field_validator("database_url")
     @classmethod
     def known_database(cls, url: str | None) -> str | None:
+        """By the URL's scheme; whether it answers shows when the journal is opened."""
         if url is None or url.startswith(("sqlite:", "postgresql:", "postgres:", "sqlite+", "postgresql+")):
             return url
         raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
@@ -77,6 +78,7 @@ class Settings(BaseSettings):
 
     @property
     def simulated(self) -> bool:
+        """Without a vehicle's URL the vehicle, and the world that its receiver hears, are simulated."""
         return self.vehicle_url is None
 
     @property
@@ -89,4 +91,5 @@ class Settings(BaseSettings):
 
     @property
     def spool_path(self) -> Path:
+        """Where facts wait while the database is away."""
         return self.data_dir / "journal.spool"

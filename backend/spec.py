@@ -43,6 +43,8 @@ Area = Annotated[Polygon | MultiPolygon, Field(discriminator="type")]
 
 
 class UniformPriorSpec(Model):
+    """Anywhere in the area alike."""
+
     kind: Literal["uniform"] = "uniform"
 
 
@@ -57,6 +59,8 @@ class GaussianPriorSpec(Model):
 
 
 class RingPriorSpec(Model):
+    """Between two distances from `centre`."""
+
     kind: Literal["ring"] = "ring"
     centre: Place
     inner_m: NonNegative
@@ -67,17 +71,23 @@ PriorSpec = Annotated[UniformPriorSpec | GaussianPriorSpec | RingPriorSpec, Fiel
 
 
 class LinearMotionSpec(Model):
+    """Time = distance / speed; turns and stops cost nothing."""
+
     kind: Literal["linear"] = "linear"
     speed_m_s: Positive = 7.0
 
 
 class LinearConstantMotionSpec(Model):
+    """Time = distance / speed + `constant_s` (both defaults: thesis 6.4.3)."""
+
     kind: Literal["linear_constant"] = "linear_constant"
     speed_m_s: Positive = 7.0
     constant_s: NonNegative = 11.2
 
 
 class FullMotionSpec(Model):
+    """Turn to the heading, accelerate, fly, brake, and `constant_s` to settle (defaults: thesis 6.4.3)."""
+
     kind: Literal["full"] = "full"
     turn_rate_deg_s: Positive = 30.0
     acceleration_m_s2: Positive = 1.0
@@ -108,6 +118,7 @@ class EmitterSpec(Model):
 
     @model_validator(mode="after")
     def pulses_have_pauses(self) -> EmitterSpec:
+        """Else one pulse could not be told from the next."""
         if self.kind == "pulsed" and self.pulse_width_s + self.pulse_jitter_s >= self.pulse_period_s:
             raise ValueError("a pulse and its jitter must be shorter than the period")
         return self
@@ -143,6 +154,7 @@ class PlannerSpec(Model):
 
     @property
     def options(self) -> PlannerOptions:
+        """The planner's own words for the same."""
         return PlannerOptions(
             self.method, self.base_policy, self.selection, self.sampling, self.estimator, self.budget, self.seed
         )
@@ -213,6 +225,7 @@ class MissionSpec(Model):
 
     @model_validator(mode="after")
     def emitters_are_told_apart(self) -> MissionSpec:
+        """Facts name an emitter by its id only."""
         ids = [emitter.emitter_id for emitter in self.emitters]
         if len(set(ids)) < len(ids):
             raise ValueError("two emitters have the same emitter_id; give each its own")

@@ -31,6 +31,7 @@ class AnotherAntenna:
 
     @property
     def named(self) -> WhatIfAntenna:
+        """As the answer names it: a what-if is never taken for the mission's own antenna."""
         return WhatIfAntenna(name=self.pattern.name, offset_to_nose_deg=self.pattern.offset_to_nose_deg)
 
     def heard(self, mission: MissionSpec, flown: SweepFact) -> SweepFact:

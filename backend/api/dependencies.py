@@ -14,6 +14,7 @@ SweepId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$", description="The
 
 
 def services(request: Request) -> Services:
+    """The one set of the application, made when it starts."""
     return request.app.state.services
 
 

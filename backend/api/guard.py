@@ -36,6 +36,7 @@ class Guard:
         self._allowed = {"localhost", *(host.lower() for host in allowed_hosts)}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """A refused request reaches no endpoint; a websocket is looked at once, when it is opened."""
         if scope["type"] not in {"http", "websocket"}:
             await self._app(scope, receive, send)
             return

@@ -34,6 +34,7 @@ class Refused(Exception):
 
 @router.websocket("/api/live")
 async def live(websocket: WebSocket) -> None:
+    """Close codes: 1013 the journal is away, 4408 too slow; else those of Refused. Come back with after=SEQ."""
     services: Services = websocket.app.state.services
     await websocket.accept()
     with suppress(WebSocketDisconnect):

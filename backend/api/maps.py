@@ -66,11 +66,13 @@ def _map_folder(directory: FilePath, reserve_bytes: int) -> MapFolder:
 
 
 def map_folder(services: ServicesDep) -> MapFolder:
+    """An upload may not take the disk that the journal keeps for itself."""
     settings = services.settings
     return _map_folder(settings.data_dir / "maps", settings.disk_low_bytes)
 
 
 def overlay_folder(services: ServicesDep) -> OverlayFolder:
+    """Made anew each request; all of it is on disk."""
     settings = services.settings
     return OverlayFolder(settings.data_dir / "overlays", settings.disk_low_bytes)
 

@@ -25,6 +25,7 @@ class Page:
         self._files = StaticFiles(directory=folder, check_dir=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Raises ApiProblem 404 when a build has taken the file away meanwhile."""
         if scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 4404, "reason": "no such websocket"})
             return

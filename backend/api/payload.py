@@ -23,6 +23,7 @@ UNKNOWN_TOKEN = problem(401, UnknownToken())
 
 @router.websocket("/api/payload")
 async def payload(websocket: WebSocket) -> None:
+    """Denied before it is accepted when no payload is expected or the token is not ours."""
     services: Services = websocket.app.state.services
     hub = services.payload
     scheme, _, token = websocket.headers.get("authorization", "").partition(" ")

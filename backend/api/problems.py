@@ -61,10 +61,12 @@ class ApiProblem(HTTPException):
 
 
 def not_found(what: reasons.NothingKind, which: str) -> ApiProblem:
+    """To be raised."""
     return ApiProblem(404, reasons.NothingThere(what, which))
 
 
 def respond(found: Problem, headers: dict[str, str] | None = None) -> JSONResponse:
+    """headers: besides those of the media type."""
     return JSONResponse(found.model_dump(mode="json"), status_code=found.status, media_type=MEDIA_TYPE, headers=headers)
 
 
@@ -125,11 +127,13 @@ def _field_reason(item: dict[str, Any]) -> Reason:
 
 
 async def on_problem(_: Request, error: Exception) -> JSONResponse:
+    """What an endpoint raised on purpose."""
     assert isinstance(error, ApiProblem)
     return respond(error.problem, dict(error.headers) if error.headers else None)
 
 
 async def on_invalid(_: Request, error: Exception) -> JSONResponse:
+    """422, with a line for each field."""
     assert isinstance(error, RequestValidationError)
     errors = field_problems(error)
     first = errors[0].field if errors else ""
@@ -137,17 +141,20 @@ async def on_invalid(_: Request, error: Exception) -> JSONResponse:
 
 
 async def on_mission_input(_: Request, error: Exception) -> JSONResponse:
+    """422, at the field of the specification that makes no sense."""
     assert isinstance(error, MissionInputError)
     return respond(problem(422, error.reason, [FieldProblem(field=error.field, reason=error.reason)]))
 
 
 async def on_reasoned(_: Request, error: Exception) -> JSONResponse:
+    """The status by the error's class (STATUSES), the words by its reason."""
     assert isinstance(error, ReasonedError)
     status = next(status for kind, status in STATUSES if isinstance(error, kind))
     return respond(problem(status, carried(error.reason)))
 
 
 async def on_http(_: Request, error: Exception) -> JSONResponse:
+    """What the framework itself refuses, such as a method that is not allowed."""
     assert isinstance(error, HTTPException)
     found = problem(error.status_code, reasons.HttpRefused(error.status_code, str(error.detail)))
     return respond(found, dict(error.headers) if error.headers else None)
@@ -161,6 +168,7 @@ async def on_fault(request: Request, error: Exception) -> JSONResponse:
 
 
 def install(app: FastAPI) -> None:
+    """For every error, the unexpected ones too."""
     app.add_exception_handler(ApiProblem, on_problem)
     app.add_exception_handler(RequestValidationError, on_invalid)
     app.add_exception_handler(HTTPException, on_http)

@@ -46,23 +46,29 @@ class ServicesSource:
         self._services = services
 
     def flying(self) -> str | None:
+        """None when nothing flies."""
         active = self._services.missions.flights.active
         return None if active is None else active.mission_id
 
     def telemetry(self) -> Telemetry:
+        """Of the first craft, the one that scenes show."""
         return self._services.missions.equipment.first.vehicle.telemetry()
 
     def now_s(self) -> float:
+        """UTC epoch seconds of the mission's clock."""
         return self._services.now()
 
     async def last_seq(self, mission_id: str) -> int | None:
+        """From the digest: cheap enough to be asked several times a second."""
         digest = await self._services.journal.mission(mission_id)
         return None if digest is None else digest.last_seq
 
     async def read(self, mission_id: str) -> list[Recorded]:
+        """The whole journal of a mission."""
         return list(await self._services.journal.read(mission_id))
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
+        """Of all craft, one after the other."""
         tracks = await self._services.journal.tracks(mission_id)
         return [point for track in tracks.values() for point in track]
 

@@ -44,6 +44,7 @@ SCHEMA_ONLY = "/schema-only/"
 
 
 def operation_id(route: APIRoute) -> str:
+    """The endpoint's name is what generated clients call it by."""
     return route.name
 
 
@@ -114,10 +115,12 @@ def wire_schema(version: str) -> dict[str, Any]:
 
 
 def wire_schema_text(version: str = "0.1.0") -> str:
+    """As it is committed: indented, with a line feed at the end."""
     return json.dumps(wire_schema(version), indent=2) + "\n"
 
 
 def main() -> None:
+    """Exit status 1 with `--check` when the file is out of date; nothing is written then."""
     parser = argparse.ArgumentParser(description="Write the wire schema, or check that a file is up to date.")
     parser.add_argument("file", type=Path)
     parser.add_argument("--check", action="store_true")

@@ -54,6 +54,7 @@ def _summary(digest: MissionDigest) -> dict[str, object]:
 
 
 def mission_summary(digest: MissionDigest) -> MissionSummary:
+    """From the digest alone: no fact is read for a list."""
     return MissionSummary.model_validate(_summary(digest))
 
 
@@ -87,6 +88,7 @@ def _found(emitter: EmitterState) -> EmitterFound:
 
 
 def sweep_record(entry: SweepEntry) -> SweepRecord:
+    """NaN, which JSON does not have, becomes None; a sweep without times begins at 1970."""
     sweep = entry.sweep()
     began_s = float(sweep.at_s[0]) if len(sweep.at_s) else 0.0
     return SweepRecord.model_validate(
@@ -117,6 +119,7 @@ def _numbers(values: NDArray[np.float64]) -> list[float | None]:
 
 
 def track_fact(point: TrackPoint) -> TrackFact:
+    """Degrees WGS84, times UTC."""
     return TrackFact(
         at_utc=datetime.fromtimestamp(point.at_s, UTC),
         lat=point.lat_deg,

@@ -10,6 +10,8 @@ Role = Literal["viewer", "operator", "pilot", "admin"]
 
 @dataclass(frozen=True, slots=True)
 class Principal:
+    """name: written into the facts as `by`."""
+
     name: str
     role: Role
 

@@ -28,13 +28,16 @@ class LazyCommands(TyperGroup):
     """Knows its commands by name and line; imports one to run it."""
 
     def list_commands(self, ctx: Any) -> list[str]:
+        """In the order of COMMANDS, as the help shows them."""
         return list(COMMANDS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A stand-in with name and line only: enough for the list, and not imported."""
         line = COMMANDS.get(cmd_name)
         return None if line is None else TyperCommand(cmd_name, help=line[1])
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """The real one, imported now."""
         name, command, rest = super().resolve_command(ctx, args)
         return name, command if name is None else load(name), rest
 

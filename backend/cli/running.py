@@ -46,6 +46,7 @@ class RunningServer:
     gone: asyncio.Task[None]
 
     def stop(self) -> None:
+        """Returns at once; wait for `gone`."""
         self.server.should_exit = True
 
 

@@ -28,12 +28,16 @@ Topic = Literal[
 
 
 class SafetyVetoed(Fact):
+    """A command was not sent, or a place not taken, and this rule is why."""
+
     kind: Literal["safety_vetoed"] = "safety_vetoed"
     craft_id: Id
     reason: Reason
 
 
 class LinkLost(Fact):
+    """link: to what; "console": to the last one that watched."""
+
     kind: Literal["link_lost"] = "link_lost"
     craft_id: Id
     link: Link
@@ -41,6 +45,8 @@ class LinkLost(Fact):
 
 
 class LinkRestored(Fact):
+    """outage_s: how long nothing came over it."""
+
     kind: Literal["link_restored"] = "link_restored"
     craft_id: Id
     link: Link
@@ -60,11 +66,15 @@ class AlertRaised(Fact):
 
 
 class AlertAcknowledged(Fact):
+    """Somebody has seen it; it stays open until it is cleared."""
+
     kind: Literal["alert_acknowledged"] = "alert_acknowledged"
     alert_id: str
     by: str
 
 
 class AlertCleared(Fact):
+    """Its cause is gone, or a later alert on the same topic took its place."""
+
     kind: Literal["alert_cleared"] = "alert_cleared"
     alert_id: str

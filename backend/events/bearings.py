@@ -49,11 +49,15 @@ BearingSource = Annotated[CraftSource | ImportSource | PersonSource, Field(discr
 
 
 class Peak(Fact):
+    """A weaker direction of the same sweep: evidence of multipath or of a second emitter. weight: in (0, 1]."""
+
     bearing_deg: float
     weight: float
 
 
 class SweepRejected(Fact):
+    """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db: as in BearingMeasured."""
+
     kind: Literal["sweep_rejected"] = "sweep_rejected"
     emitter_id: Id
     source: BearingSource
@@ -113,6 +117,8 @@ class RecordingImported(Fact):
 
 
 class BearingExcluded(Fact):
+    """An operator's wish: the belief is folded again without it, the bearing stays in the journal."""
+
     kind: Literal["bearing_excluded"] = "bearing_excluded"
     emitter_id: Id
     bearing_id: str

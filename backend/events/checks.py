@@ -20,6 +20,8 @@ class CheckFact(Fact):
 
 
 class PreflightChecked(Fact):
+    """passed: nothing that blocks has failed."""
+
     kind: Literal["preflight_checked"] = "preflight_checked"
     passed: bool
     checks: list[CheckFact]

@@ -41,6 +41,8 @@ class MissionStarted(Fact):
 
 
 class PhaseChanged(Fact):
+    """The fold takes `after`; `before` is for whoever reads."""
+
     kind: Literal["phase_changed"] = "phase_changed"
     craft_id: Id
     before: Phase
@@ -49,6 +51,8 @@ class PhaseChanged(Fact):
 
 
 class TookOff(Fact):
+    """altitude_relative_m: above home, when the climb was confirmed."""
+
     kind: Literal["took_off"] = "took_off"
     craft_id: Id
     place: Place
@@ -56,6 +60,8 @@ class TookOff(Fact):
 
 
 class FlightStarted(Fact):
+    """Ordered, not yet confirmed: PlaceReached is."""
+
     kind: Literal["flight_started"] = "flight_started"
     craft_id: Id
     place_number: int
@@ -64,6 +70,8 @@ class FlightStarted(Fact):
 
 
 class PlaceReached(Fact):
+    """distance_m: from where it was sent to. flight_time_s: by the mission's clock."""
+
     kind: Literal["place_reached"] = "place_reached"
     craft_id: Id
     place_number: int
@@ -73,6 +81,8 @@ class PlaceReached(Fact):
 
 
 class SweepStarted(Fact):
+    """attempt: counts the turns at this place from 1."""
+
     kind: Literal["sweep_started"] = "sweep_started"
     craft_id: Id
     place_number: int

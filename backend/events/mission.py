@@ -16,11 +16,15 @@ Outcome = Literal["localized", "not_localized", "aborted", "failed"]
 
 
 class MissionDrafted(Fact):
+    """The first fact of every mission."""
+
     kind: Literal["mission_drafted"] = "mission_drafted"
     spec: MissionSpec
 
 
 class MissionEdited(Fact):
+    """The whole specification, before the start only; a checklist that passed counts no more."""
+
     kind: Literal["mission_edited"] = "mission_edited"
     spec: MissionSpec
 
@@ -34,6 +38,8 @@ class AreaChanged(Fact):
 
 
 class ServerRestarted(Fact):
+    """From here on beliefs are computed anew; a craft that we flew is held until an operator resumes."""
+
     kind: Literal["server_restarted"] = "server_restarted"
 
 

@@ -10,6 +10,8 @@ from backend.spec import Id
 
 
 class HoldOrdered(Fact):
+    """reason: why, when the mission ordered it by itself; None for an operator's."""
+
     kind: Literal["hold_ordered"] = "hold_ordered"
     craft_id: Id
     by: str | None
@@ -17,12 +19,16 @@ class HoldOrdered(Fact):
 
 
 class ResumeOrdered(Fact):
+    """After hold, a restart or a takeover: automatic control goes on."""
+
     kind: Literal["resume_ordered"] = "resume_ordered"
     craft_id: Id
     by: str
 
 
 class ReturnOrdered(Fact):
+    """reason: why, when the mission ordered it by itself; None for an operator's."""
+
     kind: Literal["return_ordered"] = "return_ordered"
     craft_id: Id
     by: str | None
@@ -30,6 +36,8 @@ class ReturnOrdered(Fact):
 
 
 class AbortOrdered(Fact):
+    """The search is over for this craft: it holds, then returns."""
+
     kind: Literal["abort_ordered"] = "abort_ordered"
     craft_id: Id
     by: str
@@ -54,6 +62,8 @@ class CommandAccepted(Fact):
 
 
 class CommandRefused(Fact):
+    """Nothing was done; a repeated `command_id` gets the same reason again."""
+
     kind: Literal["command_refused"] = "command_refused"
     command_id: str
     command: str

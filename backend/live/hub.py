@@ -52,6 +52,7 @@ class BeliefFrame:
         self._encoded: dict[bool, bytes] = {}
 
     def encoded(self, lite: bool) -> bytes:
+        """Encoded once, for the first who asks; lite: 8 bits a cell."""
         if lite not in self._encoded:
             self._encoded[lite] = encode_belief(*self._content, lite=lite)
         return self._encoded[lite]
@@ -65,6 +66,7 @@ class Slot:
     value: str | BeliefFrame | None = None
 
     def put(self, value: str | BeliefFrame | None) -> None:
+        """What was in it is gone: only the newest is sent."""
         self.version += 1
         self.value = value
 
@@ -103,6 +105,7 @@ class Feed:
 
 
 def event_text(record: Recorded) -> str:
+    """One text for all viewers."""
     return EventMessage(recorded=record).model_dump_json()
 
 
@@ -138,6 +141,7 @@ class Hub:
     # Publisher
 
     def events(self, recorded: Sequence[Recorded]) -> None:
+        """Each event once and in order, whatever is shown twice; a bearing empties the turn's progress."""
         for record in recorded:
             feed = self.feed(record.mission_id)
             if feed.add(record):
@@ -148,6 +152,7 @@ class Hub:
                 self._wake(record.mission_id)
 
     def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None:
+        """The newest of each craft takes the place of the one before."""
         slot = self._slots.setdefault(("telemetry", craft_id), Slot())
         slot.put(telemetry_message(craft_id, telemetry, now_s).model_dump_json())
         self._wake(None)
@@ -162,6 +167,7 @@ class Hub:
         power_db: list[float],
         turned_deg: float,
     ) -> None:
+        """Thinned to PROGRESS_POINTS."""
         step = -(-len(heading_deg) // PROGRESS_POINTS) or 1
         message = SweepProgress(
             mission_id=mission_id,
@@ -187,10 +193,12 @@ class Hub:
         belief: GridBelief,
         corners_lon_lat: list[tuple[float, float]],
     ) -> None:
+        """The newest of each emitter takes the place of the one before; encoded when somebody asks."""
         frame = BeliefFrame(mission_id, emitter_id, seq, bearings, belief, corners_lon_lat)
         self._put(mission_id, ("belief", emitter_id), frame)
 
     def status(self, status: Status) -> None:
+        """Shown to every viewer, of whatever mission."""
         message = StatusMessage(
             at_utc=datetime.fromtimestamp(self._now(), UTC),
             mission_id=status.mission_id,
@@ -214,6 +222,7 @@ class Hub:
         return len(self._feeds)
 
     def viewers(self) -> int:
+        """How many websockets are open, those that take nothing just now among them."""
         return len(self._viewers)
 
     def join(self, viewer: Viewer, last_seq: int) -> None:
@@ -227,9 +236,11 @@ class Hub:
         self._viewers.add(viewer)
 
     def leave(self, viewer: Viewer) -> None:
+        """Harmless for a viewer that has left already."""
         self._viewers.discard(viewer)
 
     def slots(self, viewer: Viewer) -> dict[SlotName, Slot]:
+        """What this viewer may be sent: everybody's, and those of the mission that it follows."""
         if viewer.mission_id is None:
             return dict(self._slots)
         return self._slots | self.feed(viewer.mission_id).slots

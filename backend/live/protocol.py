@@ -10,6 +10,9 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 
 
 class LiveProtocol(WebSocketsSansIOProtocol):
+    """For uvicorn's option `ws`."""
+
     def keepalive_timeout(self) -> None:
+        """Called by websockets when a pong is overdue."""
         super().keepalive_timeout()
         self.transport.abort()

@@ -29,16 +29,20 @@ def storable(text: str) -> str:
 
 @dataclass
 class Reading:
+    """unnamed_notes: how many more there were than MOST_NOTES."""
+
     features: list[OverlayFeature] = field(default_factory=list[OverlayFeature])
     notes: list[LeftOut] = field(default_factory=list[LeftOut])
     unnamed_notes: int = 0
 
     def add(self, geometry: dict[str, Any], properties: dict[str, Any]) -> None:
+        """geometry: GeoJSON, checked by the caller. Raises MapRefused beyond MOST_FEATURES."""
         if len(self.features) >= MOST_FEATURES:
             raise MapRefused(TooManyFeatures(MOST_FEATURES))
         self.features.append(OverlayFeature(geometry=geometry, properties=plain_properties(properties)))
 
     def note(self, left_out: LeftOut) -> None:
+        """Beyond MOST_NOTES they are only counted."""
         if len(self.notes) < MOST_NOTES:
             self.notes.append(left_out)
         else:
@@ -50,10 +54,12 @@ class Reading:
         self.note(PartLeftOut(part, f"{number}{called}", fault))
 
     def all_notes(self) -> list[LeftOut]:
+        """With the count of the unnamed ones at the end."""
         more = [MoreLeftOut(self.unnamed_notes)] if self.unnamed_notes else []
         return [*self.notes, *more]
 
     def bounds(self) -> Box:
+        """(west, south, east, north) degrees. Raises ValueError when nothing was read."""
         positions = [position for feature in self.features for position in _positions(feature.geometry["coordinates"])]
         lon, lat = zip(*positions, strict=True)
         return min(lon), min(lat), max(lon), max(lat)

@@ -72,12 +72,14 @@ class MapFolder:
         return sorted(found, key=lambda package: package.name.casefold()), unusable
 
     def path(self, map_id: str) -> Path:
+        """Raises NotStored."""
         path = self.directory / f"{map_id}.pmtiles"
         if not path.is_file():
             raise NotStored("map", map_id)
         return path
 
     def archive(self, map_id: str) -> Archive:
+        """Opened once and kept while the file stays the same. Raises NotStored."""
         return _opened(self.path(map_id))
 
     def package(self, map_id: str) -> MapPackage:
@@ -93,6 +95,7 @@ class MapFolder:
             raise ArchiveUnusable(MapLabelDamaged()) from error
 
     def delete(self, map_id: str) -> None:
+        """Raises NotStored."""
         self.path(map_id).unlink()
         (self.directory / f"{map_id}.json").unlink(missing_ok=True)
 

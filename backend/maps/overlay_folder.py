@@ -46,6 +46,7 @@ class OverlayFolder:
         return sorted(found, key=lambda overlay: overlay.name.casefold()), unusable
 
     def delete(self, overlay_id: str) -> None:
+        """Raises NotStored."""
         path = self.path(overlay_id)
         path.with_suffix(".json").unlink(missing_ok=True)
         path.unlink()
@@ -81,6 +82,7 @@ class OverlayFolder:
             raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
 
     def path(self, overlay_id: str) -> Path:
+        """The GeoJSON file. Raises NotStored."""
         path = self.directory / f"{overlay_id}.geojson"
         if not path.is_file():
             raise NotStored("overlay", overlay_id)

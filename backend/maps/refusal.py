@@ -15,6 +15,7 @@ class MapRefused(ReasonedError):
 
     @property
     def reason(self) -> Reason:
+        """Of any room: the wire's union holds them all."""
         return carried(super().reason)
 
 
@@ -27,6 +28,7 @@ class ArchiveUnusable(MapRefused):
 
     @property
     def reason(self) -> ArchiveReason:
+        """Which part of the archive is wrong."""
         return self._why
 
 
@@ -38,6 +40,7 @@ class NotStored(ReasonedError, LookupError):
 
     @property
     def reason(self) -> Reason:
+        """As the API answers it, with 404."""
         return carried(super().reason)
 
 

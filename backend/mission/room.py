@@ -52,7 +52,7 @@ class MissionRoom:
 
 
 def mission_room(equipment: MissionEquipment) -> MissionRoom:
-    """Nothing runs yet: `start` it."""
+    """Nothing runs before `start_up`."""
     records = Records(equipment.journal, equipment.publisher, equipment.clock)
     flights = Flights(equipment, records)
     return MissionRoom(

@@ -33,6 +33,7 @@ def reason_classes() -> tuple[type[AnyReason], ...]:
 
 
 def code_of(reason: type[AnyReason]) -> str:
+    """Without an instance: a reason's values need not be known."""
     (code,) = get_args(get_type_hints(reason)["code"])
     return code
 
@@ -63,6 +64,7 @@ def _literal(words: str) -> str:
 
 
 def main() -> None:
+    """Exit status 1 with `--check` when the file is out of date; nothing is written then."""
     parser = argparse.ArgumentParser(
         description="Write the page's English for every reason, or check that it is current."
     )

@@ -11,4 +11,5 @@ class Refused(ReasonedError):
 
     @property
     def reason(self) -> Reason:
+        """Of any room: the wire's union holds them all."""
         return carried(super().reason)

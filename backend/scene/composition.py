@@ -59,6 +59,7 @@ def compose(
     belief_height_m: float | None = None,
     theme: Theme = "dark",
 ) -> Scene:
+    """belief None: not known. belief_height_m: of the surface's peak; None: by the extent. hidden: layers left out."""
     palette = PALETTES[theme]
     west, south, east, north = shapely.union_all([shown.area, shown.fence]).bounds
     middle = (west + east) / 2, (south + north) / 2

@@ -27,15 +27,23 @@ class Window(Protocol):
     """What is used of `viser.ClientHandle`."""
 
     @property
-    def scene(self) -> Any: ...
+    def scene(self) -> Any:
+        """viser's SceneApi."""
+        ...
 
     @property
-    def camera(self) -> Any: ...
+    def camera(self) -> Any:
+        """viser's CameraHandle."""
+        ...
 
     @property
-    def gui(self) -> Any: ...
+    def gui(self) -> Any:
+        """viser's GuiApi."""
+        ...
 
-    def atomic(self) -> Any: ...
+    def atomic(self) -> Any:
+        """A context in which everything is sent as one."""
+        ...
 
 
 class Drawer:

@@ -23,6 +23,7 @@ LOWEST_QUALITY, HIGHEST_QUALITY = 0.6, 0.95
 
 
 def findings(content: Content, palette: Palette, extent_m: float, surface_top_m: float) -> Iterator[Item]:
+    """surface_top_m: lines of estimates reach above the belief's surface."""
     counted = [number for number, sweep in enumerate(content.sweeps) if sweep.counted]
     for number, sweep in enumerate(content.sweeps):
         age = counted[::-1].index(number) if sweep.counted else 4

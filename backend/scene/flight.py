@@ -23,6 +23,7 @@ SHADES = 4
 
 
 def flight(content: Content, palette: Palette, extent_m: float) -> Iterator[Item]:
+    """Path, vehicle, candidates and next places; extent_m scales what has no size of its own."""
     yield from moving(content, palette, extent_m)
     yield from _candidates(content, palette, extent_m)
     for place in content.next_places:
@@ -137,5 +138,6 @@ def _next_place(place: NextPlace, content: Content, palette: Palette, extent_m: 
 
 
 def clock(seconds: float) -> str:
+    """Minutes and seconds, "2:05"."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes}:{rest:02d}"

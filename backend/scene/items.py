@@ -75,6 +75,7 @@ class Scene:
     background: tuple[int, int, int]
 
     def layer(self, layer: SceneLayer) -> tuple[Item, ...]:
+        """In the order in which they were composed."""
         return tuple(item for item in self.items if item.layer == layer)
 
 

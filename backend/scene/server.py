@@ -56,6 +56,7 @@ class SceneServer:
             self._announced.pop(local_port, None)
 
     def stop(self) -> None:
+        """Blocks: call it in a thread."""
         with _quiet():
             self._server.stop()
 

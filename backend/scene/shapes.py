@@ -95,6 +95,7 @@ def circle(x: float, y: float, z: float, radius: float, corners: int = 48) -> ND
 
 
 def disc(x: float, y: float, z: float, radius: float, corners: int = 24) -> Mesh:
+    """Level, at height z."""
     return fan((x, y, z), circle(x, y, z, radius, corners))
 
 

@@ -21,10 +21,12 @@ GRID_EXTENTS = 1.6
 
 
 def line_colours(count: int, colour: tuple[int, int, int]) -> np.ndarray:
+    """(count, 2, 3) uint8: the same at both ends of each segment."""
     return np.tile(np.array(colour, np.uint8), (count, 2, 1))
 
 
 def one_line(name: str, layer: SceneLayer, points: np.ndarray, colour: tuple[int, int, int], width_px: float) -> Lines:
+    """points: (n, 2, 3) m, a start and an end a segment."""
     return Lines(name, layer, points, line_colours(len(points), colour), width_px)
 
 
@@ -36,6 +38,7 @@ def grid_step(extent_m: float) -> float:
 
 
 def surroundings(content: Content, palette: Palette, centre: tuple[float, float], extent_m: float) -> Iterator[Item]:
+    """centre, extent_m: of the ground and its grid; the rest has its own place and size."""
     yield from _ground(palette, centre, extent_m)
     yield from _area(content, palette, extent_m)
     yield from _fence(content, palette)

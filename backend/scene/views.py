@@ -61,6 +61,7 @@ class SceneViews:
         self._page: bytes | None = None
 
     async def server(self) -> SceneServer:
+        """Started at the first call; callers at the same time get the same one."""
         async with self._starting:
             if self._server is None:
                 loop = asyncio.get_running_loop()
@@ -79,6 +80,7 @@ class SceneViews:
         return self._page
 
     async def close(self) -> None:
+        """Ends every view and the server."""
         tasks = [view.task for view in self._views.values() if view.task is not None]
         for task in tasks:
             task.cancel()
@@ -99,6 +101,7 @@ class SceneViews:
         return self._told(view)
 
     def view(self, view_id: str) -> SceneView | None:
+        """None for an unknown id, or a view that was forgotten."""
         view = self._views.get(view_id)
         return None if view is None else self._told(view)
 

@@ -71,6 +71,7 @@ class Hangar:
         return None if found is None else (found, same)
 
     async def leave(self, vehicle: SimulatedAutopilot) -> None:
+        """The server ends on purpose: the vehicle stops, and the next one does not look for it."""
         await vehicle.stop()
         with suppress(OSError):
             self._register.unlink()

@@ -66,6 +66,7 @@ class EmittersAroundHome:
         )
 
     async def close(self) -> None:
+        """Harmless while the home is not known."""
         if self._receiver is not None:
             await self._receiver.close()
 

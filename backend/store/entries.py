@@ -48,6 +48,7 @@ class EventRow:
 
 
 def to_row(seq: int, at_utc: datetime, event: Event) -> EventRow:
+    """In today's form."""
     return EventRow(seq, to_us(at_utc), event.kind, FORM, event.model_dump_json())
 
 
@@ -85,9 +86,11 @@ class EventsEntry:
     rows: tuple[EventRow, ...]
 
     def encode(self) -> bytes:
+        """As the spool keeps it."""
         return _encode("events", {"mission_id": self.mission_id, "rows": [asdict(row) for row in self.rows]})
 
     async def write(self, connection: AsyncConnection) -> None:
+        """Raises JournalConflict when another writer has used one of the numbers for another fact."""
         first, last = self.rows[0].seq, self.rows[-1].seq
         known = {
             row.seq: EventRow(*row)
@@ -114,6 +117,7 @@ class EventsEntry:
 
 
 async def read_digest(connection: AsyncConnection, mission_id: str) -> MissionDigest | None:
+    """None: no fact of it is stored."""
     rows = await connection.execute(select(missions).where(missions.c.mission_id == mission_id))
     found = rows.mappings().one_or_none()
     return None if found is None else MissionDigest(**found)
@@ -140,12 +144,15 @@ class SweepEntry:
     samples: bytes
 
     def encode(self) -> bytes:
+        """As the spool keeps it."""
         return _encode("sweep", {**asdict(self), "samples": base64.b64encode(self.samples).decode()})
 
     async def write(self, connection: AsyncConnection) -> None:
+        """A sweep that is stored already is left as it is."""
         await _insert_new(connection, sweeps, [asdict(self)])
 
     def sweep(self) -> Sweep:
+        """As it was measured; an altitude or a drift that was not known is NaN again."""
         at_s, heading_deg, power_db = np.frombuffer(zlib.decompress(self.samples), dtype="<f8").reshape(3, -1)
         return Sweep(
             at_s=at_s,
@@ -170,6 +177,7 @@ def sweep_entry(
     attempt: int,
     sweep: Sweep,
 ) -> SweepEntry:
+    """craft_id None: imported."""
     samples = np.stack([sweep.at_s, sweep.heading_deg, sweep.power_db]).astype("<f8")
     return SweepEntry(
         mission_id=mission_id,
@@ -192,11 +200,14 @@ def sweep_entry(
 
 @dataclass(frozen=True, slots=True)
 class TrackEntry:
+    """Points of one craft, as many as were saved at once."""
+
     mission_id: str
     craft_id: str
     points: tuple[TrackPoint, ...]
 
     def encode(self) -> bytes:
+        """As the spool keeps it."""
         return _encode("track", asdict(self))
 
     async def write(self, connection: AsyncConnection) -> None:
@@ -245,6 +256,7 @@ def decode(payload: bytes) -> Entry:
 
 
 def sweep_columns() -> list[str]:
+    """All of tables.sweeps, in the order of SweepEntry."""
     return [field.name for field in fields(SweepEntry)]
 
 

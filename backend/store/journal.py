@@ -157,10 +157,12 @@ class SqlJournal:
         attempt: int,
         sweep: Sweep,
     ) -> None:
+        """Returns when it is durable, in the database or the spool. Raises FactRefused."""
         entry = sweep_entry(mission_id, sweep_id, craft_id, emitter_id, place_number, attempt, sweep)
         await self._whole(self._save(entry))
 
     async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None:
+        """Returns when they are durable, in the database or the spool. Raises FactRefused."""
         if points:
             await self._whole(self._save(TrackEntry(mission_id, craft_id, tuple(points))))
 
@@ -335,6 +337,7 @@ class SqlJournal:
                 del self._written[mission_id]
 
     def report(self) -> DatabaseReport:
+        """From what the last attempts showed; asks nobody."""
         waiting = len(self._pending)
         if self._fault is not None:
             return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
@@ -366,6 +369,7 @@ class SqlJournal:
         return await self._stored.read(mission_id, kinds=wanted)
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
+        """With what waits in the spool; None for an unknown mission."""
         if mission_id in self._written:
             return self._written[mission_id].digest
         return await self._stored.mission(mission_id)
@@ -383,6 +387,7 @@ class SqlJournal:
         return [d.mission_id for d in sorted(going_on, key=lambda d: (d.started_at_us, d.mission_id))]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
+        """Also one that still waits in the spool; None for an unknown one."""
         for waiting in self._pending:
             if isinstance(waiting, SweepEntry) and (waiting.mission_id, waiting.sweep_id) == (mission_id, sweep_id):
                 return waiting

@@ -26,6 +26,7 @@ class StoredFacts:
         self._timeout_s = timeout_s
 
     async def read(self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None) -> list[Recorded]:
+        """Facts of today's form, in order; older ones are upgraded. kinds: None for all."""
         query = select(*ROW).where(events.c.mission_id == mission_id, events.c.seq > after).order_by(events.c.seq)
         if kinds is not None:
             query = query.where(events.c.kind.in_(kinds_of_old(kinds)))
@@ -39,25 +40,30 @@ class StoredFacts:
         return to_records(mission_id, rows, imported_before(EventRow(*row) for row in imports))
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
+        """None for an unknown mission."""
         rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
         return MissionDigest(**rows[0]._mapping) if rows else None
 
     async def missions(self) -> list[MissionDigest]:
+        """The last drafted first."""
         rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
         return [MissionDigest(**row._mapping) for row in rows]
 
     async def unfinished(self) -> list[MissionDigest]:
+        """Started, and not ended or with a craft still in the air."""
         going_on = missions.c.ended_at_us.is_(None) | missions.c.flying
         query = select(missions).where(missions.c.started_at_us.is_not(None) & going_on)
         return [MissionDigest(**row._mapping) for row in await self._fetch(query)]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
+        """None for an unknown sweep."""
         columns = [sweeps.c[name] for name in sweep_columns()]
         here = (sweeps.c.mission_id == mission_id) & (sweeps.c.sweep_id == sweep_id)
         rows = await self._fetch(select(*columns).where(here))
         return SweepEntry(**rows[0]._mapping) if rows else None
 
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
+        """By craft, in time order."""
         columns = [column for column in tracks.c if column.name != "mission_id"]
         query = select(*columns).where(tracks.c.mission_id == mission_id).order_by(tracks.c.craft_id, tracks.c.at_us)
         found: dict[str, list[TrackPoint]] = {}

@@ -127,4 +127,5 @@ class Spool:
             os.fsync(file.fileno())
 
     def close(self) -> None:
+        """Lets go of the file: another process may take it."""
         os.close(self._fd)

@@ -71,6 +71,8 @@ class MapLayers(Model):
 
 
 class CoverageRequest(Model):
+    """Does a map cover this area, and how finely?"""
+
     area: Area
 
 

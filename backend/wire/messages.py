@@ -17,6 +17,8 @@ from hardware.authority import Who
 
 
 class Hello(Model):
+    """The first message. last_seq: of the mission when the websocket was opened."""
+
     type: Literal["hello"] = "hello"
     server_version: str
     mission_id: str | None
@@ -26,6 +28,8 @@ class Hello(Model):
 
 
 class EventMessage(Model):
+    """Each event once, in order, without gaps."""
+
     type: Literal["event"] = "event"
     recorded: Recorded
 

@@ -44,6 +44,7 @@ TITLES = {
 
 
 def problem(status: int, reason: Reason, errors: list[FieldProblem] | None = None) -> Problem:
+    """Title and detail are the English of status and reason."""
     return Problem(
         title=TITLES.get(status, "The request was refused"),
         status=status,

@@ -141,6 +141,8 @@ class MissionList(Model):
 
 
 class PreflightReply(Model):
+    """passed: nothing that blocks has failed."""
+
     passed: bool
     checks: list[CheckFact]
 
@@ -155,6 +157,7 @@ class AntennaCheckRequest(Model):
 
     @model_validator(mode="after")
     def one_of_both(self) -> AntennaCheckRequest:
+        """Both could contradict each other."""
         if (self.place is None) == (self.bearing_deg is None):
             raise ValueError("name the emitter's place or its bearing, one of both")
         return self
@@ -192,6 +195,8 @@ class SweepRecord(Model):
 
 
 class TrackFact(Model):
+    """One point of a flown path, thinned. mode: the autopilot's name for it."""
+
     at_utc: datetime
     lat: float
     lon: float
@@ -345,6 +350,8 @@ class WhatIfStep(Model):
 
 
 class WhatIfAntenna(Model):
+    """Which antenna the answer was computed for."""
+
     name: str
     offset_to_nose_deg: float
 

@@ -656,6 +656,7 @@ export interface components {
              */
             kind: "abort";
         };
+        /** @description The search is over for this craft: it holds, then returns. */
         AbortOrdered: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -665,6 +666,7 @@ export interface components {
             craft_id: string;
             by: string;
         };
+        /** @description Of the proposed place: fly there. */
         Accept: {
             craft_id: string | null;
             /**
@@ -673,6 +675,7 @@ export interface components {
              */
             kind: "accept";
         };
+        /** @description Of the proposed place: fly there. */
         AcceptInput: {
             craft_id?: string | null;
             /**
@@ -681,6 +684,7 @@ export interface components {
              */
             kind: "accept";
         };
+        /** @description Somebody has seen it; it stays open until its cause is gone. */
         AcknowledgeAlert: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -689,6 +693,7 @@ export interface components {
             kind: "acknowledge_alert";
             alert_id: string;
         };
+        /** @description Somebody has seen it; it stays open until it is cleared. */
         AlertAcknowledged: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -698,6 +703,7 @@ export interface components {
             alert_id: string;
             by: string;
         };
+        /** @description Its cause is gone, or a later alert on the same topic took its place. */
         AlertCleared: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1100,6 +1106,7 @@ export interface components {
              */
             code: "battery_unknown";
         };
+        /** @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. */
         BearingExcluded: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1337,6 +1344,7 @@ export interface components {
             command: string;
             by: string;
         };
+        /** @description Nothing was done; a repeated `command_id` gets the same reason again. */
         CommandRefused: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1356,6 +1364,7 @@ export interface components {
             reason: components["schemas"]["Reason"] | null;
             seq: number;
         };
+        /** @description command_id: made by the client; sent twice, the command is carried out once. */
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
@@ -1447,6 +1456,7 @@ export interface components {
             summary: components["schemas"]["Reason"];
             maps: components["schemas"]["MapCoverage"][];
         };
+        /** @description Does a map cover this area, and how finely? */
         CoverageRequest: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
@@ -1646,6 +1656,7 @@ export interface components {
             major_axis_deg: number;
         };
         Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1668,6 +1679,7 @@ export interface components {
              */
             code: "every_place_refused";
         };
+        /** @description The belief is folded again without it; it stays in the journal. */
         ExcludeBearing: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1678,6 +1690,7 @@ export interface components {
             /** @default  */
             reason: string;
         };
+        /** @description The belief is folded again without it; it stays in the journal. */
         ExcludeBearingInput: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1956,6 +1969,7 @@ export interface components {
             /** @default true */
             automatic: boolean;
         };
+        /** @description Ordered, not yet confirmed: PlaceReached is. */
         FlightStarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2007,6 +2021,7 @@ export interface components {
              */
             code: "frequency_twice";
         };
+        /** @description Turn to the heading, accelerate, fly, brake, and `constant_s` to settle (defaults: thesis 6.4.3). */
         FullMotionSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2022,6 +2037,7 @@ export interface components {
             /** @default 3 */
             constant_s: number;
         };
+        /** @description Turn to the heading, accelerate, fly, brake, and `constant_s` to settle (defaults: thesis 6.4.3). */
         FullMotionSpecInput: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2164,6 +2180,7 @@ export interface components {
              */
             code: "heartbeat_stopped";
         };
+        /** @description The first message. last_seq: of the mission when the websocket was opened. */
         Hello: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2175,6 +2192,7 @@ export interface components {
             last_seq: number;
             time_factor: number;
         };
+        /** @description Brake and hover, whatever the craft does. */
         Hold: {
             craft_id: string | null;
             /**
@@ -2190,6 +2208,7 @@ export interface components {
              */
             code: "hold_ignored";
         };
+        /** @description Brake and hover, whatever the craft does. */
         HoldInput: {
             craft_id?: string | null;
             /**
@@ -2198,6 +2217,7 @@ export interface components {
              */
             kind: "hold";
         };
+        /** @description reason: why, when the mission ordered it by itself; None for an operator's. */
         HoldOrdered: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2342,6 +2362,7 @@ export interface components {
              */
             code: "least_entropy";
         };
+        /** @description Time = distance / speed + `constant_s` (both defaults: thesis 6.4.3). */
         LinearConstantMotionSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2353,6 +2374,7 @@ export interface components {
             /** @default 11.2 */
             constant_s: number;
         };
+        /** @description Time = distance / speed + `constant_s` (both defaults: thesis 6.4.3). */
         LinearConstantMotionSpecInput: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2364,6 +2386,7 @@ export interface components {
             /** @default 11.2 */
             constant_s: number;
         };
+        /** @description Time = distance / speed; turns and stops cost nothing. */
         LinearMotionSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2373,6 +2396,7 @@ export interface components {
             /** @default 7 */
             speed_m_s: number;
         };
+        /** @description Time = distance / speed; turns and stops cost nothing. */
         LinearMotionSpecInput: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2391,6 +2415,7 @@ export interface components {
              */
             code: "link_checked";
         };
+        /** @description link: to what; "console": to the last one that watched. */
         LinkLost: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2402,6 +2427,7 @@ export interface components {
             link: "vehicle" | "receiver" | "console" | "payload";
             reason: components["schemas"]["Reason"];
         };
+        /** @description outage_s: how long nothing came over it. */
         LinkRestored: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2632,6 +2658,7 @@ export interface components {
              */
             code: "mission_does_not_fly";
         };
+        /** @description The first fact of every mission. */
         MissionDrafted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2640,6 +2667,7 @@ export interface components {
             kind: "mission_drafted";
             spec: components["schemas"]["MissionSpec"];
         };
+        /** @description The whole specification, before the start only; a checklist that passed counts no more. */
         MissionEdited: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3694,6 +3722,7 @@ export interface components {
              */
             code: "payload_tokens_missing";
         };
+        /** @description A weaker direction of the same sweep: evidence of multipath or of a second emitter. weight: in (0, 1]. */
         Peak: {
             bearing_deg: number;
             weight: number;
@@ -3707,6 +3736,7 @@ export interface components {
             kind: "person";
             name: string;
         };
+        /** @description The fold takes `after`; `before` is for whoever reads. */
         PhaseChanged: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3754,6 +3784,7 @@ export interface components {
              */
             code: "place_not_stated";
         };
+        /** @description distance_m: from where it was sent to. flight_time_s: by the mission's clock. */
         PlaceReached: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3958,6 +3989,7 @@ export interface components {
              */
             code: "power_not_numbers";
         };
+        /** @description passed: nothing that blocks has failed. */
         PreflightChecked: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3978,6 +4010,7 @@ export interface components {
              */
             code: "preflight_failed";
         };
+        /** @description passed: nothing that blocks has failed. */
         PreflightReply: {
             passed: boolean;
             checks: components["schemas"]["CheckFact"][];
@@ -4326,6 +4359,7 @@ export interface components {
              */
             kind: "resume";
         };
+        /** @description After hold, a restart or a takeover: automatic control goes on. */
         ResumeOrdered: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4335,6 +4369,7 @@ export interface components {
             craft_id: string;
             by: string;
         };
+        /** @description The autopilot's own return; on the way the craft may still be held, and the search resumed. */
         Return: {
             craft_id: string | null;
             /**
@@ -4343,6 +4378,7 @@ export interface components {
              */
             kind: "return";
         };
+        /** @description The autopilot's own return; on the way the craft may still be held, and the search resumed. */
         ReturnInput: {
             craft_id?: string | null;
             /**
@@ -4351,6 +4387,7 @@ export interface components {
              */
             kind: "return";
         };
+        /** @description reason: why, when the mission ordered it by itself; None for an operator's. */
         ReturnOrdered: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4361,6 +4398,7 @@ export interface components {
             by: string | null;
             reason: components["schemas"]["Reason"] | null;
         };
+        /** @description Between two distances from `centre`. */
         RingPriorSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4440,6 +4478,7 @@ export interface components {
              */
             code: "rtl_tcp_unreachable";
         };
+        /** @description A command was not sent, or a place not taken, and this rule is why. */
         SafetyVetoed: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4602,6 +4641,7 @@ export interface components {
              */
             code: "server_broke";
         };
+        /** @description From here on beliefs are computed anew; a craft that we flew is held until an operator resumes. */
         ServerRestarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4609,6 +4649,7 @@ export interface components {
              */
             kind: "server_restarted";
         };
+        /** @description automatic: places are flown to without being accepted. */
         SetAutomatic: {
             craft_id: string | null;
             /**
@@ -4618,6 +4659,7 @@ export interface components {
             kind: "set_automatic";
             automatic: boolean;
         };
+        /** @description automatic: places are flown to without being accepted. */
         SetAutomaticInput: {
             craft_id?: string | null;
             /**
@@ -4724,6 +4766,7 @@ export interface components {
              */
             code: "stands_disarmed";
         };
+        /** @description Runs the checklist first; refused unless every blocking check passes. */
         Start: {
             craft_id: string | null;
             /**
@@ -4739,6 +4782,7 @@ export interface components {
              */
             code: "start_allowed";
         };
+        /** @description Runs the checklist first; refused unless every blocking check passes. */
         StartInput: {
             craft_id?: string | null;
             /**
@@ -4842,6 +4886,7 @@ export interface components {
             heading_deg: (number | null)[];
             power_db: (number | null)[];
         };
+        /** @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db: as in BearingMeasured. */
         SweepRejected: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4859,6 +4904,7 @@ export interface components {
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
         };
+        /** @description attempt: counts the turns at this place from 1. */
         SweepStarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5097,6 +5143,7 @@ export interface components {
              */
             code: "too_many_scenes";
         };
+        /** @description altitude_relative_m: above home, when the climb was confirmed. */
         TookOff: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5113,6 +5160,7 @@ export interface components {
             craft_id: string;
             points: components["schemas"]["TrackFact"][];
         };
+        /** @description One point of a flown path, thinned. mode: the autopilot's name for it. */
         TrackFact: {
             /** Format: date-time */
             at_utc: string;
@@ -5180,6 +5228,7 @@ export interface components {
              */
             code: "two_recordings";
         };
+        /** @description Anywhere in the area alike. */
         UniformPriorSpec: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5383,6 +5432,7 @@ export interface components {
              */
             code: "vehicle_unknown";
         };
+        /** @description Of the proposed place: the planner chooses again without it. */
         Veto: {
             craft_id: string | null;
             /**
@@ -5391,6 +5441,7 @@ export interface components {
              */
             kind: "veto";
         };
+        /** @description Of the proposed place: the planner chooses again without it. */
         VetoInput: {
             craft_id?: string | null;
             /**
@@ -5437,6 +5488,7 @@ export interface components {
             sweeps: (components["schemas"]["BearingMeasured"] | components["schemas"]["SweepRejected"])[];
             antenna: components["schemas"]["WhatIfAntenna"] | null;
         };
+        /** @description Which antenna the answer was computed for. */
         WhatIfAntenna: {
             name: string;
             offset_to_nose_deg: number;
