@@ -211,6 +211,8 @@ async def test_samples_are_finite_in_time_order_and_of_the_asked_frequency(recei
 async def test_samples_before_open_are_refused(receiver: Receiver) -> None:
     with refusing(ReceiverNotOpen(), ReceiverError):
         await anext(aiter(receiver.samples()))
+    await receiver.open([CARRIER])
+    assert await first(receiver, 1), "it can be opened all the same"
 
 
 async def test_closing_ends_the_samples(receiver: Receiver) -> None:
@@ -278,3 +280,5 @@ async def test_a_channel_out_of_band_is_refused_by_name_or_heard(rig: Rig, recei
 async def test_channels_that_cannot_be_are_refused(receiver: Receiver, channels: list[Channel], reason: Reason) -> None:
     with refusing(reason, ReceiverError):
         await receiver.open(channels)
+    await receiver.open([CARRIER])
+    assert await first(receiver, 1), "it can be opened all the same"

@@ -87,7 +87,8 @@ async def test_a_body_that_is_no_json_is_a_problem(client, body):
 
 @pytest.mark.parametrize("rest", ["", "/events", "/track", "/sweeps/s", "/beliefs", "/export/kml"])
 async def test_an_unknown_mission_is_not_found(client, rest):
-    is_problem(await client.get(f"/api/missions/nobody{rest}"), 404)
+    problem = is_problem(await client.get(f"/api/missions/nobody{rest}"), 404)
+    assert problem["reason"] == {"code": "no_mission", "mission_id": "nobody"}
 
 
 async def test_a_command_reaches_the_mission_and_its_refusal_is_an_answer(client, services):
@@ -141,8 +142,10 @@ async def test_a_fault_of_our_own_is_a_problem_with_an_incident(client, vehicle,
 
 
 async def test_unknown_paths_and_methods_are_problems(client):
-    is_problem(await client.get("/api/nothing"), 404)
-    is_problem(await client.delete("/api/missions"), 405)
+    unknown = is_problem(await client.get("/api/nothing"), 404)["reason"]
+    assert (unknown["code"], unknown["which"]) == ("nothing_there", "/api/nothing")
+    refused = is_problem(await client.delete("/api/missions"), 405)["reason"]
+    assert (refused["code"], refused["status"]) == ("http_refused", 405)
 
 
 async def test_too_large_a_body_is_refused_with_and_without_a_length(client):
@@ -150,5 +153,7 @@ async def test_too_large_a_body_is_refused_with_and_without_a_length(client):
         for _ in range(9):
             yield b" " * 2**20
 
-    is_problem(await client.post("/api/missions", content=b" " * (9 * 2**20)), 413)
-    is_problem(await client.post("/api/missions", content=chunks()), 413)
+    for body in (b" " * (9 * 2**20), chunks()):
+        problem = is_problem(await client.post("/api/missions", content=body), 413)
+        assert problem["reason"]["code"] == "body_too_large"
+    assert (await client.get("/api/missions")).json()["missions"] == []

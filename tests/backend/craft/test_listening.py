@@ -213,6 +213,10 @@ async def test_a_stream_that_ends_or_strays_is_trouble() -> None:
     await until(lambda: listening.trouble == ReceiverStreamEnded())
     receiver.samples = lambda: once(TAG_HZ)  # type: ignore[method-assign]
     await until(lambda: listening.trouble == FrequencyNotAskedFor(TAG_HZ))
+    assert listening.state == "lost"
+    last = listening.last(CARRIER_HZ)
+    assert last is not None
+    assert last.frequency_hz == CARRIER_HZ, "what strayed is not taken for the channel's own"
     await listening.stop()
 
 

@@ -90,6 +90,7 @@ async def test_a_receiver_that_delivers_nothing_is_an_error_and_no_rejected_swee
     stage.receiver.mute = True
     with refusing(NothingHeardInTurn, ReceiverError):
         await measured(stage)
+    assert stage.vehicle.names == ["turn"]
 
 
 async def test_without_any_position_there_is_an_error_and_no_made_up_place() -> None:
@@ -97,3 +98,4 @@ async def test_without_any_position_there_is_an_error_and_no_made_up_place() -> 
     stage.vehicle.state = replace(stage.vehicle.state, position=None)
     with refusing(PositionLost, VehicleError):
         await measured(stage)
+    assert stage.vehicle.names == ["turn"]

@@ -24,7 +24,7 @@ from backend.events import (
 )
 from backend.mission.inputs import ToCraft
 from backend.reasons import PreflightFailed
-from backend.reasons.flight import FailsafeFlies, Landed, NotStored
+from backend.reasons.flight import FailsafeFlies, Landed, NotStored, WatchBroke
 from backend.reasons.safety import BATTERY, BatteryShort, BatteryUnknown, FailsafeActs, NotGivenBack
 from backend.spec import Place, TimerSpec
 from hardware.reasons.receiver import ReceiverUnplugged
@@ -255,8 +255,11 @@ async def test_a_fault_of_our_own_in_watching_holds_and_watching_goes_on(
 
     monkeypatch.setattr(type(watch), "tick", once)
     await stage.until_phase(mission_id, "hold")
+    (alert,) = stage.journal.of_kind(mission_id, AlertRaised)
+    assert (alert.topic, alert.reason) == ("failure", WatchBroke("vehicle"))
     stage.vehicle.pilot_takes_over()
     await stage.until_phase(mission_id, "manual")
+    assert stage.active.state.crafts[FIRST_CRAFT].taken_over, "what came after the fault was seen"
 
 
 async def test_without_a_vehicle_the_start_is_refused_with_a_remedy() -> None:

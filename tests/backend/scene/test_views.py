@@ -171,8 +171,11 @@ async def test_an_unknown_mission_is_an_empty_window(views: SceneViews) -> None:
     views.show("view-one", SceneRequest(mission_id="m1"))
     shown = open_window(views, "view-one")
     await until(lambda: bool(shown))
+    assert names(shown[-1])
     views.show("view-one", SceneRequest(mission_id="gone"))
     await until(lambda: shown[-1] is None)
+    told = views.view("view-one")
+    assert (told.mission_id, told.shown_seq) == ("gone", 0)
 
 
 async def test_the_scene_stays_while_the_database_is_away(views: SceneViews, source: PaperSource, recorded) -> None:
