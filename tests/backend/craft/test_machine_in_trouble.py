@@ -76,6 +76,18 @@ def test_a_failsafe_that_an_order_has_stopped_leaves_the_craft_in_hold_and_sends
     assert not walk.topics
 
 
+@pytest.mark.parametrize("phase", HOMEWARD)
+def test_a_failsafe_that_ends_on_the_way_home_is_said_and_leaves_everything_as_it_is(phase: Phase) -> None:
+    walk = craft_in(phase)
+    walk.give(inputs.AuthorityHeard(FAILSAFE))
+    before = walk.craft
+    asked = walk.give(inputs.FailsafeEnded("LOITER"))
+    assert not any(isinstance(e, (*VEHICLE, effects.CancelWork, effects.TakeControl)) for e in asked)
+    assert (walk.craft.phase, walk.craft.authority) == (phase, before.authority)
+    (raised,) = walk.of_kind(AlertRaised)
+    assert (raised.topic, raised.level, raised.reason) == ("vehicle", "caution", FailsafeStopped("LOITER"))
+
+
 @pytest.mark.parametrize("command", [commands.Hold(), commands.Return(), commands.Abort(), commands.Resume()])
 def test_an_operator_takes_the_vehicle_from_its_failsafe_and_that_is_a_fact(command: commands.ForCraft) -> None:
     walk = CraftWalk().to("flying")

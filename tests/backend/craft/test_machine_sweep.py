@@ -142,8 +142,17 @@ def test_nothing_is_sent_while_somebody_else_flies_until_an_operator_takes_contr
             if first is not None:
                 assert step.carried_out, step.about
                 assert effects.TakeControl() in step.asked[:first], step.about
-        if isinstance(step.given, inputs.AuthorityHeard):
+        if isinstance(step.given, inputs.AuthorityHeard | inputs.FailsafeEnded):
             assert not sent(step.asked), step.about
+
+
+def test_the_end_of_a_failsafe_changes_nothing_but_what_is_said() -> None:
+    for step in steps():
+        if isinstance(step.given, inputs.FailsafeEnded):
+            assert {type(effect) for effect in step.asked} <= {Record}, step.about
+            assert (step.after.phase, step.after.authority) == (step.craft.phase, step.craft.authority), step.about
+            said = step.craft.phase in ("hold", *HOMEWARD) and not step.craft.taken_over
+            assert (step.after != step.craft) == said, step.about
 
 
 def test_control_is_taken_by_an_operators_deed_alone_and_from_a_pilot_by_resuming_alone() -> None:
