@@ -1,0 +1,93 @@
+"""The mission machine when bearings come, from its craft or from elsewhere, about one emitter or about several."""
+
+from __future__ import annotations
+
+import pytest
+from facts import (
+    IMPORT,
+    PERSON,
+    SECOND,
+    SPEC,
+    TWO_SPEC,
+    WAITING_SPEC,
+    bearing,
+    plan,
+    rejected,
+)
+from walks import Walk, commanded, of_craft, refusal, sent
+
+from backend import commands
+from backend.craft import effects, inputs
+from backend.mission.machine import transition
+from backend.mission.state import MissionState, fold
+from backend.reasons import refusals
+from backend.search.effects import Record, UpdateBelief
+from backend.search.inputs import BearingsArrived
+from backend.spec import FIRST_EMITTER
+
+
+@pytest.mark.parametrize("source", [PERSON, IMPORT])
+def test_a_bearing_from_elsewhere_changes_the_belief_and_leaves_the_craft_its_place(source: object) -> None:
+    for phase in ("flying", "measuring", "waiting"):
+        walk = Walk(WAITING_SPEC if phase == "waiting" else SPEC).to(phase)
+        if phase == "measuring":
+            walk.arrive()
+        chosen = walk.craft.chosen
+        assert chosen is not None
+        asked = walk.give(BearingsArrived((bearing(9, source=source, bearing_id="p"),)))  # type: ignore[arg-type]
+        assert [effect for effect in asked if not isinstance(effect, Record)] == [UpdateBelief(FIRST_EMITTER)]
+        assert not walk.search.beliefs_current
+        assert (walk.craft.phase, walk.craft.chosen) == (phase, chosen)
+        assert sent(walk.believe()) == []
+        assert (walk.craft.phase, walk.craft.chosen) == (phase, chosen)
+        assert walk.search.emitters[FIRST_EMITTER].bearing_ids == ("p",)
+
+
+def test_a_search_without_a_craft_folds_what_people_and_imports_bring() -> None:
+    walk = Walk()
+    walk.give(BearingsArrived((bearing(1, source=PERSON),)))
+    walk.give(BearingsArrived((bearing(2, source=IMPORT),)))
+    walk.believe(localized=True)
+    assert walk.search.localized
+    assert (walk.state.engaged, walk.state.phase) == ((), "draft")
+    assert all(isinstance(effect, Record | UpdateBelief) for effect in walk.asked)
+    walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    assert not walk.search.localized
+    assert fold(walk.recorded) == walk.state
+    none = MissionState(search=walk.search, crafts={})
+    after, asked = transition(none, BearingsArrived((bearing(3, source=PERSON),)), 2_000.0)
+    assert UpdateBelief(FIRST_EMITTER) in asked
+    assert len(after.search.measured) == 3
+    after, asked = transition(after, commanded(commands.Hold(), "c"), 2_001.0)
+    assert isinstance(refusal(asked), refusals.NoSuchCraft)
+
+
+def test_one_craft_finds_two_emitters_with_the_same_turns_and_comes_home_when_both_are_localized() -> None:
+    walk = Walk(TWO_SPEC).to("flying").arrive()
+    asked = walk.to_craft(inputs.SweepTaken((bearing(1, bearing_id="a1"), bearing(1, SECOND, bearing_id="b1"))))
+    assert {effect for effect in asked if isinstance(effect, UpdateBelief)} == {
+        UpdateBelief(FIRST_EMITTER),
+        UpdateBelief(SECOND),
+    }
+    assert of_craft(walk.believe(True, FIRST_EMITTER)) == []
+    assert walk.craft.phase == "planning"
+    assert of_craft(walk.believe(False, SECOND)) == [effects.PlanNext(2, ())]
+    walk.to_craft(inputs.Planned(plan(2)))
+    walk.arrive()
+    walk.to_craft(inputs.SweepTaken((rejected(1, 2), bearing(2, SECOND, bearing_id="b2"))))
+    assert [bearing_.bearing_id for bearing_ in walk.search.measured] == ["a1", "b1", "b2"]
+    assert sent(walk.believe(True, SECOND)) == [effects.ReturnHome()]
+    walk.to_craft(inputs.Landed())
+    assert walk.search.outcome == "localized"
+    assert fold(walk.recorded) == walk.state
+
+
+def test_an_excluded_bearing_is_taken_out_of_the_belief_without_moving_the_vehicle() -> None:
+    walk = Walk().to("measuring")
+    walk.to_craft(inputs.SweepTaken((bearing(1),)))
+    walk.command(commands.Hold())
+    walk.believe()
+    asked = walk.command(commands.ExcludeBearing(bearing_id="b1"))
+    assert UpdateBelief(FIRST_EMITTER) in asked
+    assert sent(asked) == []
+    assert walk.search.emitters[FIRST_EMITTER].bearing_ids == ()
