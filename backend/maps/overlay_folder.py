@@ -13,11 +13,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from backend.maps.features import Reading, storable
 from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml, read_kmz
 from backend.maps.refusal import MapRefused, NotStored
 from backend.maps.simplify import simplified
+from backend.reasons import REASONS
 from backend.reasons.maps import NoRoomForMap, NothingToDraw, NotReadableAs, OverlayFormat, OverlayUnusable
 from backend.wire.maps import Overlay, OverlayCollection
 
@@ -95,10 +98,18 @@ class OverlayFolder:
 
 
 def _description(path: Path) -> Overlay:
-    """Notes that were stored as sentences, before they had names, are dropped."""
+    """Notes that this version does not know, such as sentences of before they had names, are dropped."""
     stored = json.loads(path.read_bytes())
-    named = [note for note in stored["notes"] if not isinstance(note, str)]
-    return Overlay.model_validate_json(json.dumps({**stored, "notes": named}))
+    notes = [note for note in stored["notes"] if _is_reason(note)]
+    return Overlay.model_validate_json(json.dumps({**stored, "notes": notes}))
+
+
+def _is_reason(note: object) -> bool:
+    try:
+        REASONS.adapter.validate_python(note)
+    except ValidationError:
+        return False
+    return True
 
 
 def read_overlay(content: bytes) -> tuple[OverlayFormat, Reading]:

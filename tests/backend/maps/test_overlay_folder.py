@@ -11,7 +11,7 @@ import pytest
 from backend.maps import overlay_folder
 from backend.maps.overlay_folder import OverlayFolder
 from backend.maps.refusal import MapRefused, NotStored
-from backend.reasons.maps import NoRoomForMap, OverlayUnusable
+from backend.reasons.maps import MoreLeftOut, NoRoomForMap, OverlayUnusable
 
 NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
 GEOJSON = b'\xef\xbb\xbf {"type": "Point", "coordinates": [7.1, 50.2]}'
@@ -54,14 +54,19 @@ def test_nothing_is_kept_of_what_cannot_be_drawn(folder: OverlayFolder, content:
     assert folder.overlays() == ([], [])
 
 
-def test_notes_of_before_they_had_names_are_dropped(folder: OverlayFolder) -> None:
+@pytest.mark.parametrize(
+    "unknown",
+    ['"Feature 2 is left out."', "7", "null", "[]", "{}", '{"code": "more_left_out"}', '{"code": "of_later"}'],
+)
+def test_notes_that_are_no_reasons_are_dropped_and_the_others_stay(folder: OverlayFolder, unknown: str) -> None:
     stored = folder.store(GEOJSON, "Nests", NOW)
+    known = '{"code": "more_left_out", "parts": 3}'
     label = folder.directory / f"{stored.overlay_id}.json"
-    label.write_text(label.read_text().replace('"notes":[]', '"notes":["Feature 2 is left out."]'))
-    assert folder.overlays() == ([stored], [])
+    label.write_text(label.read_text().replace('"notes":[]', f'"notes":[{unknown}, {known}]'))
+    assert folder.overlays() == ([stored.model_copy(update={"notes": [MoreLeftOut(3)]})], [])
 
 
-@pytest.mark.parametrize("damaged", [b"", b"{}", b'{"name": "\\ud800"}', b"[" * 100_000, b"\xff", b"null"])
+@pytest.mark.parametrize("damaged", [b"", b"{}", b'{"notes": 7}', b'{"notes": []}', b"[" * 100_000, b"\xff", b"null"])
 def test_a_damaged_description_is_named_and_the_others_are_listed(folder: OverlayFolder, damaged: bytes) -> None:
     stored = folder.store(GEOJSON, "Nests", NOW)
     (folder.directory / "broken.json").write_bytes(damaged)
