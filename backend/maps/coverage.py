@@ -125,7 +125,9 @@ def tiles_over(plane: BaseGeometry, zoom: int) -> NDArray[np.int64] | None:
     if len(x) * len(y) > 4 * MOST_TILES:
         return None
     tiles = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    shared = shapely.area(shapely.intersection(tile_squares(tiles, zoom), plane))  # pyright: ignore[reportUnknownMemberType]
+    squares = tile_squares(tiles, zoom)
+    # shapely does not say what it is an array of
+    shared = shapely.area(shapely.intersection(squares, plane))  # pyright: ignore[reportUnknownMemberType]
     tiles = tiles[shared > 0]
     return tiles if len(tiles) <= MOST_TILES else None
 
