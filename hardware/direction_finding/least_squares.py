@@ -18,6 +18,9 @@ from hardware.reasons.sweep import UnlikeAntenna
 
 _GRID_DEG = 0.5
 
+Fit = tuple[float, float, float]
+"""(bearing, its sigma, both in degrees; power in dB of the source where the pattern's gain is 0 dB)."""
+
 
 @dataclass(frozen=True, slots=True)
 class LeastSquaresDirectionFinder:
@@ -27,11 +30,9 @@ class LeastSquaresDirectionFinder:
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """sigma from the misfit's curvature; a sweep that cannot be used gives a refused reading."""
-        binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
-        refusal = unusable(sweep, binned)
-        if refusal is not None:
-            return refused(binned, refusal)
-        curve = PatternCurve(pattern)
+        return _reading(self.minimum_quality, sweep, pattern, self._fit)
+
+    def _fit(self, binned: BinnedSweep, curve: PatternCurve, noise_db: float | None) -> Fit:
         heading, power = binned.heading_deg[binned.filled], binned.power_db[binned.filled]
         count = binned.count[binned.filled].astype(np.float64)
 
@@ -44,8 +45,7 @@ class LeastSquaresDirectionFinder:
         freedom = max(heading.size - 2, 1)
         # sigma^2 = residual variance / (half the second derivative)
         sigma = math.sqrt(max(least, 1e-9) / count.mean() / freedom / max(curvature / 2.0 / count.mean(), 1e-9))
-        level = float((power - curve.gain_db(bearing - heading)) @ count / count.sum())
-        return _reading(self.minimum_quality, curve, binned, bearing, sigma, level, sweep.noise_floor_db)
+        return bearing, sigma, float((power - curve.gain_db(bearing - heading)) @ count / count.sum())
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +56,11 @@ class CorrelationDirectionFinder:
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
         """sigma from the distance's curvature; a sweep that cannot be used gives a refused reading."""
-        binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
-        refusal = unusable(sweep, binned)
-        if refusal is not None:
-            return refused(binned, refusal)
-        curve = PatternCurve(pattern)
+        return _reading(self.minimum_quality, sweep, pattern, self._fit)
+
+    def _fit(self, binned: BinnedSweep, curve: PatternCurve, noise_db: float | None) -> Fit:
         heading = binned.heading_deg[binned.filled]
-        measured = linear_power(binned, sweep.noise_floor_db)[binned.filled]
+        measured = linear_power(binned, noise_db)[binned.filled]
         measured = measured / max(float(np.linalg.norm(measured)), 1e-12)
 
         def distance(bearing: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -72,8 +70,7 @@ class CorrelationDirectionFinder:
 
         bearing, curvature, least = _minimum(distance)
         sigma = math.sqrt(max(least, 1e-9) / max(heading.size - 2, 1) / max(curvature / 2.0, 1e-12))
-        level = float(np.median(binned.power_db[binned.filled] - curve.gain_db(bearing - heading)))
-        return _reading(self.minimum_quality, curve, binned, bearing, sigma, level, sweep.noise_floor_db)
+        return bearing, sigma, float(np.median(binned.power_db[binned.filled] - curve.gain_db(bearing - heading)))
 
 
 def _minimum(cost: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> tuple[float, float, float]:
@@ -90,13 +87,16 @@ def _minimum(cost: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> tupl
 
 def _reading(
     minimum_quality: float,
-    curve: PatternCurve,
-    binned: BinnedSweep,
-    bearing: float,
-    sigma: float,
-    level_db: float,
-    noise_db: float | None,
+    sweep: Sweep,
+    pattern: AntennaPattern,
+    fit: Callable[[BinnedSweep, PatternCurve, float | None], Fit],
 ) -> BearingReading:
+    binned = bin_sweep(sweep.heading_deg, sweep.power_db, pattern.offset_to_nose_deg)
+    refusal = unusable(sweep, binned)
+    if refusal is not None:
+        return refused(binned, refusal)
+    curve, noise_db = PatternCurve(pattern), sweep.noise_floor_db
+    bearing, sigma, level_db = fit(binned, curve, noise_db)
     quality = cosine_quality(curve, binned, bearing, noise_db)
     accepted = quality >= minimum_quality
     centre: NDArray[np.float64] = np.linspace(0.5 * BIN_DEG, 360.0 - 0.5 * BIN_DEG, BINS)
