@@ -5,13 +5,11 @@
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 from collections.abc import Iterator
 from dataclasses import asdict, fields, is_dataclass
-from pathlib import Path
 
+from backend.generated import write_or_check
 from backend.reasons.catalogue import reason_classes
 from planner.reason import Reason, remedy_of, text_of
 from tests.reasons import examples
@@ -46,17 +44,5 @@ def _holds_reason(value: object) -> bool:
     return any(is_dataclass(one) for one in inside)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Write every reason in English, or check that a file is current.")
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    text = spoken()
-    if not arguments.check:
-        arguments.file.write_text(text)
-    elif not arguments.file.exists() or arguments.file.read_text() != text:
-        sys.exit(f"{arguments.file} is not what the classes say: run `make codegen` and commit the result")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(spoken(), "every reason in English")

@@ -6,10 +6,7 @@ that differs from its stored form (defaults may be left out) carries the suffix 
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
@@ -20,6 +17,7 @@ from pydantic import JsonValue
 from backend.api import maps, missions, planning, read_export, recordings, review, scene, system
 from backend.commands import Command
 from backend.events import Event
+from backend.generated import write_or_check
 from backend.reasons import REASONS
 from backend.reasons.adapter import BY_NAME
 from backend.spec import Area
@@ -119,18 +117,5 @@ def wire_schema_text(version: str = "0.1.0") -> str:
     return json.dumps(wire_schema(version), indent=2) + "\n"
 
 
-def main() -> None:
-    """Exit status 1 with `--check` when the file is out of date; nothing is written then."""
-    parser = argparse.ArgumentParser(description="Write the wire schema, or check that a file is up to date.")
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    text = wire_schema_text()
-    if not arguments.check:
-        arguments.file.write_text(text)
-    elif not arguments.file.exists() or arguments.file.read_text() != text:
-        sys.exit(f"{arguments.file} is not what the code says: run `make codegen` and commit the result")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(wire_schema_text(), "the wire schema")

@@ -5,12 +5,10 @@
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
-from pathlib import Path
 from typing import get_args, get_type_hints
 
+from backend.generated import write_or_check
 from backend.reasons import ReasonUnion
 from planner.reason import Reason as AnyReason
 
@@ -63,20 +61,5 @@ def _literal(words: str) -> str:
     return "'" + double[1:-1].replace('\\"', '"').replace("'", "\\'") + "'"
 
 
-def main() -> None:
-    """Exit status 1 with `--check` when the file is out of date; nothing is written then."""
-    parser = argparse.ArgumentParser(
-        description="Write the page's English for every reason, or check that it is current."
-    )
-    parser.add_argument("file", type=Path)
-    parser.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    text = english_table()
-    if not arguments.check:
-        arguments.file.write_text(text)
-    elif not arguments.file.exists() or arguments.file.read_text() != text:
-        sys.exit(f"{arguments.file} is not what the classes say: run `make codegen` and commit the result")
-
-
 if __name__ == "__main__":
-    main()
+    write_or_check(english_table(), "the page's English for every reason")
