@@ -1,5 +1,11 @@
 // What is drawn over the ground, from bottom to top, and which switch shows it.
-import type { ExpressionSpecification, Map as GlMap, LayerSpecification } from "maplibre-gl";
+import type {
+  ExpressionSpecification,
+  FillLayerSpecification,
+  Map as GlMap,
+  LayerSpecification,
+  LineLayerSpecification,
+} from "maplibre-gl";
 import { collection } from "./features";
 import type { Palette } from "./palette";
 
@@ -22,12 +28,34 @@ const FONT = ["sans-serif"];
 
 const of = (what: string): ExpressionSpecification => ["==", ["get", "what"], what];
 
+const shownBy = (by: Switch | null) => (by ? { metadata: { switch: by } } : {});
+
+/** Lines along the features of one kind; `by`: the switch that shows them, null when they always show. */
+const line = (id: string, source: SourceName, what: string, by: Switch | null, paint: LineLayerSpecification["paint"]): Drawn => ({
+  id,
+  type: "line",
+  source,
+  filter: of(what),
+  paint,
+  ...shownBy(by),
+});
+
+/** The same, filled. */
+const fill = (id: string, source: SourceName, what: string, by: Switch | null, paint: FillLayerSpecification["paint"]): Drawn => ({
+  id,
+  type: "fill",
+  source,
+  filter: of(what),
+  paint,
+  ...shownBy(by),
+});
+
 /** What keeps the borders apart from a photograph under them. */
 function borderHalos(colours: Palette): Drawn[] {
   const paint = { "line-color": colours.halo, "line-width": 6, "line-opacity": 0.7 };
   return [
     { id: "fence-halo", type: "line", source: "plan", filter: ["any", of("fence"), of("no_fly")], paint, metadata: { switch: "fence" } },
-    { id: "area-halo", type: "line", source: "plan", filter: of("area"), paint },
+    line("area-halo", "plan", "area", null, paint),
   ];
 }
 
@@ -67,38 +95,11 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
     colours.rounds[5],
   ];
   return [
-    {
-      id: "no-fly",
-      type: "fill",
-      source: "plan",
-      filter: of("no_fly"),
-      paint: { "fill-color": colours.noFly, "fill-opacity": 0.25 },
-      metadata: { switch: "fence" },
-    },
+    fill("no-fly", "plan", "no_fly", "fence", { "fill-color": colours.noFly, "fill-opacity": 0.25 }),
     ...(overMap ? borderHalos(colours) : []),
-    {
-      id: "no-fly-line",
-      type: "line",
-      source: "plan",
-      filter: of("no_fly"),
-      paint: { "line-color": colours.noFly, "line-width": 2 },
-      metadata: { switch: "fence" },
-    },
-    {
-      id: "fence",
-      type: "line",
-      source: "plan",
-      filter: of("fence"),
-      paint: { "line-color": colours.fence, "line-width": 2.5, "line-dasharray": [1, 1.5] },
-      metadata: { switch: "fence" },
-    },
-    {
-      id: "area",
-      type: "line",
-      source: "plan",
-      filter: of("area"),
-      paint: { "line-color": colours.area, "line-width": 2, "line-dasharray": [5, 3] },
-    },
+    line("no-fly-line", "plan", "no_fly", "fence", { "line-color": colours.noFly, "line-width": 2 }),
+    line("fence", "plan", "fence", "fence", { "line-color": colours.fence, "line-width": 2.5, "line-dasharray": [1, 1.5] }),
+    line("area", "plan", "area", null, { "line-color": colours.area, "line-width": 2, "line-dasharray": [5, 3] }),
     {
       id: "overlay-fill",
       type: "fill",
@@ -136,86 +137,24 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       paint: { "line-color": colours.path, "line-width": 2, "line-opacity": 0.85 },
       metadata: { switch: "path" },
     },
-    {
-      id: "wedges",
-      type: "fill",
-      source: "measured",
-      filter: of("wedge"),
-      paint: { "fill-color": quality, "fill-opacity": fading(0.14, 0.05) },
-      metadata: { switch: "bearings" },
-    },
-    {
-      id: "bearing-halo",
-      type: "line",
-      source: "measured",
-      filter: of("main"),
-      paint: { "line-color": colours.halo, "line-width": 4.5, "line-opacity": 0.6 },
-      metadata: { switch: "bearings" },
-    },
-    {
-      id: "bearings",
-      type: "line",
-      source: "measured",
-      filter: of("main"),
-      paint: { "line-color": quality, "line-width": 2.2, "line-opacity": fading(1, 0.6) },
-      metadata: { switch: "bearings" },
-    },
-    {
-      id: "other-peaks",
-      type: "line",
-      source: "measured",
-      filter: of("peak"),
-      paint: { "line-color": quality, "line-width": 1.6, "line-dasharray": [4, 3], "line-opacity": ["max", 0.35, ["get", "weight"]] },
-      metadata: { switch: "bearings" },
-    },
-    {
-      id: "excluded",
-      type: "line",
-      source: "measured",
-      filter: of("excluded"),
-      paint: { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] },
-      metadata: { switch: "bearings" },
-    },
-    {
-      id: "c95-halo",
-      type: "line",
-      source: "measured",
-      filter: of("c95"),
-      paint: { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 },
-      metadata: { switch: "belief" },
-    },
-    {
-      id: "c95",
-      type: "line",
-      source: "measured",
-      filter: of("c95"),
-      paint: { "line-color": colours.c95, "line-width": 2.2 },
-      metadata: { switch: "belief" },
-    },
-    {
-      id: "roses",
-      type: "fill",
-      source: "measured",
-      filter: of("rose"),
-      paint: { "fill-color": colours.rose, "fill-opacity": ["case", ["get", "excluded"], 0.05, fading(0.35, 0.08)] },
-      metadata: { switch: "roses" },
-    },
-    {
-      id: "rose-lines",
-      type: "line",
-      source: "measured",
-      filter: of("rose"),
-      paint: { "line-color": colours.rose, "line-width": 1.5, "line-opacity": fading(1, 0.3) },
-      metadata: { switch: "roses" },
-    },
-    {
-      id: "circle",
-      type: "line",
-      source: "measured",
-      filter: of("circle"),
-      paint: { "line-color": colours.ink, "line-width": 1.8, "line-dasharray": [2, 2] },
-      metadata: { switch: "belief" },
-    },
+    fill("wedges", "measured", "wedge", "bearings", { "fill-color": quality, "fill-opacity": fading(0.14, 0.05) }),
+    line("bearing-halo", "measured", "main", "bearings", { "line-color": colours.halo, "line-width": 4.5, "line-opacity": 0.6 }),
+    line("bearings", "measured", "main", "bearings", { "line-color": quality, "line-width": 2.2, "line-opacity": fading(1, 0.6) }),
+    line("other-peaks", "measured", "peak", "bearings", {
+      "line-color": quality,
+      "line-width": 1.6,
+      "line-dasharray": [4, 3],
+      "line-opacity": ["max", 0.35, ["get", "weight"]],
+    }),
+    line("excluded", "measured", "excluded", "bearings", { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] }),
+    line("c95-halo", "measured", "c95", "belief", { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }),
+    line("c95", "measured", "c95", "belief", { "line-color": colours.c95, "line-width": 2.2 }),
+    fill("roses", "measured", "rose", "roses", {
+      "fill-color": colours.rose,
+      "fill-opacity": ["case", ["get", "excluded"], 0.05, fading(0.35, 0.08)],
+    }),
+    line("rose-lines", "measured", "rose", "roses", { "line-color": colours.rose, "line-width": 1.5, "line-opacity": fading(1, 0.3) }),
+    line("circle", "measured", "circle", "belief", { "line-color": colours.ink, "line-width": 1.8, "line-dasharray": [2, 2] }),
     {
       id: "candidates",
       type: "circle",
