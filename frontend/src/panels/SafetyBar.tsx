@@ -16,7 +16,7 @@ import { missionAddress } from "../state/route";
 import { mission, shownTimeMs } from "../state/shown";
 import { toneOfPhase } from "../state/tone";
 import { vehicle } from "../state/vehicle";
-import { reviewWords, stateWords, waitsWords } from "../state/words";
+import { reviewWords, stateWords, waitsWords, whoFlies } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
 import { Menu } from "./Menu";
@@ -165,19 +165,8 @@ function controlWords(): string {
   const { authority, craftId, pilot } = mission.value;
   const heard = telemetry.value?.value;
   const who = pilot ? "pilot" : cursor.value !== null && craftId !== null ? authority.who : (heard?.who ?? null);
-  const mode = pilot?.mode ?? heard?.mode ?? "?";
-  switch (who) {
-    case "pilot":
-      return t(authority.perhaps_failsafe ? "control.perhapsFailsafe" : "control.pilot", { mode });
-    case "failsafe":
-      return t("control.failsafe", { mode });
-    case "ours":
-      return t("control.crossfix");
-    case "nobody":
-      return t("control.nobody");
-    case null:
-      return t("control.unknown");
-  }
+  if (who === null) return t("control.unknown");
+  return whoFlies(who, pilot?.mode ?? heard?.mode ?? "?", authority.perhaps_failsafe);
 }
 
 /** Seconds until the place that is flown to is reached, as the crow flies. */

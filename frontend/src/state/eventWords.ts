@@ -3,7 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
-import { checkName, phaseName } from "./words";
+import { checkName, phaseName, whoFlies } from "./words";
 
 /** null: the mission by itself. */
 const byWords = (by: string | null): string => (by === null ? t("by.mission") : personName(by));
@@ -34,17 +34,7 @@ function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_order
 
 function controlWords({ authority, by }: EventOf<"authority_changed">): string {
   if (by !== null) return t("event.control_taken_back", { by: byWords(by) });
-  const mode = authority.mode ?? t("control.sticks");
-  switch (authority.who) {
-    case "pilot":
-      return t(authority.perhaps_failsafe ? "control.perhapsFailsafe" : "control.pilot", { mode });
-    case "failsafe":
-      return t("control.failsafe", { mode });
-    case "ours":
-      return t("control.crossfix");
-    case "nobody":
-      return t("control.nobody");
-  }
+  return whoFlies(authority.who, authority.mode ?? t("control.sticks"), authority.perhaps_failsafe);
 }
 
 function beliefWords({ estimate, consistent, localized, contradicting, bearings, not_yet }: BeliefUpdated, units: UnitSystem): string {

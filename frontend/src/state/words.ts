@@ -1,7 +1,7 @@
 // The state of the mission as sentences.
 import { type MessageKey, reasonText, t } from "../i18n";
 import { formatClock, formatDuration } from "../units/quantities";
-import type { CheckFact, LinkName, MissionPhase, ReasonCode } from "../wire";
+import type { Authority, CheckFact, LinkName, MissionPhase, ReasonCode } from "../wire";
 import { isOver } from "./mission";
 import type { MissionView } from "./view";
 
@@ -21,6 +21,20 @@ const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {
 function holdWords({ phaseReason, lost }: MissionView, reason: string): string {
   const link = phaseReason && HOLDING_LINK[phaseReason.code];
   return link && !lost[link] ? t("state.hold.back", { link: t(`link.${link}` satisfies MessageKey) }) : t("state.hold", { reason });
+}
+
+/** Who flies; mode: the autopilot's name of what it flies in. */
+export function whoFlies(who: Authority["who"], mode: string, perhapsFailsafe: boolean): string {
+  switch (who) {
+    case "pilot":
+      return t(perhapsFailsafe ? "control.perhapsFailsafe" : "control.pilot", { mode });
+    case "failsafe":
+      return t("control.failsafe", { mode });
+    case "ours":
+      return t("control.crossfix");
+    case "nobody":
+      return t("control.nobody");
+  }
 }
 
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
