@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { areaOf, polygonsOf, type Rings } from "../state/areas";
 import type { Area } from "../wire";
-import { draft, update } from "./draft";
+import { type Draft, draft, update } from "./draft";
 import { set } from "./path";
 
 export type What = "area" | "fence" | "noFly";
@@ -10,6 +10,10 @@ export type Tool = "none" | "polygon" | "rectangle" | "corners";
 
 export const what = signal<What>("area");
 export const tool = signal<Tool>("none");
+
+const zone = (rings: Rings): Area => ({ type: "Polygon", coordinates: rings });
+
+const keepOff = (now: Draft, zones: Area[]): void => update({ ...now, spec: set(now.spec, "flight.no_fly", zones) });
 
 /** Puts polygons into the draft: they replace the suggested area, else they are added. */
 export function add(kind: What, polygons: readonly Rings[]): void {
@@ -22,8 +26,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {
-    const more = polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings }));
-    update({ ...now, spec: set(now.spec, "flight.no_fly", [...flight.no_fly, ...more]) });
+    keepOff(now, [...(flight.no_fly as Area[]), ...polygons.map(zone)]);
   }
 }
 
@@ -32,15 +35,7 @@ export function remove(kind: What, index = 0): void {
   if (!now) return;
   if (kind === "area") update({ ...now, hasArea: false, suggested: false });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", null) });
-  else
-    update({
-      ...now,
-      spec: set(
-        now.spec,
-        "flight.no_fly",
-        now.spec.flight.no_fly.filter((_, i) => i !== index),
-      ),
-    });
+  else keepOff(now, now.spec.flight.no_fly.filter((_, i) => i !== index) as Area[]);
 }
 
 /** Replaces all polygons of a kind after their corners were moved. */
@@ -50,15 +45,7 @@ export function replace(kind: What, polygons: readonly Rings[]): void {
   if (!now || !joined) return;
   if (kind === "area") update({ ...now, suggested: false, spec: { ...now.spec, area: joined } });
   else if (kind === "fence") update({ ...now, spec: set(now.spec, "flight.fence", joined) });
-  else
-    update({
-      ...now,
-      spec: set(
-        now.spec,
-        "flight.no_fly",
-        polygons.map((rings): Area => ({ type: "Polygon", coordinates: rings })),
-      ),
-    });
+  else keepOff(now, polygons.map(zone));
 }
 
 export function polygonsOfKind(kind: What): Rings[] {
