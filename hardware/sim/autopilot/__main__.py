@@ -14,6 +14,7 @@ from hardware.sim.autopilot.ardupilot import ArduCopter
 from hardware.sim.autopilot.copter import Wind
 from hardware.sim.autopilot.firmware import Conditions, Firmware
 from hardware.sim.autopilot.geodesy import HomeFrame
+from hardware.sim.autopilot.orders import Orders
 from hardware.sim.autopilot.process import Endpoint, Process, Schedule
 from hardware.sim.autopilot.px4 import Px4
 
@@ -101,6 +102,11 @@ def parser() -> argparse.ArgumentParser:
         "--station-timeout", type=_positive, default=Schedule().station_timeout, metavar="S",
         help="wall seconds below which a silent ground station is not taken for lost (for sped-up runs)",
     )  # fmt: skip
+    p.add_argument("--link-delay", type=float, default=0.0, metavar="S", help="of the radio, each way, 0 to 5")
+    p.add_argument(
+        "--clock-rate", type=_positive, default=1.0, metavar="R",
+        help="the vehicle's seconds in one of the wall's (times S): 0.98 is an overloaded simulator",
+    )  # fmt: skip
     p.add_argument("--parent", type=int, metavar="PID", help="stop when this parent process is gone")
     p.add_argument(
         "--linger", type=_positive, metavar="S", help="stop when nobody was heard for that many wall seconds"
@@ -123,6 +129,7 @@ def build(arguments: argparse.Namespace) -> Firmware:
     firmware = FLAVOURS[arguments.flavour](conditions)
     for name, value in arguments.param:
         firmware.parameters.set(name, value)
+    Orders(firmware).carry_out({"do": "link_delay", "seconds": arguments.link_delay})
     return firmware
 
 
@@ -134,7 +141,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Flies until it is stopped; the exit status, 2 when it cannot start."""
     arguments = parser().parse_args(argv)
     try:
-        schedule = Schedule(arguments.speedup, arguments.station_timeout, arguments.parent, arguments.linger)
+        schedule = Schedule(
+            arguments.speedup, arguments.clock_rate, arguments.station_timeout, arguments.parent, arguments.linger
+        )
         process = Process(build(arguments), arguments.connect, arguments.control, schedule)
     except (ValueError, OSError) as error:
         print(f"The simulated autopilot cannot start: {error}", file=sys.stderr)

@@ -67,6 +67,7 @@ class ArduCopter(Firmware):
     pilot_mode: ClassVar[str] = "LOITER"
     give_back_mode: ClassVar[str] = "BRAKE"
     heartbeat_on_mode_change: ClassVar[bool] = True
+    mode_reported_on_change: ClassVar[bool] = False
     ready_after: ClassVar[float] = 3.0
     streams_by_default: ClassVar[dict[int, float]] = {}
 

@@ -69,6 +69,8 @@ class Faults:
     ignore_all: int = 0
     silent: int = 0
     link_lost_until: float = -1.0
+    link_delay: float = 0.0
+    """Seconds each way."""
     no_prearm: bool = False
 
 
@@ -88,6 +90,8 @@ class Firmware(ABC):
     """The mode that a pilot's mode switch selects to take over."""
     give_back_mode: ClassVar[str]
     heartbeat_on_mode_change: ClassVar[bool]
+    mode_reported_on_change: ClassVar[bool]
+    """CURRENT_MODE is sent when the mode changed, no faster than asked for, and else twice a second."""
     streams_by_default: ClassVar[dict[int, float]]
     """Message id -> Hz sent without being asked."""
     ready_after: ClassVar[float]

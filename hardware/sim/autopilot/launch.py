@@ -29,7 +29,8 @@ class Setting:
     """What to simulate. wind: (speed m/s, degrees from, gusts m/s). connect_port, control_port: None = any free one.
 
     keep_running: the vehicle stays in the air when this process dies (find it again with `find_simulated`); after
-    LINGER_S wall seconds without anybody it ends all the same. station_timeout_s: see process.Schedule.
+    LINGER_S wall seconds without anybody it ends all the same. station_timeout_s, clock_rate: see process.Schedule.
+    link_delay_s: of the radio, each way.
     """
 
     flavour: str = "px4"
@@ -45,6 +46,8 @@ class Setting:
     control_port: int | None = None
     keep_running: bool = False
     station_timeout_s: float = 8.0
+    link_delay_s: float = 0.0
+    clock_rate: float = 1.0
 
     def arguments(self, connect_port: int) -> list[str]:
         """The command line of `python -m hardware.sim.autopilot`."""
@@ -61,6 +64,8 @@ class Setting:
             "--battery", repr(self.battery_percent),
             "--control", str(self.control_port or 0),
             "--station-timeout", repr(self.station_timeout_s),
+            "--link-delay", repr(self.link_delay_s),
+            "--clock-rate", repr(self.clock_rate),
         ]  # fmt: skip
         for name, value in self.parameters.items():
             arguments += ["--param", f"{name}={value!r}"]

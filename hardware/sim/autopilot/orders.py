@@ -4,6 +4,7 @@
     {"do": "pilot_mode", "mode": "POSCTL"}    the pilot's mode switch (without "mode": the flavour's usual one)
     {"do": "give_back"}                       the mode switch back to the autopilot's holding mode
     {"do": "link_loss", "seconds": 8}         nothing passes the radio link, both ways (simulated seconds)
+    {"do": "link_delay", "seconds": 0.08}     each way, from now on (simulated seconds)
     {"do": "gps_jump", "north_m": 30, "east_m": 0, "seconds": 5}
     {"do": "heading_error", "degrees": 15}
     {"do": "battery", "percent": 15}
@@ -26,6 +27,8 @@ from typing import Any, cast
 
 from hardware.sim.autopilot.firmware import Firmware
 
+LONGEST_DELAY = 5.0
+
 
 class OrderError(ValueError):
     """An order that cannot be carried out; the message says why."""
@@ -36,6 +39,13 @@ def _number(order: dict[str, Any], key: str, default: float | None = None) -> fl
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise OrderError(f'The order {order.get("do")!r} needs a number "{key}", not {value!r}.')
     return float(value)
+
+
+def _delay(order: dict[str, Any]) -> float:
+    seconds = _number(order, "seconds")
+    if not 0.0 <= seconds <= LONGEST_DELAY:
+        raise OrderError(f"A link's delay is 0 to {LONGEST_DELAY:g} seconds each way, not {seconds:g}.")
+    return seconds
 
 
 class Orders:
@@ -76,6 +86,8 @@ class Orders:
                 return {"mode": firmware.mode}
             case "link_loss":
                 faults.link_lost_until = firmware.time + _number(order, "seconds")
+            case "link_delay":
+                faults.link_delay = _delay(order)
             case "gps_jump":
                 firmware.navigation.jump(
                     _number(order, "north_m", 0.0), _number(order, "east_m", 0.0), _number(order, "seconds", 5.0)

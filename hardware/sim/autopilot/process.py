@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from hardware.sim.autopilot.firmware import Firmware
 from hardware.sim.autopilot.orders import Orders
+from hardware.sim.autopilot.radio import Radio
 from hardware.sim.autopilot.station import Station
 
 STEP = 0.02
@@ -35,10 +36,12 @@ class Schedule:
 
     station_timeout: a ground station is not taken for lost earlier, whatever the parameter says: its heartbeats come by
     the wall's clock and its restart takes wall time, however fast the simulation runs.
+    clock_rate: the vehicle's seconds in one of the wall's times `speedup`: a cheap crystal, or an overloaded simulator.
     parent: ends when this process (our parent) is gone. linger: ends when nobody was heard for so long.
     """
 
     speedup: float = 1.0
+    clock_rate: float = 1.0
     station_timeout: float = 8.0
     parent: int | None = None
     linger: float | None = None
@@ -54,7 +57,8 @@ class Process:
         self._orders = Orders(firmware)
         self._connect = connect
         self._peer = (socket.gethostbyname(connect.host), connect.port)
-        self._speedup = schedule.speedup
+        self._speedup = schedule.speedup * schedule.clock_rate
+        self._down, self._up = Radio(), Radio()
         self._schedule = schedule
         self._heard_at = self._looked_up_at = time.monotonic()
         self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -83,13 +87,15 @@ class Process:
             elif behind > MOST_BEHIND_WALL:
                 started += behind
             self._advance((now - started) * self._speedup)
+            self._deliver()
             if now >= next_look:
                 next_look = now + 0.25
                 if self._abandoned(now):
                     return
                 if now - max(self._heard_at, self._looked_up_at) > LOOK_UP_AGAIN:
                     self._look_up_station(now)
-            readable, _, _ = select.select([self._link, self._control], [], [], self._tick)
+            tick = min(self._tick, 0.002) if self._firmware.faults.link_delay else self._tick
+            readable, _, _ = select.select([self._link, self._control], [], [], tick)
             for each in readable:
                 self._read(each)
 
@@ -115,10 +121,23 @@ class Process:
     def _link_lost(self) -> bool:
         return self._firmware.time < self._firmware.faults.link_lost_until
 
+    def _arrival(self) -> float:
+        """When a packet sent now comes out of the radio, by the wall."""
+        return time.monotonic() + self._firmware.faults.link_delay / self._speedup
+
     def _send(self, packet: bytes) -> None:
-        if not self._link_lost:
-            with contextlib.suppress(ConnectionError, BlockingIOError):
-                self._link.sendto(packet, self._peer)
+        self._down.put(packet, self._arrival())
+
+    def _deliver(self) -> None:
+        """A link that is lost loses what is under way, too."""
+        for packet in self._up.arrived(time.monotonic()):
+            if not self._link_lost:
+                for answer in self._station.receive(packet):
+                    self._send(answer)
+        for packet in self._down.arrived(time.monotonic()):
+            if not self._link_lost:
+                with contextlib.suppress(ConnectionError, BlockingIOError):
+                    self._link.sendto(packet, self._peer)
 
     def _read(self, source: socket.socket) -> None:
         while True:
@@ -132,9 +151,8 @@ class Process:
             if source is self._control:
                 with contextlib.suppress(OSError):
                     source.sendto(self._orders.receive(data), sender)
-            elif not self._link_lost:
-                for packet in self._station.receive(data):
-                    self._send(packet)
+            else:
+                self._up.put(data, self._arrival())
 
     def close(self) -> None:
         """Frees both ports."""

@@ -23,6 +23,10 @@ from hardware.sim.autopilot.firmware import (
 from hardware.sim.autopilot.parameters import INT32, REAL32, Parameters
 
 
+REPOSITION_KEPT = 0.5
+"""Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
+
+
 def px4_mode(main: int, sub: int = 0) -> int:
     """custom_mode of HEARTBEAT: main mode in bits 16 to 23, sub mode in 24 to 31 (px4_custom_mode.h)."""
     return main << 16 | sub << 24
@@ -77,6 +81,7 @@ class Px4(Firmware):
     pilot_mode: ClassVar[str] = "POSCTL"
     give_back_mode: ClassVar[str] = "HOLD"
     heartbeat_on_mode_change: ClassVar[bool] = False
+    mode_reported_on_change: ClassVar[bool] = True
     ready_after: ClassVar[float] = 6.0
     streams_by_default: ClassVar[dict[int, float]] = {
         mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
@@ -93,6 +98,7 @@ class Px4(Firmware):
     def __init__(self, conditions: Conditions) -> None:
         super().__init__(conditions, Parameters(DEFAULTS, bytewise=True))
         self._take_off_up = 0.0
+        self._kept: tuple[float, Command] | None = None
 
     # -- modes -----------------------------------------------------------------------------------------------------
 
@@ -108,6 +114,8 @@ class Px4(Firmware):
                 flight.take_off(self._take_off_up)
         elif flight.in_air:
             flight.stop()
+            if mode == "HOLD" and self._kept is not None and self.time - self._kept[0] < REPOSITION_KEPT:
+                self._fly(self._kept[1])
 
     def watch(self) -> None:
         flight = self.flight
@@ -167,20 +175,30 @@ class Px4(Firmware):
         return ACCEPTED
 
     def _reposition(self, command: Command) -> int:
-        """Speed, change-mode flag, yaw (radians), place, altitude AMSL; from the pilot's mode into HOLD."""
+        """Speed, change-mode flag, yaw (radians), place, altitude AMSL.
+
+        Without the flag the answer is "unsupported" in every mode, and in HOLD it is obeyed all the same: the mode and
+        the place are two programs' business (commander and navigator).
+        """
         if not self.flight.in_air:
             return TEMPORARILY_REJECTED
         change_mode = not math.isnan(command.p2) and int(command.p2) & 1
-        if self.mode != "HOLD" and not change_mode:
-            return DENIED
+        answer = ACCEPTED if change_mode else UNSUPPORTED
         if self._spoiled_goto():
-            return ACCEPTED
-        if self.mode != "HOLD":
+            return answer
+        if change_mode and self.mode != "HOLD":
             self.set_mode("HOLD")
+        if self.mode == "HOLD":
+            self._fly(command)
+        else:
+            self._kept = self.time, command
+        return answer
+
+    def _fly(self, command: Command) -> None:
         nav = self.navigation
         if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
             self.flight.stop()  # "all three set to NaN - pause vehicle"
-            return ACCEPTED
+            return
         place = nav.north, nav.east
         if command.lat is not None and command.lon is not None:
             place = self.home.to_local(command.lat, command.lon)
@@ -194,7 +212,6 @@ class Px4(Firmware):
         elif yaw is None and math.hypot(place[0] - nav.north, place[1] - nav.east) > 2.0:
             # with no yaw asked for the nose turns to where it flies
             self.flight.turn_to(math.degrees(math.atan2(place[1] - nav.east, place[0] - nav.north)), limit)
-        return ACCEPTED
 
     def disarm_delay(self) -> float:
         return self.parameters["COM_DISARM_PRFLT"]

@@ -29,6 +29,8 @@ _DATA_STREAMS: dict[int, tuple[int, ...]] = {
 }
 """REQUEST_DATA_STREAM's groups, as ArduPilot has them."""
 
+_MODE_PERIOD = 0.5
+"""Seconds between two reports of an unchanged mode, where it is reported on change."""
 _SYSTEM, _COMPONENT = 1, mavlink.MAV_COMP_ID_AUTOPILOT1
 
 
@@ -43,6 +45,7 @@ class Station:
         self._decoder.robust_parsing = True
         self._period: dict[int, float] = {}
         self._due: dict[int, float] = {}
+        self._mode_sent: tuple[float, str] = (-math.inf, "")
         self.default_streams()
 
     def default_streams(self) -> None:
@@ -50,6 +53,7 @@ class Station:
         self._period = {mavlink.MAVLINK_MSG_ID_HEARTBEAT: 1.0}
         self._period |= {message: 1.0 / hz for message, hz in self.firmware.streams_by_default.items()}
         self._due = dict.fromkeys(self._period, self.firmware.time)
+        self._mode_sent = -math.inf, ""
 
     # -- out -------------------------------------------------------------------------------------------------------
 
@@ -66,9 +70,18 @@ class Station:
             firmware.heartbeat_due = False
             yield self.pack(self._builders[mavlink.MAVLINK_MSG_ID_HEARTBEAT](firmware))
         for message, due in self._due.items():
-            if now >= due:
+            if now >= due and not (message == mavlink.MAVLINK_MSG_ID_CURRENT_MODE and self._mode_is_known):
                 self._due[message] = max(due + self._period[message], now)
                 yield self.pack(self._builders[message](firmware))
+
+    @property
+    def _mode_is_known(self) -> bool:
+        """Asked when CURRENT_MODE is due: False sends it."""
+        firmware, (sent_at, mode) = self.firmware, self._mode_sent
+        known = firmware.mode_reported_on_change and mode == firmware.mode and firmware.time - sent_at < _MODE_PERIOD
+        if not known:
+            self._mode_sent = firmware.time, firmware.mode
+        return known
 
     def _set_interval(self, message: int, hz: float) -> int:
         if message not in self._builders:

@@ -134,12 +134,33 @@ def test_a_command_takes_control_back_from_the_pilot_as_on_the_real_ones() -> No
         assert firmware.mode == after
 
 
-def test_without_the_change_mode_flag_a_reposition_is_denied_while_the_pilot_flies() -> None:
-    for flavour, pilot in ((Px4, "POSCTL"), (ArduCopter, "LOITER")):
+def test_without_the_change_mode_flag_nothing_is_taken_from_the_pilot_and_only_the_answers_differ() -> None:
+    for flavour, pilot, answer in ((Px4, "POSCTL", UNSUPPORTED), (ArduCopter, "LOITER", DENIED)):
         firmware = flying(flavour)
         firmware.switch_mode(pilot)
-        assert firmware.command(goto(5.0, 0.0, flags=0.0)) == DENIED
+        assert firmware.command(goto(30.0, 0.0, flags=0.0)) == answer
+        run(firmware, 5.0)
         assert firmware.mode == pilot
+        assert off(firmware, 0.0, 0.0) < 3.0
+
+
+def test_without_the_change_mode_flag_the_waiting_vehicle_obeys_though_px4_answers_unsupported() -> None:
+    for flavour, answer in ((Px4, UNSUPPORTED), (ArduCopter, ACCEPTED)):
+        firmware = flying(flavour)
+        assert firmware.command(goto(30.0, 0.0, flags=0.0)) == answer
+        run(firmware, 20.0)
+        assert off(firmware, 30.0, 0.0) < 1.0
+
+
+@pytest.mark.parametrize(("later", "flies"), [(0.3, True), (0.7, False)])
+def test_px4_keeps_a_reposition_of_another_mode_for_half_a_second(later: float, flies: bool) -> None:
+    firmware = flying(Px4)
+    firmware.switch_mode("POSCTL")
+    firmware.command(goto(30.0, 0.0, flags=0.0))
+    run(firmware, later)
+    firmware.switch_mode("HOLD")
+    run(firmware, 15.0)
+    assert (off(firmware, 30.0, 0.0) < 1.0) is flies
 
 
 @pytest.mark.parametrize(("override", "takes"), [(0, False), (1, True), (2, False), (3, True)])
