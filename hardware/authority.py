@@ -28,6 +28,9 @@ class Authority:
     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+    under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
+    that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
+    given nothing back.
 
     commanded: tokens of the modes that follow from our last command; empty: nothing is commanded. tolerated: tokens of
     modes that may still show because of what was before that command. shown_before: the mode when the command was sent;
@@ -41,6 +44,8 @@ class Authority:
     mode: str | None = None
     given_back: bool = False
     perhaps_failsafe: bool = False
+    under_way: tuple[int, ...] = ()
+    undone: bool = False
     commanded: tuple[int, ...] = ()
     tolerated: tuple[int, ...] = ()
     shown_before: int | None = None
@@ -216,6 +221,8 @@ def _taken(
         taken_at_s=at_s,
         mode=None if heard is None else heard.name,
         given_back=not authority.armed,
+        under_way=authority.commanded if authority.tolerated else (),
+        undone=False,
         perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD,
     )
 
@@ -223,7 +230,7 @@ def _taken(
 def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authority:
     """Somebody else has control, or had it before the vehicle landed."""
     if not now.armed:
-        return replace(now, who="nobody" if before.armed else before.who, given_back=True)
+        return replace(now, who="nobody" if before.armed else before.who, given_back=True, undone=False)
     if before.who == "nobody":
         return _taken(now, "pilot", "mode", seen.at_s, seen)  # armed again by hand
     waiting, homeward = seen.kind == "waiting", seen.kind in HOMEWARD
@@ -234,8 +241,12 @@ def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authorit
             # on the way home it changes its mode by itself; what stopped it so early may have been our earlier command
             return replace(now, mode=seen.name, given_back=waiting)
         return _taken(now, "pilot", "mode", seen.at_s, seen)
+    late = seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S
+    again = seen.mode == before.heard
+    undone = before.undone if again else seen.mode in before.under_way and not late
     return replace(
         now,
-        given_back=waiting and seen.at_s >= (now.taken_at_s or 0.0) + GIVEN_BACK_S,
+        undone=undone,
+        given_back=waiting and late and not undone,
         perhaps_failsafe=before.perhaps_failsafe and (homeward or not seen.in_air),
     )

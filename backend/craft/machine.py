@@ -239,7 +239,8 @@ def _authority(step: CraftStep, heard: Authority) -> None:
 
 def kept_of(authority: Authority) -> tuple[object, ...]:
     """What of it is a fact to keep: the bookkeeping of each command is not."""
-    return authority.who, authority.taken_by, authority.given_back, authority.perhaps_failsafe, authority.mode
+    a = authority
+    return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode
 
 
 def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:

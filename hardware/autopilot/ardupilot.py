@@ -40,6 +40,7 @@ ARDUPILOT = Dialect(
         SMART_RTL: "SMART_RTL",
         AUTO_RTL: "AUTO_RTL",
     },
+    mode_report_hz=10.0,
     waiting_modes=frozenset({GUIDED, BRAKE}),
     returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
     landing_modes=frozenset({LAND}),
@@ -52,7 +53,7 @@ ARDUPILOT = Dialect(
     take_off=_take_off,
     take_off_modes=frozenset({GUIDED}),
     settled_modes=frozenset({GUIDED}),
-    reposition_modes=frozenset({GUIDED}),
+    steering=_order("steering_mode", GUIDED),
     reposition_sets_speed=False,
     turn_methods=("condition_yaw", "condition_yaw", "condition_yaw_absolute"),
     failsafes=(

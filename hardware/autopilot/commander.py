@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 
 from hardware.authority import CommandAcknowledged, CommandSent
 from hardware.autopilot.control import Control
@@ -19,6 +19,7 @@ from hardware.reasons.vehicle import (
     CommandUnanswered,
     ManoeuvreName,
     ManoeuvreReplaced,
+    ModeLeft,
     ModeNotCommanded,
     SticksMoved,
 )
@@ -35,6 +36,10 @@ class CommandDenied(VehicleError):
         self.refusal = reason
 
 
+class OutOfMode(VehicleError):
+    """Nothing was sent: the vehicle is not in the mode in which it obeys the command, though nobody took it."""
+
+
 class ManoeuvreSuperseded(VehicleError):
     """A later one (hold, return, another flight) replaced this manoeuvre."""
 
@@ -48,15 +53,24 @@ class Manoeuvre:
 
 
 class Commander:
-    """Sends commands for manoeuvres. Control and the manoeuvre are asked in the instant before each send."""
+    """Sends commands for manoeuvres. Control and the manoeuvre are asked in the instant before each send.
+
+    mode_heard: waits for the vehicle's next word of its mode, or until it has been silent about it long enough.
+    """
 
     def __init__(
-        self, link: MavlinkLink, clock: Clock, control: Control, announce: Callable[[VehicleNews], None]
+        self,
+        link: MavlinkLink,
+        clock: Clock,
+        control: Control,
+        announce: Callable[[VehicleNews], None],
+        mode_heard: Callable[[], Awaitable[None]],
     ) -> None:
         self._link = link
         self._clock = clock
         self._control = control
         self._announce = announce
+        self._mode_heard = mode_heard
         self._waiting: dict[int, list[asyncio.Future[CommandResult]]] = defaultdict(list)
 
     def acknowledged(self, fields: Fields) -> None:
@@ -78,18 +92,26 @@ class Commander:
     async def send(self, manoeuvre: Manoeuvre, outgoing: Outgoing, modes: frozenset[int], command: CommandName) -> None:
         """Send a flight command until it is acknowledged. modes: the raw modes that are ours after it.
 
-        Raises CommandDenied, NotInControl, ManoeuvreSuperseded, VehicleError (no answer).
+        One that changes the mode goes right after the vehicle's own word of its mode: sent blindly, it would undo a
+        pilot's switch. Any other goes only while the vehicle is in one of `modes`.
+        Raises CommandDenied, OutOfMode, NotInControl, ManoeuvreSuperseded, VehicleError (no answer).
         """
 
         def allowed() -> bool:
-            return self._control.ours and manoeuvre.superseded_by is None
+            authority = self._control.authority
+            in_mode = outgoing.changes_mode or authority.heard in modes
+            return authority.who == "ours" and in_mode and manoeuvre.superseded_by is None
 
         for attempt in range(1, ATTEMPTS + 1):
+            if outgoing.changes_mode:
+                await self._mode_heard()
             self.check(manoeuvre)
             self._control.see(CommandSent(modes))
+            if not allowed():
+                raise OutOfMode(ModeLeft(command))
             result = await self._exchange(outgoing, attempt, allowed)
             self.check(manoeuvre)
-            if result == "accepted":
+            if result in outgoing.delivered:
                 self._control.see(CommandAcknowledged())
                 return
             if result is not None:

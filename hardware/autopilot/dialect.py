@@ -53,8 +53,10 @@ class Dialect:
 
     waiting_modes: raw modes in which a flying vehicle waits for commands. returning_modes, landing_modes: those that a
     failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
-    hold: commands that stop it, in the order to try them; hold_modes: the raw modes it then shows. reposition_modes:
-    raw modes after DO_REPOSITION.
+    mode_report_hz: how often to ask for CURRENT_MODE. PX4 sends it when the mode changed, at most so often, and else
+    twice a second: a fast rate costs nothing and shows a mode that lasted for an instant.
+    hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
+    the raw modes it then shows. steering: the mode in which it flies to places and turns as told.
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
@@ -63,6 +65,7 @@ class Dialect:
 
     name: Literal["px4", "ardupilot"]
     mode_names: Mapping[int, str]
+    mode_report_hz: float
     waiting_modes: frozenset[int]
     returning_modes: frozenset[int]
     landing_modes: frozenset[int]
@@ -75,7 +78,7 @@ class Dialect:
     take_off: Callable[[float, float], Outgoing]
     take_off_modes: frozenset[int]
     settled_modes: frozenset[int]
-    reposition_modes: frozenset[int]
+    steering: ModeOrder
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
     failsafes: tuple[FailsafeRule, ...]

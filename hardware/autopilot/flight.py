@@ -6,6 +6,7 @@ import contextlib
 
 from hardware.autopilot.commander import CommandDenied, Manoeuvre
 from hardware.autopilot.guidance import Guidance
+from hardware.autopilot.hover import Hover
 from hardware.autopilot.messages import CHANGE_SPEED, command_long, reposition
 from hardware.deadline import Deadline
 from hardware.ports import VehicleError
@@ -13,7 +14,7 @@ from hardware.readings import Place
 from hardware.reasons.vehicle import NoProgress, NotArrived
 from hardware.reasons.vehicle_news import TriedAgain
 
-ARRIVED_M, SETTLED_M_S, SETTLED_FOR_S = 2.0, 1.0, 1.0
+ARRIVED_M = 2.0
 STUCK_S = 10.0
 ATTEMPTS = 3
 
@@ -40,13 +41,14 @@ async def _send(
     guidance: Guidance, manoeuvre: Manoeuvre, place: Place, altitude_amsl_m: float, speed_m_s: float
 ) -> None:
     dialect = guidance.monitor.dialect
+    await guidance.enter_steering(manoeuvre)
     there = reposition(place, altitude_amsl_m, speed_m_s, None)
     await guidance.steer(manoeuvre, there, "place")
     guidance.spot = (place, altitude_amsl_m)
     if not dialect.reposition_sets_speed:
         speed = command_long(CHANGE_SPEED, 1.0, speed_m_s, -1.0, 0.0, 0.0, 0.0, 0.0)
         with contextlib.suppress(CommandDenied):  # then it flies at the autopilot's own speed
-            await guidance.send(manoeuvre, speed, dialect.reposition_modes, "speed")
+            await guidance.steer(manoeuvre, speed, "speed")
 
 
 async def _arrive(
@@ -58,18 +60,14 @@ async def _arrive(
     """
     snapshot = guidance.monitor.snapshot
     nearest, progress_at = sum(guidance.distance(place, altitude_amsl_m)), snapshot.position_at_s or 0.0
-    settled_since: float | None = None
+    hover = Hover()
     while not deadline.passed:
         guidance.go_on(manoeuvre)
         distance, climb = guidance.distance(place, altitude_amsl_m)
-        speed, seen_at = snapshot.speed_m_s, snapshot.position_at_s or 0.0
+        seen_at = snapshot.position_at_s or 0.0
         inside = distance < ARRIVED_M and climb < ARRIVED_M
-        if inside and speed is not None and speed < SETTLED_M_S:
-            settled_since = seen_at if settled_since is None else settled_since
-            if seen_at - settled_since >= SETTLED_FOR_S:
-                return True
-        else:
-            settled_since = None
+        if hover.see(guidance.here()[0], snapshot.speed_m_s, seen_at, inside):
+            return True
         if inside or distance + climb < nearest - 1.0:
             nearest, progress_at = min(nearest, distance + climb), seen_at
         if seen_at - progress_at > STUCK_S:

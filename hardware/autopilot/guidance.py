@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from hardware.autopilot.commander import Manoeuvre
+from hardware.autopilot.commander import CommandDenied, Manoeuvre
 from hardware.autopilot.dialect import ModeOrder
 from hardware.autopilot.ground import distance_m
 from hardware.autopilot.messages import Outgoing, set_mode
@@ -15,11 +15,11 @@ from hardware.readings import Place
 from hardware.reasons.vehicle import CommandName, ManoeuvreName, ModeNotShown, PositionLost, VehicleSilent
 from hardware.reasons.vehicle_news import TriedAgain
 
-MODE_S = 0.2
-"""Longer than this nothing waits for the vehicle's next word of its mode, which comes ten times a second."""
 GIVE_UP_LINK_WALL_S = 15.0
 """A manoeuvre whose vehicle is silent for longer, by the wall, ends with VehicleUnreachable (the vehicle flies on)."""
 ATTEMPTS = 3
+DENIED_S = 1.0
+"""Longer than this nothing waits for what the vehicle says of its mode after it has denied a command."""
 
 
 class Guidance:
@@ -46,16 +46,23 @@ class Guidance:
         """See Commander.send."""
         await self.monitor.commander.send(manoeuvre, outgoing, modes, command)
 
-    async def steer(self, manoeuvre: Manoeuvre, outgoing: Outgoing, command: CommandName) -> None:
-        """A command that only moves the search on: sent right after the vehicle's next report of its mode.
+    async def enter_steering(self, manoeuvre: Manoeuvre) -> None:
+        """The mode in which the vehicle flies to places and turns as told, selected only when it is in another."""
+        steering = self.monitor.dialect.steering
+        if self.monitor.snapshot.custom_mode not in steering.modes:
+            await self.select(manoeuvre, steering)
 
-        Sent later, it may undo a pilot's change of mode before the autopilot has reported it, and nobody would know.
+    async def steer(self, manoeuvre: Manoeuvre, outgoing: Outgoing, command: CommandName) -> None:
+        """A command that moves the vehicle within its mode: crossing a pilot's switch, it comes to nothing.
+
+        Denied, it may have met a pilot's mode that is still on its way to us: then NotInControl is raised.
         """
-        monitor = self.monitor
-        known_at_s = monitor.snapshot.mode_at_s
-        reported = Deadline(monitor.clock, MODE_S, MODE_S)
-        await self.until(manoeuvre, reported, lambda: monitor.snapshot.mode_at_s != known_at_s)
-        await self.send(manoeuvre, outgoing, monitor.dialect.reposition_modes, command)
+        try:
+            await self.send(manoeuvre, outgoing, self.monitor.dialect.steering.modes, command)
+        except CommandDenied:
+            await self.monitor.mode_heard(DENIED_S)
+            self.go_on(manoeuvre)
+            raise
 
     def go_on(self, manoeuvre: Manoeuvre) -> None:
         """Raises when the manoeuvre may not go on, or its vehicle has been silent for too long."""

@@ -27,6 +27,7 @@ from hardware.reasons.vehicle_news import (
     AutopilotRestarted,
     ModeChanged,
     PositionJumped,
+    SwitchUndone,
     TakenOver,
     TakenOverBySticks,
     VehicleConnected,
@@ -40,8 +41,9 @@ log = logging.getLogger(__name__)
 
 DIALECTS: dict[int, Dialect] = {12: PX4, 3: ARDUPILOT}
 """MAV_AUTOPILOT -> dialect."""
+CURRENT_MODE_ID = 436
+"""It tells a takeover in about 0.1 s where the heartbeat takes up to 1 s."""
 STREAMS: tuple[tuple[int, float], ...] = (
-    (436, 10.0),  # CURRENT_MODE: takeover in about 0.1 s where the heartbeat takes up to 1 s
     (30, 20.0),  # ATTITUDE
     (33, 10.0),  # GLOBAL_POSITION_INT
     (245, 5.0),  # EXTENDED_SYS_STATE
@@ -51,6 +53,8 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (HOME_POSITION_ID, 0.5),
 )
 LINK_LOST_WALL_S = 3.0
+MODE_S = 0.2
+"""Longer than this nothing waits for the vehicle's next word of its mode."""
 STREAMS_CEASED_S = 3.0
 AFTER_SILENCE_S, AFTER_SILENCE_WALL_S = 15.0, 5.0
 """For this long after it was heard again, or the server came back, a vehicle may still act on the silence before: it
@@ -70,7 +74,7 @@ class Monitor:
         self._autopilot_number: int | None = None
         self._announcer = Announcer()
         self.control = Control(self._on_authority)
-        self.commander = Commander(self.link, clock, self.control, self.announce)
+        self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
         self.silence = Silence()
         self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
@@ -119,7 +123,7 @@ class Monitor:
         self._announcer.end()
 
     async def _request_streams(self) -> None:
-        for message_id, hz in STREAMS:
+        for message_id, hz in ((CURRENT_MODE_ID, self.dialect.mode_report_hz), *STREAMS):
             if not await self.commander.ask(message_interval(message_id, hz)):
                 log.info("the autopilot does not stream MAVLink message %d", message_id)
         await self.commander.ask(request_message(HOME_POSITION_ID))
@@ -183,6 +187,12 @@ class Monitor:
                 self._on_mode()
         self.wakeup.wake()
 
+    async def mode_heard(self, longest_s: float = MODE_S) -> None:
+        """Until the vehicle's next word of its mode, which it gives at once when the mode has changed."""
+        known_at_s, deadline = self.snapshot.mode_at_s, Deadline(self.clock, longest_s, longest_s)
+        while self.snapshot.mode_at_s == known_at_s and not deadline.passed:
+            await self.wakeup.wait()
+
     def _on_text(self, text: str) -> None:
         log.info("autopilot: %s", text)
         takeover = None if self._dialect is None else self._dialect.takeover_text
@@ -225,6 +235,8 @@ class Monitor:
         if after.who != before.who and after.who in ("pilot", "failsafe"):
             by_sticks = after.taken_by == "sticks"
             self.announce(TakenOverBySticks() if by_sticks else TakenOver(after.who, after.mode or ""))
+        if after.undone and not before.undone and self._dialect is not None:
+            self.announce(SwitchUndone(self._dialect.mode_name(after.heard or 0)))
         self.wakeup.wake()
 
     def announce(self, news: VehicleNews) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
-from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, set_mode
+from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
 from hardware.reasons.vehicle import CommandName
 
 
@@ -23,7 +25,7 @@ def _order(command: CommandName, sub: int, *modes: int) -> ModeOrder:
 
 
 def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
-    return command_long(TAKE_OFF, None, None, None, None, None, None, amsl_m)
+    return replace(command_long(TAKE_OFF, None, None, None, None, None, None, amsl_m), changes_mode=True)
 
 
 PX4 = Dialect(
@@ -47,11 +49,12 @@ PX4 = Dialect(
         px4_mode(7): "STABILIZED",
         px4_mode(10): "TERMINATION",
     },
+    mode_report_hz=50.0,
     waiting_modes=frozenset({HOLD, TAKING_OFF}),
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
     takeover_text="Pilot took over",
-    hold=(pause(), set_mode((_AUTO, _LOITER)), pause()),
+    hold=(pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
     return_home=_order("return", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
     land=_order("landing", _LAND, LANDING),
@@ -59,7 +62,7 @@ PX4 = Dialect(
     take_off=_take_off,
     take_off_modes=frozenset({TAKING_OFF, HOLD}),
     settled_modes=frozenset({HOLD}),
-    reposition_modes=frozenset({HOLD}),
+    steering=_order("steering_mode", _LOITER, HOLD),
     reposition_sets_speed=True,
     turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
     failsafes=(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hardware.authority import FlightEnded
-from hardware.autopilot.commander import CommandDenied, Manoeuvre
+from hardware.autopilot.commander import CommandDenied, Manoeuvre, OutOfMode
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.messages import arm
 from hardware.deadline import Deadline
@@ -52,7 +52,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
     trouble: AutopilotRefused | TakeOffIgnored = TakeOffIgnored()
     while not deadline.passed:
         try:
-            await guidance.select(manoeuvre, dialect.before_take_off)
+            if snapshot.custom_mode not in dialect.before_take_off.modes:
+                await guidance.select(manoeuvre, dialect.before_take_off)
             if not snapshot.armed:
                 await guidance.send(manoeuvre, arm(), dialect.take_off_modes, "arming")
                 snapshot.arming_at_s = clock.now()
@@ -60,6 +61,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
             await guidance.send(manoeuvre, take_off, dialect.take_off_modes, "take_off")
             if await guidance.until(manoeuvre, Deadline(clock, 10.0, 2.0), rising):
                 return
+            trouble = TakeOffIgnored()
+        except OutOfMode:
             trouble = TakeOffIgnored()
         except CommandDenied as denied:
             trouble = denied.refusal

@@ -50,9 +50,7 @@ class Turn:
         """True once telemetry saw the whole circle; False when the vehicle stopped turning."""
         monitor = self._guidance.monitor
         snapshot, clock = monitor.snapshot, monitor.clock
-        if monitor.dialect.reposition_modes.isdisjoint({snapshot.custom_mode}) and method.startswith("condition"):
-            # yaw commands are acknowledged in every mode and obeyed in this one only
-            await self._guidance.steer(self._manoeuvre, reposition(place, altitude_amsl_m, None, None), "spot")
+        await self._guidance.enter_steering(self._manoeuvre)
         if snapshot.heading_deg is None or snapshot.heading_at_s is None:
             return False
         progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s

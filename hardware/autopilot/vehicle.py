@@ -7,26 +7,22 @@ from collections.abc import AsyncIterator
 from typing import Literal
 
 from hardware.authority import Authority, OperatorTookControl
-from hardware.autopilot.commander import CommandDenied
 from hardware.autopilot.dialect import FailsafeRule
-from hardware.autopilot.flight import SETTLED_M_S, fly_to
+from hardware.autopilot.flight import fly_to
 from hardware.autopilot.guidance import Guidance
+from hardware.autopilot.hold import hold
 from hardware.autopilot.monitor import Monitor
 from hardware.autopilot.preflight import failsafe_check, telemetry_checks
 from hardware.autopilot.take_off import take_off
 from hardware.autopilot.turn import turn_around
-from hardware.deadline import Deadline
 from hardware.ports import Clock, VehicleError
 from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, Telemetry
 from hardware.reasons.vehicle import (
-    AutopilotRefused,
-    DoesNotHold,
-    HoldIgnored,
     NotInTheAir,
     ParameterNotSet,
     StandsDisarmed,
 )
-from hardware.reasons.vehicle_news import OperatorInControl, ParameterSet, TriedAgain
+from hardware.reasons.vehicle_news import OperatorInControl, ParameterSet
 
 
 class MavsdkVehicle:
@@ -131,28 +127,9 @@ class MavsdkVehicle:
         await turn_around(self._guidance, rate_deg_s)
 
     async def hold(self) -> None:
-        """Brake and hover, at any time; a flight or turn in progress ends with an error. Returns once it hovers."""
-        dialect, snapshot, guidance = self._monitor.dialect, self._monitor.snapshot, self._guidance
-        manoeuvre = guidance.begin("hold")
-        if snapshot.disarmed:
-            return
-
-        def hovers() -> bool:
-            speed = snapshot.speed_m_s
-            return snapshot.custom_mode in dialect.hold_modes and speed is not None and speed < SETTLED_M_S
-
-        trouble: AutopilotRefused | HoldIgnored = HoldIgnored()
-        for number, outgoing in enumerate(dialect.hold, 1):
-            try:
-                await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
-                if await guidance.until(manoeuvre, Deadline(self._monitor.clock, 10.0, 2.0), hovers):
-                    return
-                trouble = HoldIgnored()
-            except CommandDenied as denied:
-                trouble = denied.refusal
-            if number < len(dialect.hold):
-                self._monitor.announce(TriedAgain(trouble, number + 1))
-        raise VehicleError(DoesNotHold(trouble))
+        """Brake and hover, at any time; a flight or turn in progress ends with an error. Returns once it is at rest."""
+        self._monitor.check_connected()
+        await hold(self._guidance)
 
     async def return_home(self) -> None:
         """Start the autopilot's own return; returns once its mode confirms."""

@@ -9,7 +9,17 @@ from planner.reason import Words
 
 ManoeuvreName = Literal["take_off", "flight", "turn", "hold", "return", "landing"]
 CommandName = Literal[
-    "take_off_mode", "arming", "take_off", "place", "speed", "spot", "turn", "hold", "return", "landing"
+    "take_off_mode",
+    "arming",
+    "take_off",
+    "steering_mode",
+    "place",
+    "speed",
+    "spot",
+    "turn",
+    "hold",
+    "return",
+    "landing",
 ]
 CommandResult = Literal[
     "accepted", "temporarily_rejected", "denied", "unsupported", "failed", "in_progress", "cancelled", "unknown"
@@ -19,8 +29,9 @@ CommandResult = Literal[
 _MANOEUVRES = "take_off=take-off|flight=flight|turn=turn|hold=hold|return=return|landing=landing"
 _MANOEUVRE = f"The {{manoeuvre?{_MANOEUVRES}}}"
 _COMMANDS = (
-    "take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed"
-    "|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing"
+    "take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering"
+    "|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return"
+    "|landing=the landing"
 )
 _COMMAND = f"{{command?{_COMMANDS}}}"
 
@@ -186,6 +197,18 @@ class ModeNotShown:
 
 
 @dataclass(frozen=True, slots=True)
+class ModeLeft:
+    """Nothing was sent. The vehicle is no longer in the mode in which it obeys the command, and nobody took it."""
+
+    command: CommandName
+    code: Literal["mode_left"] = "mode_left"
+
+    english: ClassVar[Words] = Words(
+        f"The vehicle has left the mode in which it obeys {_COMMAND}.", "Read the autopilot's messages."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NotInTheAir:
     code: Literal["not_in_the_air"] = "not_in_the_air"
 
@@ -326,6 +349,7 @@ VehicleReason = (
     | AutopilotRefused
     | CommandUnanswered
     | ModeNotShown
+    | ModeLeft
     | NotInTheAir
     | StandsDisarmed
     | TakeOffIgnored

@@ -89,10 +89,33 @@ class TakenOverBySticks:
 
 
 @dataclass(frozen=True, slots=True)
+class SwitchUndone:
+    """mode: the one the vehicle is in."""
+
+    mode: str
+    code: Literal["switch_undone"] = "switch_undone"
+
+    english: ClassVar[Words] = Words(
+        "An order that was under way undid the pilot's switch: the vehicle is in {mode}. Nothing more is sent.",
+        "The pilot selects the mode again.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class OperatorInControl:
     code: Literal["operator_in_control"] = "operator_in_control"
 
     english: ClassVar[Words] = Words("The operator took control.")
+
+
+@dataclass(frozen=True, slots=True)
+class StillMoving:
+    """The vehicle obeys the hold and does not come to rest."""
+
+    speed_m_s: float
+    code: Literal["still_moving"] = "still_moving"
+
+    english: ClassVar[Words] = Words("The vehicle holds, but it still moves at {speed_m_s:1}.", "Look at the wind.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +150,9 @@ VehicleNews = (
     | PositionJumped
     | TakenOver
     | TakenOverBySticks
+    | SwitchUndone
     | OperatorInControl
+    | StillMoving
     | ParameterSet
     | TriedAgain
 )

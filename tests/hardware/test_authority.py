@@ -316,3 +316,43 @@ def test_a_restart_just_after_a_command_takes_the_waiting_vehicle_for_nobodys() 
 @pytest.mark.parametrize("mode", sorted(KINDS))
 def test_the_way_home_is_known_whoever_began_it(mode: int) -> None:
     assert flying(mode).now.homeward == (KINDS[mode] in HOMEWARD)
+
+
+@pytest.mark.parametrize("order", [RETURN, GUIDED])
+def test_a_switch_that_a_command_under_way_undid_is_not_given_back(order: int) -> None:
+    craft = flying(HOLD)
+    craft.commands(order)
+    craft.hears(POSCTL)
+    undone = craft.hears(order)
+    assert (undone.who, undone.undone, undone.given_back) == ("pilot", True, False)
+    craft.waits(GIVEN_BACK_S)
+    assert craft.hears(order) == undone
+    again = craft.hears(POSCTL)
+    assert (again.who, again.undone) == ("pilot", False)
+    craft.waits(GIVEN_BACK_S)
+    assert craft.hears(HOLD).given_back
+
+
+def test_sticks_that_a_command_under_way_undid_are_not_given_back_either() -> None:
+    craft = flying(HOLD)
+    craft.commands(GUIDED)
+    craft.sees(SticksTookOver(craft.at_s))
+    craft.hears(POSCTL)
+    assert craft.hears(GUIDED).undone
+
+
+def test_a_pilot_who_gives_back_at_once_was_undone_by_nobody() -> None:
+    """The command before had long shown its mode."""
+    craft = flying(HOLD)
+    craft.hears(POSCTL)
+    assert not craft.hears(HOLD).undone
+    craft.waits(GIVEN_BACK_S)
+    assert craft.hears(HOLD).given_back
+
+
+def test_an_operator_may_take_what_was_undone() -> None:
+    craft = flying(HOLD)
+    craft.commands(GUIDED)
+    craft.hears(POSCTL)
+    craft.hears(GUIDED)
+    assert (craft.sees(OperatorTookControl()).who, craft.now.undone) == ("ours", False)

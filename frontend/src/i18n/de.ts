@@ -49,6 +49,7 @@ export const de: Record<MessageKey, string> = {
   "control.crossfix": "Crossfix steuert",
   "control.pilot": "Der Pilot steuert ({mode})",
   "control.sticks": "Steuerknüppel",
+  "control.undone": "Der Pilot steuert, aber unser Befehl hat den Schalter überstimmt: Modus noch einmal wählen",
   "control.perhapsFailsafe": "Der Pilot oder der Ausfallschutz des Autopiloten steuert ({mode})",
   "control.failsafe": "Der Ausfallschutz des Autopiloten steuert ({mode})",
   "control.nobody": "Niemand steuert",

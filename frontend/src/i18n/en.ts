@@ -48,6 +48,7 @@ export const en = {
   "control.crossfix": "Crossfix has control",
   "control.pilot": "The pilot has control ({mode})",
   "control.sticks": "sticks",
+  "control.undone": "The pilot has control, but our order undid the switch: select the mode again",
   "control.perhapsFailsafe": "The pilot or the autopilot's failsafe has control ({mode})",
   "control.failsafe": "The autopilot's failsafe has control ({mode})",
   "control.nobody": "Nobody has control",

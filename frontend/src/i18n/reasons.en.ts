@@ -611,15 +611,19 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   autopilot_refused: {
-    text: "The autopilot refused {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}: {result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.",
+    text: "The autopilot refused {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}: {result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.",
     remedy: "Read the autopilot's messages.",
   },
   command_unanswered: {
-    text: "The autopilot did not answer {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} (sent {attempts|time|times}).",
+    text: "The autopilot did not answer {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} (sent {attempts|time|times}).",
     remedy: "Check the link.",
   },
   mode_not_shown: {
-    text: "The autopilot acknowledged {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} ({attempts|time|times}), but its mode never showed it.",
+    text: "The autopilot acknowledged {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} ({attempts|time|times}), but its mode never showed it.",
+    remedy: "Read the autopilot's messages.",
+  },
+  mode_left: {
+    text: "The vehicle has left the mode in which it obeys {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}.",
     remedy: "Read the autopilot's messages.",
   },
   not_in_the_air: {
@@ -702,9 +706,17 @@ export const reasonsEn: ReasonTable = {
     text: "The pilot took over with the sticks.",
     remedy: "",
   },
+  switch_undone: {
+    text: "An order that was under way undid the pilot's switch: the vehicle is in {mode}. Nothing more is sent.",
+    remedy: "The pilot selects the mode again.",
+  },
   operator_in_control: {
     text: "The operator took control.",
     remedy: "",
+  },
+  still_moving: {
+    text: "The vehicle holds, but it still moves at {speed_m_s:1}.",
+    remedy: "Look at the wind.",
   },
   parameter_set: {
     text: "{parameter} was set from {before} to {after}.",

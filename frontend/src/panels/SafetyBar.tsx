@@ -166,6 +166,7 @@ function controlWords(): string {
   const heard = telemetry.value?.value;
   const who = pilot ? "pilot" : cursor.value !== null && craftId !== null ? authority.who : (heard?.who ?? null);
   if (who === null) return t("control.unknown");
+  if (who === "pilot" && authority.undone) return t("control.undone");
   return whoFlies(who, pilot?.mode ?? heard?.mode ?? "?", authority.perhaps_failsafe);
 }
 

@@ -34,6 +34,8 @@ export const NOBODY: Authority = {
   mode: null,
   given_back: false,
   perhaps_failsafe: false,
+  under_way: [],
+  undone: false,
   commanded: [],
   tolerated: [],
   shown_before: null,

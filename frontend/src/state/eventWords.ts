@@ -34,6 +34,7 @@ function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_order
 
 function controlWords({ authority, by }: EventOf<"authority_changed">): string {
   if (by !== null) return t("event.control_taken_back", { by: byWords(by) });
+  if (authority.who === "pilot" && authority.undone) return t("control.undone");
   return whoFlies(authority.who, authority.mode ?? t("control.sticks"), authority.perhaps_failsafe);
 }
 

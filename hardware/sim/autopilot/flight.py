@@ -69,11 +69,11 @@ class Flight:
         self.demand.north, self.demand.east, self.demand.up, self.demand.speed = north, east, up, speed
         self.task = "fly"
 
-    def stop(self) -> None:
-        """Brake and hover: the target is where braking ends."""
+    def stop(self, reach: float = 1.0) -> None:
+        """Brake and hover: the target is where braking ends; with a reach below 1 before that, and it turns back."""
         self.demand = self._here()
         copter = self.copter
-        braking = 1.0 / (1.4 * copter.airframe.acceleration)
+        braking = reach / (1.4 * copter.airframe.acceleration)
         speed = math.hypot(copter.v_north, copter.v_east)
         self.demand.north += copter.v_north * speed * braking
         self.demand.east += copter.v_east * speed * braking

@@ -22,7 +22,8 @@ from hardware.sim.autopilot.firmware import (
 )
 from hardware.sim.autopilot.parameters import INT32, REAL32, Parameters
 
-
+STOP_REACH = 0.25
+"""Its stop point is nearer than it can brake: from 7 m/s it flies some 5 m past it and back."""
 REPOSITION_KEPT = 0.5
 """Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
 
@@ -113,7 +114,7 @@ class Px4(Firmware):
             if flight.armed:
                 flight.take_off(self._take_off_up)
         elif flight.in_air:
-            flight.stop()
+            flight.stop(STOP_REACH)
             if mode == "HOLD" and self._kept is not None and self.time - self._kept[0] < REPOSITION_KEPT:
                 self._fly(self._kept[1])
 
@@ -197,7 +198,7 @@ class Px4(Firmware):
     def _fly(self, command: Command) -> None:
         nav = self.navigation
         if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
-            self.flight.stop()  # "all three set to NaN - pause vehicle"
+            self.flight.stop(STOP_REACH)  # "all three set to NaN - pause vehicle"
             return
         place = nav.north, nav.east
         if command.lat is not None and command.lon is not None:

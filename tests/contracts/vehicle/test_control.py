@@ -56,6 +56,52 @@ async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(r
     assert rig.off_by(here) < 3.0
 
 
+@pytest.mark.parametrize("what", ["flight", "turn"])
+async def test_a_pilots_switch_that_meets_commands_under_way_is_never_undone(rig: Rig, what: str) -> None:
+    """On a link of a second each way a command is nearly always under way, and none of them selects a mode."""
+    vehicle, sim = rig.vehicle, rig.sim
+    steered = {"sim-px4": "HOLD", "sim-ardupilot": "GUIDED"}[rig.name]
+    await rig.airborne()
+    await sim.order("link_delay", seconds=1.0)
+    for after_s in (0.3, 0.6, 0.9, 1.2):
+        vehicle.take_control()
+        there = rig.place(0.0, 40.0 * after_s)
+        deed = vehicle.turn(40.0) if what == "turn" else vehicle.goto(there, rig.amsl(), 5.0)
+        task = asyncio.create_task(deed)
+        await rig.clock.sleep(after_s)
+        pilots = (await sim.order("pilot_mode"))["mode"]
+        await ends_with(task, NotInControl)
+        await rig.clock.sleep(3.0)
+        assert (await sim.order("truth"))["mode"] == pilots
+        assert vehicle.telemetry().authority.who == "pilot"
+        await sim.order("pilot_mode", mode=steered)
+        await rig.clock.sleep(4.0)
+        assert vehicle.telemetry().authority.given_back
+
+
+async def test_an_order_that_undoes_a_pilots_switch_is_seen_within_a_second_and_nothing_follows(rig: Rig) -> None:
+    """A return is the order of a person and has to change the mode: on a slow link it may meet the pilot's."""
+    vehicle, sim = rig.vehicle, rig.sim
+    await rig.airborne()
+    await sim.order("link_delay", seconds=2.0)
+    before = vehicle.telemetry().authority.commanded
+    returning = asyncio.create_task(vehicle.return_home())
+    async with asyncio.timeout(10):
+        while vehicle.telemetry().authority.commanded == before:  # noqa: ASYNC110 (sent a moment later)
+            await asyncio.sleep(0)
+    taken = await sim.order("pilot_mode")
+    await ends_with(returning, NotInControl)
+    await rig.clock.sleep(5.0)
+    assert (await sim.order("truth"))["mode"] != taken["mode"]
+    assert vehicle.telemetry().authority.who == "pilot"
+    quiet_from = (await sim.order("ping"))["time_s"]
+    with pytest.raises(NotInControl):
+        await vehicle.hold()
+    await rig.clock.sleep(3.0)
+    received = (await sim.order("commands", since_s=quiet_from))["commands"]
+    assert [number for _, number in received if number in FLIGHT_COMMANDS] == []
+
+
 async def test_a_mode_that_nobody_commanded_latches_until_the_vehicle_has_landed_and_is_nobodys(rig: Rig) -> None:
     """The autopilot's own failsafe, or a pilot who selects landing: the mission must not fight it."""
     await rig.airborne()

@@ -37,6 +37,8 @@ class PaperLink:
         self.heard = heard
         self.opened = opened
         self.sent: list[int] = []
+        self.result = 0
+        """MAV_RESULT of the acknowledgements."""
 
     async def open(self, timeout_s: float) -> None:
         for name, fields in self.opened:
@@ -47,7 +49,7 @@ class PaperLink:
             return False
         number = fields["command"]
         self.sent.append(number)
-        asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": 0})
+        asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": self.result})
         return True
 
     async def close(self) -> None:
@@ -60,7 +62,9 @@ class Scene:
         self.monitor = Monitor("udpin://127.0.0.1:1", self.clock)
         self.link = PaperLink(self.hear, list(opened))
         self.monitor.link = link = cast(MavlinkLink, self.link)
-        self.monitor.commander = Commander(link, self.clock, self.monitor.control, self.monitor.announce)
+        self.monitor.commander = Commander(
+            link, self.clock, self.monitor.control, self.monitor.announce, self.monitor.mode_heard
+        )
 
     def hear(self, name: str, fields: Fields) -> None:
         self.clock.at += 0.01

@@ -12,7 +12,7 @@ from hardware.authority import ModeHeard, SticksTookOver
 from hardware.autopilot.commander import CommandDenied, Commander, Manoeuvre, ManoeuvreSuperseded
 from hardware.autopilot.control import Control
 from hardware.autopilot.link import Fields
-from hardware.autopilot.messages import Outgoing, arm, pause
+from hardware.autopilot.messages import Outgoing, arm, pause, pause_here
 from hardware.clock import ScaledClock
 from hardware.ports import NotInControl, VehicleError
 from hardware.reasons.vehicle import CommandUnanswered
@@ -46,8 +46,12 @@ class Rig:
         self.control.see(ModeHeard(1, "waiting", "HOLD", True, True, False, 0.0))
         self.news: list[VehicleNews] = []
         link: Any = self.wire
-        self.commander = Commander(link, ScaledClock(None, 100.0), self.control, self.news.append)
+        self.mode_asked = 0
+        self.commander = Commander(link, ScaledClock(None, 100.0), self.control, self.news.append, self.mode_heard)
         self.manoeuvre = Manoeuvre("flight")
+
+    async def mode_heard(self) -> None:
+        self.mode_asked += 1
 
     def acknowledge(self, result: int, number: int = 192) -> None:
         self.commander.acknowledged({"command": number, "result": result})
@@ -140,3 +144,41 @@ async def test_questions_pass_while_the_pilot_flies() -> None:
     rig.wire.answer = lambda count: rig.acknowledge(0)
 
     assert await rig.commander.ask(pause()) is True
+
+
+async def test_what_changes_the_mode_waits_for_the_vehicles_word_each_time_and_nothing_else_does() -> None:
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.acknowledge(0) if count != 1 else None  # the first is lost
+    await rig.order(pause())
+    assert rig.mode_asked == 2
+    await rig.order(pause_here())
+    assert rig.mode_asked == 2
+
+
+async def test_a_takeover_in_the_word_that_was_waited_for_stops_the_change_of_mode() -> None:
+    rig = Rig()
+    await asyncio.sleep(0)
+    rig.control.see(ModeHeard(1, "waiting", "HOLD", True, True, False, 0.0))
+
+    async def pilots() -> None:
+        rig.control.see(ModeHeard(9, "other", "POSCTL", True, True, False, 0.1))
+
+    rig.commander._mode_heard = pilots  # pyright: ignore[reportPrivateUsage]
+    with pytest.raises(NotInControl, match="POSCTL"):
+        await rig.order(pause())
+    assert rig.wire.sent == []
+
+
+async def test_steering_that_px4_calls_unsupported_has_arrived_but_an_order_has_not() -> None:
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.acknowledge(3)
+    await rig.order(pause_here())
+    with pytest.raises(CommandDenied, match="unsupported"):
+        await rig.order(pause())
+
+
+async def test_outside_the_mode_that_obeys_it_steering_is_not_sent() -> None:
+    rig = Rig()
+    with pytest.raises(VehicleError, match="has left the mode in which it obeys the next place"):
+        await rig.commander.send(rig.manoeuvre, pause_here(), frozenset({7}), "place")
+    assert rig.wire.sent == []

@@ -25,7 +25,7 @@ def test_a_place_keeps_its_centimetre_and_no_yaw_is_nan() -> None:
     assert (fields["x"], fields["y"], fields["z"]) == (473977419, -85455938, 500.25)
     assert fields["param4"] is None
     assert fields["param1"] == -1.0
-    assert fields["param2"] == 1.0  # else the autopilot denies it outside its own mode
+    assert fields["param2"] == 0.0  # with the change-mode flag it would take the vehicle from a pilot
 
 
 def test_a_pause_names_no_place_no_height_and_no_yaw() -> None:

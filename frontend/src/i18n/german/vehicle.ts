@@ -4,7 +4,8 @@ import type { ReasonTable } from "../reasons";
 const ACTION = "take_off=Das Abheben|flight=Der Flug|turn=Die Drehung|hold=Das Halten|return=Die Rückkehr|landing=Die Landung";
 const BY_ACTION = "take_off=das Abheben|flight=den Flug|turn=die Drehung|hold=das Halten|return=die Rückkehr|landing=die Landung";
 const COMMAND =
-  "take_off_mode=den Modus zum Abheben|arming=das Scharfschalten|take_off=das Abheben|place=den nächsten Ort|speed=die Geschwindigkeit" +
+  "take_off_mode=den Modus zum Abheben|arming=das Scharfschalten|take_off=das Abheben|steering_mode=den Modus zum Steuern" +
+  "|place=den nächsten Ort|speed=die Geschwindigkeit" +
   "|spot=das Halten auf der Stelle|turn=die Drehung|hold=das Halten|return=die Rückkehr|landing=die Landung";
 
 export const vehicle = {
@@ -58,6 +59,10 @@ export const vehicle = {
     text: `Der Autopilot bestätigte {command?${COMMAND}} ({attempts|Mal|Mal}), aber sein Modus zeigte es nie.`,
     remedy: "Die Meldungen des Autopiloten lesen.",
   },
+  mode_left: {
+    text: `Das Fluggerät hat den Modus verlassen, in dem es folgt: {command?${COMMAND}}.`,
+    remedy: "Die Meldungen des Autopiloten lesen.",
+  },
   not_in_the_air: { text: "Das Fluggerät ist nicht in der Luft.", remedy: "Zuerst abheben." },
   stands_disarmed: {
     text: "Das Fluggerät steht am Boden und ist nicht scharf: {manoeuvre?return=Es gibt keinen Heimweg|landing=Es gibt nichts zu landen}.",
@@ -103,6 +108,14 @@ export const vehicle = {
     remedy: "",
   },
   taken_over_by_sticks: { text: "Der Pilot hat mit den Steuerknüppeln übernommen.", remedy: "" },
+  switch_undone: {
+    text: "Ein Befehl, der schon unterwegs war, hat den Schalter des Piloten überstimmt: Das Fluggerät ist in {mode}. Es wird nichts mehr gesendet.",
+    remedy: "Der Pilot wählt den Modus noch einmal.",
+  },
+  still_moving: {
+    text: "Das Fluggerät hält, bewegt sich aber noch mit {speed_m_s:1}.",
+    remedy: "Nach dem Wind sehen.",
+  },
   operator_in_control: { text: "Der Bediener hat die Steuerung übernommen.", remedy: "" },
   parameter_set: { text: "{parameter} wurde von {before} auf {after} gesetzt.", remedy: "" },
   tried_again: { text: "{because} Es folgt Versuch {attempt}.", remedy: "" },

@@ -307,3 +307,17 @@ def test_a_speed_that_is_none_is_denied_and_it_flies_on(flavour: type[Px4], spee
     assert firmware.command(Command(SPEED, 1.0, speed)) == DENIED
     run(firmware, 25.0)
     assert off(firmware, 40.0, 0.0) < 2.0
+
+
+def test_px4_flies_past_its_stop_point_and_turns_back() -> None:
+    """Slow for a moment with metres to go: a hold that is told then is told too early."""
+    firmware = flying(Px4)
+    firmware.command(goto(300.0, 0.0))
+    run(firmware, 10.0)
+    firmware.command(Command(REPOSITION, -1.0, 0.0))
+    while firmware.copter.v_north > 0.5:
+        run(firmware, 0.1)
+    turned_back = firmware.copter.north
+    run(firmware, 8.0)
+    assert 3.0 < turned_back - firmware.copter.north < 10.0
+    assert abs(firmware.copter.v_north) < 0.3

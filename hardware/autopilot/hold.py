@@ -1,0 +1,67 @@
+"""Hold: one order after the other until the vehicle brakes, then wait until it hovers."""
+
+from __future__ import annotations
+
+from hardware.autopilot.commander import CommandDenied, Manoeuvre, OutOfMode
+from hardware.autopilot.guidance import Guidance
+from hardware.autopilot.hover import Hover
+from hardware.autopilot.messages import Outgoing
+from hardware.deadline import Deadline
+from hardware.ports import VehicleError
+from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold, HoldIgnored
+from hardware.reasons.vehicle_news import StillMoving, TriedAgain
+
+BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
+"""So long after a hold was ordered the vehicle is in a hold mode, and slower."""
+SLOWER, NEVER_FAST_M_S = 0.6, 2.0
+"""Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
+HOVERS_S, HOVERS_WALL_S = 20.0, 2.0
+"""A vehicle that holds and in all this time does not come to rest is in a strong wind: it is told, and no error."""
+
+
+async def hold(guidance: Guidance) -> None:
+    """Returns once the vehicle hovers. Raises VehicleError when it obeys no order to hold."""
+    monitor, dialect = guidance.monitor, guidance.monitor.dialect
+    manoeuvre = guidance.begin("hold")
+    if monitor.snapshot.disarmed:
+        return
+    trouble: AutopilotRefused | HoldIgnored = HoldIgnored()
+    for number, outgoing in enumerate(dialect.hold, 1):
+        if not (outgoing.changes_mode or monitor.snapshot.custom_mode in dialect.hold_modes):
+            continue
+        try:
+            if await _holds(guidance, manoeuvre, outgoing):
+                return
+            trouble = HoldIgnored()
+        except OutOfMode:  # what it did before has just shown its mode: the next order changes it
+            trouble = HoldIgnored()
+        except CommandDenied as denied:
+            trouble = denied.refusal
+        if number < len(dialect.hold):
+            monitor.announce(TriedAgain(trouble, number + 1))
+    raise VehicleError(DoesNotHold(trouble))
+
+
+async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> bool:
+    """True when it came to rest, or at least obeys; False when it does not."""
+    monitor, dialect, snapshot = guidance.monitor, guidance.monitor.dialect, guidance.monitor.snapshot
+    await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
+    brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
+    hover, hovers, highest_m_s = Hover(), False, 0.0
+
+    def obeys() -> bool:
+        slower = (snapshot.speed_m_s or 0.0) <= max(NEVER_FAST_M_S, SLOWER * highest_m_s)
+        return slower and snapshot.custom_mode in dialect.hold_modes
+
+    def decided() -> bool:
+        nonlocal hovers, highest_m_s
+        highest_m_s = max(highest_m_s, snapshot.speed_m_s or 0.0)
+        if snapshot.position is not None and snapshot.position_at_s is not None:
+            in_mode = snapshot.custom_mode in dialect.hold_modes
+            hovers = hover.see(snapshot.position, snapshot.speed_m_s, snapshot.position_at_s, in_mode)
+        return hovers or (brakes.passed and not obeys())
+
+    if await guidance.until(manoeuvre, Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S), decided):
+        return hovers
+    monitor.announce(StillMoving(snapshot.speed_m_s or 0.0))
+    return True
