@@ -121,9 +121,10 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
 	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
 
-takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simulated autopilot: half an hour
+takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simulated autopilot, and headings in time: half an hour
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour px4 --times 200 --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour ardupilot --times 200 --out $(MEASUREMENTS)
+	$(BIN)/python -m tests.benchmarks.heading_time --out $(MEASUREMENTS)
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json

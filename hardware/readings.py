@@ -151,7 +151,8 @@ class Sweep:
 
     at_s, heading_deg, power_db: (n,), one row a sample, in time order. `heading_deg` is the nose's; the antenna's
     offset to it belongs to the antenna pattern. drift_m: how far from `position` the vehicle may have been: it moved
-    while it turned, or its reported position had jumped.
+    while it turned, or its reported position had jumped. samples_without_heading: power samples that were left out,
+    because the headings before and after them were too far apart.
     """
 
     at_s: NDArray[np.float64]
@@ -162,6 +163,7 @@ class Sweep:
     altitude_amsl_m: float
     drift_m: float = 0.0
     clipped_samples: int = 0
+    samples_without_heading: int = 0
     noise_floor_db: float | None = None
     tag: str | None = None
 

@@ -77,6 +77,7 @@ class BearingMeasured(Fact):
 
     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
     heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
+    samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
     """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
@@ -97,6 +98,7 @@ class BearingMeasured(Fact):
     fitted_db: list[Known]
     measurement_time_s: Known = None
     heading_sigma_deg: float = 0.0
+    samples_without_heading: int = 0
 
 
 class RecordingImported(Fact):

@@ -66,6 +66,7 @@ def sweep_fact(
         fitted_db=fitted,
         measurement_time_s=measurement_time_s,
         heading_sigma_deg=reading.heading_sigma_deg,
+        samples_without_heading=sweep.samples_without_heading,
     )
 
 

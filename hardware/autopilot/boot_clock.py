@@ -1,44 +1,160 @@
-"""The autopilot's time since boot as UTC: when a heading was true, not when its message happened to arrive."""
+"""The autopilot's time since boot as UTC: when a heading was true, not when its message happened to arrive.
+
+What is heard of boot time x at UTC t is late by the link's delay, never early, so t - x lies on or above a line over x,
+whose slope is the rate of the two clocks: a crystal's, or that of a simulator that does not keep up. The height of the
+line is the offset and the least delay; TIMESYNC exchanges tell the two apart. Without answers to them the delay stays.
+"""
 
 from __future__ import annotations
 
-_DRIFT = 2e-3
-"""How fast the offset may grow, s/s: covers any crystal, and forgets one lucky early message slowly."""
-_STEP = 1.0
-"""s: an offset larger than this over many messages is a step (the autopilot was suspended), not latency."""
-_STEP_COUNT = 30
+import math
+from collections import deque
+from dataclasses import dataclass
+
+RATE_LIMIT = 0.05
+"""The autopilot's clock may be so much slower or faster than ours; more is not followed, but said."""
+WINDOW_S, BUCKET_S, RATE_FROM_S = 30.0, 1.0, 5.0
+"""Of boot time: how much the line is drawn under, in parts of which the lowest point counts; from when it slopes."""
+LONGEST_ROUND_TRIP_S = 3.0
+AGEING = 0.01
+"""s/s: so much uncertainty an exchange gains with time, beside half of its round trip."""
+_STEP_S, _STEP_COUNT = 1.0, 30
+"""An offset larger than this over many messages is a step (the autopilot was suspended), not delay."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Point:
+    boot_s: float
+    offset_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Exchange:
+    """offset_s: as if both ways had taken as long; half of round_trip_s is what it may be wrong by."""
+
+    boot_s: float
+    offset_s: float
+    round_trip_s: float
 
 
 class BootClock:
-    """utc = boot + offset, offset = the least (heard - boot) seen lately: latency only ever adds (Cristian 1989)."""
+    """Fed with messages and TIMESYNC exchanges as they come."""
 
     def __init__(self) -> None:
-        self._offset: float | None = None
-        self._boot = 0.0
-        self._late: list[float] = []
         self.reboots = 0
         """How often the time since boot went back."""
+        self.measured_rate: float | None = None
+        """Seconds of the autopilot's clock in one of ours, before the limit; None until it is known."""
+        self._begin()
+
+    def _begin(self) -> None:
+        self._points: deque[_Point] = deque()
+        self._exchanges: deque[_Exchange] = deque()
+        self._best: _Exchange | None = None
+        self._slope = 0.0
+        self._through: _Point | None = None
+        self._boot_s = 0.0
+        self._late: list[_Point] = []
+
+    @property
+    def rate_is_odd(self) -> bool:
+        """Further from ours than is followed: times are not what they seem."""
+        rate = self.measured_rate
+        return rate is not None and abs(1.0 / rate - 1.0) > RATE_LIMIT
 
     def to_utc(self, boot_s: float, heard_at_s: float) -> float:
         """UTC of the moment `boot_s` after boot, from a message heard at `heard_at_s` (UTC); never later than that."""
-        observed = heard_at_s - boot_s
-        rebooted = boot_s < self._boot - _STEP
-        self.reboots += rebooted
-        if self._offset is None or rebooted or observed <= self._offset:
-            self._offset = observed
+        point = _Point(boot_s, heard_at_s - boot_s)
+        if boot_s < self._boot_s - _STEP_S:
+            self.reboots += 1
+            self.measured_rate = None
+            self._begin()
+        self._boot_s = boot_s
+        if self._through is None or point.offset_s <= self._line(boot_s):
+            self._through = point
             self._late.clear()
         else:
-            excess = observed - self._offset
-            self._offset += min(excess, _DRIFT * max(0.0, boot_s - self._boot))
-            self._judge_step(observed, excess)
-        self._boot = boot_s
-        return boot_s + self._offset
+            self._judge_step(point)
+        self._remember(point)
+        offset_s = self._line(boot_s) if self._best is None else self._offset_by(self._best, boot_s)
+        return boot_s + min(offset_s, point.offset_s)
 
-    def _judge_step(self, observed: float, excess: float) -> None:
-        if excess < _STEP:
+    def exchanged(self, sent_at_s: float, boot_s: float, heard_at_s: float) -> None:
+        """A TIMESYNC: asked at `sent_at_s`, answered by the autopilot at `boot_s`, heard at `heard_at_s` (UTC)."""
+        round_trip_s = heard_at_s - sent_at_s
+        if not 0.0 <= round_trip_s <= LONGEST_ROUND_TRIP_S or boot_s < self._boot_s - _STEP_S:
+            return
+        new = _Exchange(boot_s, 0.5 * (sent_at_s + heard_at_s) - boot_s, round_trip_s)
+        if self._best is not None and abs(self._offset_by(self._best, boot_s) - new.offset_s) > 0.5 * round_trip_s:
+            self._exchanges.clear()  # by the ones before it was answered before it was asked, or after it was heard
+        self._exchanges.append(new)
+        while boot_s - self._exchanges[0].boot_s > WINDOW_S:
+            self._exchanges.popleft()
+        self._best = min(self._exchanges, key=lambda one: 0.5 * one.round_trip_s + AGEING * (boot_s - one.boot_s))
+
+    def _offset_by(self, exchange: _Exchange, boot_s: float) -> float:
+        return exchange.offset_s + self._slope * (boot_s - exchange.boot_s)
+
+    def _line(self, boot_s: float) -> float:
+        assert self._through is not None
+        return self._through.offset_s + self._slope * (boot_s - self._through.boot_s)
+
+    def _start_again(self, point: _Point) -> None:
+        """From a step on; the rate is that of before."""
+        self._points.clear()
+        self._exchanges.clear()
+        self._best = None
+        self._late.clear()
+        self._through = point
+
+    def _judge_step(self, point: _Point) -> None:
+        if point.offset_s - self._line(point.boot_s) < _STEP_S:
             self._late.clear()
             return
-        self._late.append(observed)
+        self._late.append(point)
         if len(self._late) >= _STEP_COUNT:
-            self._offset = min(self._late)
-            self._late.clear()
+            self._start_again(min(self._late, key=lambda late: late.offset_s))
+
+    def _remember(self, point: _Point) -> None:
+        """The lowest point of each BUCKET_S; a full bucket draws the line anew."""
+        points = self._points
+        if not points or point.boot_s // BUCKET_S > points[-1].boot_s // BUCKET_S:
+            if points:
+                self._draw()
+            points.append(point)
+            while point.boot_s - points[0].boot_s > WINDOW_S:
+                points.popleft()
+        elif point.offset_s < points[-1].offset_s and point.boot_s // BUCKET_S == points[-1].boot_s // BUCKET_S:
+            points[-1] = point
+
+    def _draw(self) -> None:
+        """The line below all points that is nearest to them (Moon, Skelly and Towsley 1999): an edge of their hull."""
+        points = self._points
+        if points[-1].boot_s - points[0].boot_s >= RATE_FROM_S:
+            before, after = _edge_below(list(points))
+            slope = (after.offset_s - before.offset_s) / (after.boot_s - before.boot_s)
+            self.measured_rate = 1.0 / (1.0 + max(slope, -0.9))
+            self._slope = min(max(slope, -RATE_LIMIT), RATE_LIMIT)
+        lowest, here = math.inf, points[-1]
+        for point in points:
+            height = point.offset_s + self._slope * (here.boot_s - point.boot_s)
+            lowest = min(lowest, height)
+        self._through = _Point(here.boot_s, lowest)
+
+
+def _edge_below(points: list[_Point]) -> tuple[_Point, _Point]:
+    """The edge of the lower convex hull over the mean of the points' boot times. points: at least two, in order."""
+    hull: list[_Point] = []
+    for point in points:
+        while len(hull) >= 2 and _above(hull[-1], hull[-2], point):
+            hull.pop()
+        hull.append(point)
+    mean_s = sum(point.boot_s for point in points) / len(points)
+    at = next(k for k, point in enumerate(hull) if k > 0 and point.boot_s >= mean_s)
+    return hull[at - 1], hull[at]
+
+
+def _above(middle: _Point, left: _Point, right: _Point) -> bool:
+    """On or above the straight line between the other two."""
+    rise = (middle.offset_s - left.offset_s) * (right.boot_s - left.boot_s)
+    return rise >= (right.offset_s - left.offset_s) * (middle.boot_s - left.boot_s)

@@ -19,12 +19,14 @@ from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, requ
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.silence import Silence
 from hardware.autopilot.snapshot import NAMES, Snapshot
+from hardware.autopilot.timesync import Timesync
 from hardware.deadline import Deadline
 from hardware.ports import Clock, VehicleUnreachable
 from hardware.readings import Announcement, Telemetry
 from hardware.reasons.vehicle import HeartbeatStopped, UnknownAutopilot, VehicleNotConnected
 from hardware.reasons.vehicle_news import (
     AutopilotRestarted,
+    ClockRateOdd,
     ModeChanged,
     PositionJumped,
     SwitchUndone,
@@ -66,7 +68,7 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.clock = clock
-        self.link = MavlinkLink(url, (*NAMES, "COMMAND_ACK", "STATUSTEXT"), self._on_message)
+        self.link = MavlinkLink(url, (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC"), self._on_message)
         self.snapshot = Snapshot()
         self.wakeup = Wakeup()
         self.connected = False
@@ -75,6 +77,7 @@ class Monitor:
         self._announcer = Announcer()
         self.control = Control(self._on_authority)
         self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
+        self.timesync = Timesync(self.link, clock, self.snapshot.exchanged)
         self.silence = Silence()
         self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
@@ -110,6 +113,7 @@ class Monitor:
         self._tasks = [
             asyncio.create_task(self._watch_link(), name="vehicle-link-watch"),
             asyncio.create_task(self._keep_streams(), name="vehicle-streams"),
+            asyncio.create_task(self.timesync.run(), name="vehicle-timesync"),
         ]
 
     async def close(self) -> None:
@@ -130,9 +134,12 @@ class Monitor:
 
     async def _keep_streams(self) -> None:
         """Ask for the telemetry rates again when the autopilot has forgotten them."""
-        reboots = self.snapshot.reboots
+        reboots, odd = self.snapshot.reboots, False
         while True:
             await asyncio.sleep(1.0)
+            if self.snapshot.clock_rate_is_odd and not odd:
+                self.announce(ClockRateOdd(self.snapshot.clock_rate or 1.0))
+            odd = self.snapshot.clock_rate_is_odd
             attitude = self.snapshot.attitude_heard_at_s
             ceased = attitude is None or self.clock.now() - attitude > STREAMS_CEASED_S
             if self.snapshot.reboots != reboots:
@@ -175,6 +182,8 @@ class Monitor:
         self.silence.heard()
         if name == "COMMAND_ACK":
             self.commander.acknowledged(fields)
+        elif name == "TIMESYNC":
+            self.timesync.heard(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(str(fields["text"]).rstrip("\x00\t "))
         else:

@@ -81,6 +81,20 @@ class Snapshot:
         return self._boot_clock.reboots
 
     @property
+    def clock_rate(self) -> float | None:
+        """Seconds of the autopilot's clock in one of ours; None until it is known."""
+        return self._boot_clock.measured_rate
+
+    @property
+    def clock_rate_is_odd(self) -> bool:
+        """So far from ours that times are not what they seem."""
+        return self._boot_clock.rate_is_odd
+
+    def exchanged(self, sent_at_s: float, boot_s: float, heard_at_s: float) -> None:
+        """A TIMESYNC, see BootClock."""
+        self._boot_clock.exchanged(sent_at_s, boot_s, heard_at_s)
+
+    @property
     def disarmed(self) -> bool:
         """Certainly: a heartbeat of once a second does not yet know that the autopilot has just agreed to arm."""
         return self.armed is False and (self.heartbeat_at_s or -math.inf) >= self.arming_at_s + ARMING_S

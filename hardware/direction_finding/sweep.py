@@ -25,7 +25,8 @@ BINS = 180
 BIN_DEG = 360.0 / BINS
 MAXIMUM_HEADING_GAP_S = 1.0
 """Between headings further apart than this the nose's direction is not known, so power heard there is left out."""
-
+MAXIMUM_HEADING_STEP_DEG = 20.0
+"""Nor between headings that differ by more: at 30 degrees a second they are 0.7 s apart."""
 
 IMPLAUSIBLE_DB = 400.0
 """No receiver delivers a power of this many decibels either way: such values are left out like NaN."""
@@ -56,8 +57,9 @@ def assemble_sweep(
 ) -> Sweep:
     """A sweep in which every power sample carries the heading of its own time.
 
-    samples, headings: any order; headings are interpolated linearly the short way round (headings further than
-    MAXIMUM_HEADING_GAP_S apart are not bridged, samples outside the headings' time span are left out).
+    samples, headings: any order; headings are interpolated linearly the short way round. Headings further apart than
+    MAXIMUM_HEADING_GAP_S or MAXIMUM_HEADING_STEP_DEG are not bridged: the samples between are left out and counted.
+    Samples outside the headings' time span are left out.
     position: where the sweep was taken; None: the mean of the headings' positions. clock_offset_s: the receiver's clock
     minus the vehicle's, subtracted from the samples' times. Raises SweepError when nothing is left.
     """
@@ -80,7 +82,10 @@ def assemble_sweep(
 
     after = np.clip(np.searchsorted(heading_s, heard_s), 1, heading_s.size - 1)
     usable = (heard_s >= heading_s[0]) & (heard_s <= heading_s[-1])
-    usable &= heading_s[after] - heading_s[after - 1] <= MAXIMUM_HEADING_GAP_S
+    known_there = heading_s[after] - heading_s[after - 1] <= MAXIMUM_HEADING_GAP_S
+    known_there &= np.abs(turned[after] - turned[after - 1]) <= MAXIMUM_HEADING_STEP_DEG
+    without_heading = int((usable & ~known_there).sum())
+    usable &= known_there
     if not usable.any():
         apart_s = max(float(heard_s[0] - heading_s[-1]), float(heading_s[0] - heard_s[-1]))
         raise SweepError(ClocksApart(apart_s) if apart_s > 0.0 else HeadingsInterrupted(MAXIMUM_HEADING_GAP_S))
@@ -96,6 +101,7 @@ def assemble_sweep(
         altitude_amsl_m=altitude_amsl_m,
         drift_m=drift_m,
         clipped_samples=int(clipped[usable].sum()),
+        samples_without_heading=without_heading,
         noise_floor_db=float(np.median(floors)) if floors else None,
         tag=tag,
     )

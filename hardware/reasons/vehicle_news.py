@@ -51,6 +51,19 @@ class AutopilotRestarted:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockRateOdd:
+    """rate: seconds of the autopilot's clock in one of ours."""
+
+    rate: float
+    code: Literal["clock_rate_odd"] = "clock_rate_odd"
+
+    english: ClassVar[Words] = Words(
+        "The autopilot's clock runs at {rate:2} of ours: its headings cannot be dated.",
+        "Restart the autopilot. A simulator needs more processor.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class ModeChanged:
     """mode: as the autopilot names it."""
 
@@ -146,6 +159,7 @@ VehicleNews = (
     | VehicleUnheard
     | VehicleHeardAgain
     | AutopilotRestarted
+    | ClockRateOdd
     | ModeChanged
     | PositionJumped
     | TakenOver

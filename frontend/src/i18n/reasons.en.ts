@@ -690,6 +690,10 @@ export const reasonsEn: ReasonTable = {
     text: "The autopilot has restarted.",
     remedy: "",
   },
+  clock_rate_odd: {
+    text: "The autopilot's clock runs at {rate:2} of ours: its headings cannot be dated.",
+    remedy: "Restart the autopilot. A simulator needs more processor.",
+  },
   mode_changed: {
     text: "The vehicle is in {mode}.",
     remedy: "",

@@ -47,6 +47,8 @@ class PaperLink:
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
         if not allowed():
             return False
+        if name == "TIMESYNC":
+            return True
         number = fields["command"]
         self.sent.append(number)
         asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": self.result})

@@ -7,11 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from refusals import refusing
 
-from hardware.direction_finding.sweep import BINS, SweepError, assemble_sweep, bin_sweep, turned_deg, unheard_slices
+from hardware.direction_finding.sweep import (
+    BINS,
+    MAXIMUM_HEADING_STEP_DEG,
+    SweepError,
+    assemble_sweep,
+    bin_sweep,
+    turned_deg,
+    unheard_slices,
+)
 from hardware.readings import HeadingSample, Place, PowerSample
 from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import ClocksApart, HeadingsInterrupted, HeadingsNotNumbers, NoHeadingHeard
@@ -37,6 +45,7 @@ def powers(times: np.ndarray, **more: Any) -> list[PowerSample]:
 def test_headings_are_interpolated_at_each_samples_own_time_across_north(
     start: float, rate: float, period: float
 ) -> None:
+    assume(abs(rate) * period < MAXIMUM_HEADING_STEP_DEG)
     sweep = assemble_sweep(
         powers(np.arange(0.1, 10.0, 0.05)),
         headings(np.arange(0.0, 12.0, period), rate, start),
@@ -55,6 +64,17 @@ def test_samples_in_a_gap_of_the_headings_or_outside_them_are_left_out() -> None
     assert sweep.at_s.min() >= 0.0
     assert sweep.at_s.max() <= 10.0
     assert not ((sweep.at_s > 4.0) & (sweep.at_s < 6.9)).any()
+
+
+def test_power_between_headings_too_far_apart_to_say_where_the_nose_was_is_left_out_and_counted() -> None:
+    """0.8 s at 30 degrees a second: it may have turned at any rate meanwhile."""
+    times = np.array([t for t in np.arange(0.0, 10.0, 0.1) if not 4.05 < t < 4.75])
+    heard = powers(np.arange(0.05, 9.9, 0.1))
+    sweep = assemble_sweep(heard, headings(times, 30.0), frequency_hz=868e6, altitude_amsl_m=0.0)
+    assert sweep.samples_without_heading == 8
+    assert sweep.at_s.size == len(heard) - 8
+    slow = assemble_sweep(heard, headings(times, 10.0), frequency_hz=868e6, altitude_amsl_m=0.0)
+    assert slow.samples_without_heading == 0
 
 
 def test_place_that_had_jumped_is_as_unsure_as_the_jump_was_long() -> None:

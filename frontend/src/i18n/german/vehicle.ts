@@ -108,6 +108,10 @@ export const vehicle = {
     remedy: "",
   },
   taken_over_by_sticks: { text: "Der Pilot hat mit den Steuerknüppeln übernommen.", remedy: "" },
+  clock_rate_odd: {
+    text: "Die Uhr des Autopiloten geht {rate:2}-mal so schnell wie unsere: Seine Richtungen lassen sich nicht datieren.",
+    remedy: "Den Autopiloten neu starten. Eine Simulation braucht mehr Rechenzeit.",
+  },
   switch_undone: {
     text: "Ein Befehl, der schon unterwegs war, hat den Schalter des Piloten überstimmt: Das Fluggerät ist in {mode}. Es wird nichts mehr gesendet.",
     remedy: "Der Pilot wählt den Modus noch einmal.",
