@@ -33,7 +33,11 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC)."""
+    """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC).
+
+    position_lost_since_s: since when the vehicle itself says that it does not know where it is; what it reports as its
+    position since then is a guess.
+    """
 
     connected: bool
     at_s: float
@@ -50,6 +54,7 @@ class Telemetry:
     battery_at_s: float | None = None
     gps_fix: GpsFixName | None = None
     satellites: int | None = None
+    position_lost_since_s: float | None = None
     armed: bool | None = None
     in_air: bool | None = None
     mode: str | None = None

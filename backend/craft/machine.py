@@ -266,6 +266,10 @@ def _link_down(step: CraftStep, given: LinkDown) -> None:
                 hold(step, reason)
         case "payload":
             alert(step, "payload", "caution", given.because)
+        case "gps":
+            alert(step, "gps", "warning", given.because)
+            if craft.phase in AUTOMATIC:
+                hold(step, given.because)
         case "console":
             timers = step.search.mission.timers
             step.do(StartTimer("console_hold", timers.console_lost_hold_s))
@@ -361,7 +365,7 @@ def _restarted(step: CraftStep, heard: Authority) -> None:
     craft = step.craft
     if not craft.engaged:
         return
-    clear_alerts(step, "vehicle", "receiver", "console", "payload")
+    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps")
     if kept_of(heard) != kept_of(craft.authority):
         step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
     if craft.taken_over:

@@ -105,7 +105,7 @@ def vehicle_vetoes(situation: Situation) -> tuple[Reason, ...]:
         found.append(safety.PilotControls())
     if not telemetry.connected:
         found.append(safety.NoLink())
-    if telemetry.position is None or math.isinf(age):
+    if telemetry.position is None or math.isinf(age) or telemetry.position_lost_since_s is not None:
         found.append(safety.NoPosition())
     elif age > POSITION_STALE_S:
         found.append(safety.PositionOld(age))

@@ -40,7 +40,7 @@ from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
 
 OF_THE_FLIGHT: tuple[Topic, ...] = (
-    "vehicle", "receiver", "console", "payload", "pilot", "battery", "place", "failure", "safety", "ground",
+    "vehicle", "receiver", "console", "payload", "gps", "pilot", "battery", "place", "failure", "safety", "ground",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
 

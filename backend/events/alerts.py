@@ -8,13 +8,14 @@ from backend.events.fact import Fact
 from backend.reasons import Reason
 from backend.spec import Id
 
-Link = Literal["vehicle", "receiver", "console", "payload"]
+Link = Literal["vehicle", "receiver", "console", "payload", "gps"]
 
 Topic = Literal[
     "vehicle",
     "receiver",
     "console",
     "payload",
+    "gps",
     "pilot",
     "battery",
     "place",

@@ -58,6 +58,17 @@ class VehicleLinkLost:
 
 
 @dataclass(frozen=True, slots=True)
+class PlaceUnknown:
+    """The vehicle itself says so."""
+
+    code: Literal["place_unknown"] = "place_unknown"
+    english: ClassVar[Words] = Words(
+        "The vehicle has lost GPS: it no longer knows where it is.",
+        "Be ready to fly it by hand: its autopilot will soon land where it is.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class PayloadLinkLost:
     code: Literal["payload_link_lost"] = "payload_link_lost"
     english: ClassVar[Words] = Words(
@@ -180,6 +191,7 @@ FlightReason = (
     | Proceeds
     | NoConsole
     | VehicleLinkLost
+    | PlaceUnknown
     | PayloadLinkLost
     | BackAfterRestart
     | PilotFlies

@@ -11,6 +11,7 @@ from typing import Any, Literal
 from hardware.authority import Authority
 from hardware.autopilot.boot_clock import BootClock
 from hardware.autopilot.ground import north_east_m
+from hardware.autopilot.position_trust import PositionTrust
 from hardware.readings import HeadingSample, Place, Telemetry
 from hardware.reasons.preflight import GpsFixName
 
@@ -35,6 +36,8 @@ NAMES = (
     "BATTERY_STATUS",
     "HOME_POSITION",
     "EXTENDED_SYS_STATE",
+    "ESTIMATOR_STATUS",
+    "EKF_STATUS_REPORT",
 )
 """The messages the fold understands."""
 
@@ -69,6 +72,7 @@ class Snapshot:
     satellites: int | None = None
     home: Place | None = None
     home_amsl_m: float | None = None
+    trust: PositionTrust = field(default_factory=PositionTrust)
     _displaced_m: tuple[float, float] = (0.0, 0.0)
     """(north, east) the sum of all jumps of this flight: a jump back undoes one."""
     _position_boot_s: float = 0.0
@@ -116,6 +120,7 @@ class Snapshot:
     def fold(self, name: str, fields: Fields, heard_at_s: float) -> None:
         """Take one message in. A field that is not a number (null on the wire) is left as it was."""
         self.heard_at_s = heard_at_s
+        self.trust.fold(name, fields, heard_at_s)
         match name:
             case "HEARTBEAT":
                 self.custom_mode, self.mode_at_s = int(fields["custom_mode"]), heard_at_s
@@ -156,7 +161,8 @@ class Snapshot:
         self.attitude_heard_at_s = heard_at_s
         history = self._headings
         if not history or at > history[-1].at_s:
-            history.append(HeadingSample(at, self.heading_deg, self.position, math.hypot(*self._displaced_m)))
+            place = self.position if self.trust.lost_since_s is None else None
+            history.append(HeadingSample(at, self.heading_deg, place, math.hypot(*self._displaced_m)))
         while at - history[0].at_s > HISTORY_S:
             history.popleft()
 
@@ -227,6 +233,7 @@ class Snapshot:
             battery_at_s=self.battery_at_s,
             gps_fix=None if self.fix_type is None else _FIXES[min(self.fix_type, len(_FIXES) - 1)],
             satellites=self.satellites,
+            position_lost_since_s=self.trust.lost_since_s,
             armed=None if self.armed is False and not self.disarmed else self.armed,
             in_air=self.in_air,
             mode=mode,

@@ -91,6 +91,8 @@ def assemble_sweep(
         raise SweepError(ClocksApart(apart_s) if apart_s > 0.0 else HeadingsInterrupted(MAXIMUM_HEADING_GAP_S))
     nose = np.interp(heard_s[usable], heading_s, turned) % 360.0
     floors = [s.noise_floor_db for s in heard if s.noise_floor_db is not None]
+    if position is None and any(h.position is None for h in track if heard_s[0] <= h.at_s <= heard_s[-1]):
+        raise SweepError(NoPositionHeard())  # where the position was lost, the vehicle may have been anywhere
     place, drift_m = _place_and_drift(track, position)
     return Sweep(
         at_s=heard_s[usable],

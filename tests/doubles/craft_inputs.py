@@ -47,7 +47,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.SetAutomatic(automatic=True),
     commands.SetAutomatic(automatic=False),
 )
-LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload")
+LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload", "gps")
 TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing")
 STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
 

@@ -1,4 +1,4 @@
-"""Links that go and come: the vehicle, the receiver, the consoles."""
+"""Links that go and come: the vehicle, its GPS, the receiver, the consoles."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from backend.craft import inputs
 from backend.events import Link
 from backend.reasons import Reason
-from backend.reasons.flight import NoConsole, VehicleLinkLost
+from backend.reasons.flight import NoConsole, PlaceUnknown, VehicleLinkLost
 from hardware.readings import Telemetry
 
 
@@ -28,6 +28,9 @@ class LinkWatch:
         silence = VehicleLinkLost(None if heard is None else now_s - heard)
         found: list[inputs.CraftInput] = []
         found += self._change("vehicle", None if telemetry.connected else silence, now_s)
+        if telemetry.connected:
+            lost = telemetry.position_lost_since_s is not None
+            found += self._change("gps", PlaceUnknown() if lost else None, now_s)
         found += self._change("receiver", trouble, now_s)
         self._console_seen |= bool(consoles)
         if consoles is not None and self._console_seen:

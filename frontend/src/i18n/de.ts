@@ -675,6 +675,7 @@ export const de: Record<MessageKey, string> = {
   "link.receiver": "Empfänger",
   "link.console": "Konsole",
   "link.payload": "Nutzlast",
+  "link.gps": "GPS",
   "by.mission": "die Mission selbst",
   "command.start": "Start",
   "command.hold": "Halten",

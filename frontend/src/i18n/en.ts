@@ -671,6 +671,7 @@ export const en = {
   "link.receiver": "Receiver",
   "link.console": "Console",
   "link.payload": "Payload",
+  "link.gps": "GPS",
   "by.mission": "the mission itself",
   "command.start": "Start",
   "command.hold": "Hold",

@@ -821,6 +821,10 @@ export const reasonsEn: ReasonTable = {
     text: "The link to the vehicle is lost.",
     remedy: "Its own failsafe acts meanwhile. Restore the link.",
   },
+  place_unknown: {
+    text: "The vehicle has lost GPS: it no longer knows where it is.",
+    remedy: "Be ready to fly it by hand: its autopilot will soon land where it is.",
+  },
   payload_link_lost: {
     text: "The link to the companion computer is lost.",
     remedy: "Check the companion's power and network.",

@@ -24,6 +24,8 @@ from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.parameters import Parameters
 from hardware.sim.autopilot.sensors import Navigation
 
+FLIES_ON_WITHOUT_FIX = 5.0
+"""Seconds from the last fix to the autopilot's own landing, as measured on PX4."""
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = 0, 1, 2, 3, 4
 """MAV_RESULT."""
 
@@ -241,6 +243,7 @@ class Firmware(ABC):
             self._watch_ground()
             self._watch_gcs()
             self._watch_battery()
+            self._watch_fix()
             self.watch()
 
     @abstractmethod
@@ -285,6 +288,11 @@ class Firmware(ABC):
             self.gcs_lost()
         elif not lost:
             self.gcs_failsafe = False
+
+    def _watch_fix(self) -> None:
+        if self.flight.in_air and self.navigation.without_fix_for > FLIES_ON_WITHOUT_FIX and self.mode != "LAND":
+            self.say("Position estimate lost", mavlink.MAV_SEVERITY_EMERGENCY)
+            self.set_mode("LAND")
 
     @abstractmethod
     def battery_low(self) -> None:

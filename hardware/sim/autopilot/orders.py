@@ -6,6 +6,7 @@
     {"do": "link_loss", "seconds": 8}         nothing passes the radio link, both ways (simulated seconds)
     {"do": "link_delay", "seconds": 0.08}     each way, from now on (simulated seconds)
     {"do": "gps_jump", "north_m": 30, "east_m": 0, "seconds": 5}
+    {"do": "gps_loss", "seconds": 10}         no satellites; after 5 s it lands by itself
     {"do": "heading_error", "degrees": 15}
     {"do": "battery", "percent": 15}
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
@@ -92,6 +93,8 @@ class Orders:
                 firmware.navigation.jump(
                     _number(order, "north_m", 0.0), _number(order, "east_m", 0.0), _number(order, "seconds", 5.0)
                 )
+            case "gps_loss":
+                firmware.navigation.lose_fix(_number(order, "seconds", 10.0))
             case "heading_error":
                 firmware.navigation.heading_error = _number(order, "degrees")
             case "battery":

@@ -24,15 +24,33 @@ class Navigation:
         self._jump_left = 0.0
         self._next_fix = 0.0
         self._age = 0.0
-        self.satellites = 14
+        self._fix_lost_left = 0.0
+        self.without_fix_for = 0.0
+        """Seconds; 0 while there is a fix."""
 
     def jump(self, north: float, east: float, seconds: float) -> None:
         """The GPS position steps by (north, east) m for that many seconds, then comes back."""
         self._jump, self._jump_left = (north, east), seconds
 
+    def lose_fix(self, seconds: float) -> None:
+        """No satellites for that long: it navigates on by what else it has, which drifts."""
+        self._fix_lost_left = seconds
+
+    @property
+    def has_fix(self) -> bool:
+        """Satellites are heard."""
+        return self._fix_lost_left <= 0.0
+
+    @property
+    def satellites(self) -> int:
+        """How many are used."""
+        return 14 if self.has_fix else 0
+
     def step(self, dt: float) -> None:
         """Advance by dt seconds; the position error changes with each fix, every 0.2 s."""
         self._age += dt
+        self._fix_lost_left = max(0.0, self._fix_lost_left - dt)
+        self.without_fix_for = 0.0 if self.has_fix else self.without_fix_for + dt
         self._jump_left = max(0.0, self._jump_left - dt)
         if self._age < self._next_fix:
             return

@@ -28,6 +28,10 @@ _SENSORS = (
 )
 
 
+ESTIMATOR_LATE, SYS_STATUS_LATE = 5.2, 7.4
+"""Seconds after the last fix at which PX4's estimator and its health say so; GPS_RAW_INT says it at once."""
+
+
 def _boot_ms(firmware: Firmware) -> int:
     return int(firmware.time * 1000.0)
 
@@ -55,6 +59,8 @@ def current_mode(firmware: Firmware) -> Message:
 
 def sys_status(firmware: Firmware) -> Message:
     health = _SENSORS if firmware.prearm_ok else _SENSORS & ~mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    if firmware.navigation.without_fix_for > SYS_STATUS_LATE:
+        health &= ~mavlink.MAV_SYS_STATUS_SENSOR_GPS
     percent = firmware.copter.battery_percent
     volts = 13.2 + 3.6 * percent / 100.0
     amps = firmware.copter.power / volts
@@ -81,7 +87,7 @@ def gps_raw_int(firmware: Firmware) -> Message:
     course = math.degrees(math.atan2(copter.v_east, copter.v_north)) % 360.0
     return mavlink.MAVLink_gps_raw_int_message(
         int(firmware.time * 1e6),
-        mavlink.GPS_FIX_TYPE_3D_FIX,
+        mavlink.GPS_FIX_TYPE_3D_FIX if firmware.navigation.has_fix else mavlink.GPS_FIX_TYPE_NO_FIX,
         lat,
         lon,
         int((firmware.home.amsl_m + up) * 1000),
@@ -162,9 +168,21 @@ def autopilot_version(firmware: Firmware) -> Message:
     )
 
 
+def _estimator_flags(firmware: Firmware) -> int:
+    """ESTIMATOR_STATUS_FLAGS, and EKF_STATUS_FLAGS alike: attitude and velocity; all of position besides."""
+    return 0x33F if firmware.prearm_ok and firmware.navigation.without_fix_for < ESTIMATOR_LATE else 0x007
+
+
+def estimator_status(firmware: Firmware) -> Message:
+    flags = _estimator_flags(firmware)
+    return mavlink.MAVLink_estimator_status_message(
+        int(firmware.time * 1e6), flags, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.8, 1.2
+    )
+
+
 def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
     """ArduPilot's word on its position estimate; MAVSDK asks for it as part of "health"."""
-    good = 0x33F if firmware.prearm_ok else 0x007  # attitude and velocity; all of position besides
+    good = _estimator_flags(firmware)
     return ardupilotmega.MAVLink_ekf_status_report_message(good, 0.1, 0.1, 0.1, 0.1, 0.0)
 
 
@@ -186,5 +204,6 @@ _COMMON: dict[int, Callable[[Firmware], Any]] = {
 
 def builders(flavour: str) -> dict[int, Callable[[Firmware], Any]]:
     """Message id -> builder: what this flavour can send when asked."""
-    own = {ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report} if flavour == "ardupilot" else {}
-    return _COMMON | own
+    if flavour == "ardupilot":
+        return _COMMON | {ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report}
+    return _COMMON | {mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status}

@@ -27,7 +27,7 @@ from backend.craft import effects, inputs
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.events import AlertRaised, AuthorityChanged, Phase
 from backend.reasons import OrderedAgainLater, ReceiverTrouble
-from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies
+from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies, PlaceUnknown
 from backend.reasons.safety import NoLink
 
 IN_FLIGHT: tuple[Phase, ...] = tuple(AUTOMATIC | HOMEWARD)
@@ -284,6 +284,16 @@ def test_a_fault_of_our_own_holds_what_flies_by_itself() -> None:
         walk = craft_in(phase)
         assert sent(walk.give(inputs.Broke(BROKE))) == [effects.HoldVehicle()]
         assert walk.craft.phase == "hold"
+
+
+def test_a_vehicle_that_has_lost_its_place_is_held_whatever_it_does_by_itself() -> None:
+    for phase in AUTOMATIC:
+        walk = craft_in(phase)
+        assert sent(walk.give(inputs.LinkDown("gps", PlaceUnknown()))) == [effects.HoldVehicle()]
+        assert (walk.craft.phase, walk.topics) == ("hold", ["gps"])
+        assert walk.last_alert.reason == PlaceUnknown()
+        walk.give(inputs.LinkUp("gps", 2.0))
+        assert (walk.craft.phase, walk.topics) == ("hold", [])
 
 
 def test_a_silent_receiver_holds_only_a_running_measurement() -> None:

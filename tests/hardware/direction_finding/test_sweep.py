@@ -22,7 +22,7 @@ from hardware.direction_finding.sweep import (
 )
 from hardware.readings import HeadingSample, Place, PowerSample
 from hardware.reasons.receiver import NothingHeardInTurn
-from hardware.reasons.sweep import ClocksApart, HeadingsInterrupted, HeadingsNotNumbers, NoHeadingHeard
+from hardware.reasons.sweep import ClocksApart, HeadingsInterrupted, HeadingsNotNumbers, NoHeadingHeard, NoPositionHeard
 from planner.reason import Reason
 
 PLACE = Place(50.0, 7.0)
@@ -75,6 +75,17 @@ def test_power_between_headings_too_far_apart_to_say_where_the_nose_was_is_left_
     assert sweep.at_s.size == len(heard) - 8
     slow = assemble_sweep(heard, headings(times, 10.0), frequency_hz=868e6, altitude_amsl_m=0.0)
     assert slow.samples_without_heading == 0
+
+
+def test_a_turn_in_which_the_vehicle_lost_its_place_is_no_sweep() -> None:
+    track = [
+        replace(h, position=None if 4.0 < h.at_s < 5.0 else PLACE) for h in headings(np.arange(0.0, 10.0, 0.1), 30.0)
+    ]
+    with pytest.raises(SweepError) as refused:
+        assemble_sweep(powers(np.arange(1.0, 9.0, 0.1)), track, frequency_hz=868e6, altitude_amsl_m=0.0)
+    assert refused.value.reason == NoPositionHeard()
+    after = powers(np.arange(5.5, 9.0, 0.1))
+    assert assemble_sweep(after, track, frequency_hz=868e6, altitude_amsl_m=0.0).position == PLACE
 
 
 def test_place_that_had_jumped_is_as_unsure_as_the_jump_was_long() -> None:

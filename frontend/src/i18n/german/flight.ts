@@ -20,6 +20,10 @@ export const flight = {
     text: "Die Funkstrecke zum Fluggerät ist weg.",
     remedy: "Solange handelt sein eigener Ausfallschutz. Die Funkstrecke wiederherstellen.",
   },
+  place_unknown: {
+    text: "Das Fluggerät hat kein GPS mehr: Es weiß nicht, wo es ist.",
+    remedy: "Bereit sein, von Hand zu fliegen: Der Autopilot landet bald, wo er ist.",
+  },
   payload_link_lost: {
     text: "Die Verbindung zum Begleitrechner ist weg.",
     remedy: "Seinen Strom und sein Netz prüfen.",

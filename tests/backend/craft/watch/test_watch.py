@@ -19,8 +19,8 @@ from backend.craft.state import CraftState
 from backend.craft.watch.drain import Drain
 from backend.craft.watch.watch import Watch
 from backend.events import FIRST_CRAFT
-from backend.reasons.flight import NoConsole, VehicleLinkLost
-from backend.reasons.safety import BatteryShort, BatterySilent, BatteryUnknown, FailsafeActs
+from backend.reasons.flight import NoConsole, PlaceUnknown, VehicleLinkLost
+from backend.reasons.safety import BatteryShort, BatterySilent, BatteryUnknown, FailsafeActs, NoPosition
 from backend.search.task import search_task
 from backend.spec import Place
 from hardware.authority import CommandSent
@@ -112,6 +112,16 @@ def test_a_link_that_goes_and_comes_is_noticed_once_each_way(scene: Scene) -> No
     (up,) = scene.tick(5)
     assert isinstance(up, inputs.LinkUp)
     assert up.outage_s == pytest.approx(1.0)
+
+
+def test_a_vehicle_that_says_that_it_lost_its_place_is_heard_once_each_way_and_may_not_be_flown(scene: Scene) -> None:
+    scene.see(position_lost_since_s=scene.clock.at)
+    assert scene.tick(5) == [inputs.LinkDown("gps", PlaceUnknown())]
+    assert NoPosition() in vehicle_vetoes(scene.watch.situation())
+    scene.see(position_lost_since_s=None)
+    (back,) = scene.tick(5)
+    assert isinstance(back, inputs.LinkUp)
+    assert vehicle_vetoes(scene.watch.situation()) == ()
 
 
 def test_a_console_counts_only_after_one_was_there(scene: Scene) -> None:

@@ -21,6 +21,7 @@ from hardware.sim.autopilot.firmware import (
 )
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.px4 import Px4
+from hardware.sim.autopilot.telemetry import gps_raw_int
 
 ARM, TAKE_OFF, SET_MODE, REPOSITION, YAW, SPEED = 400, 22, 176, 192, 115, 178
 HOME = HomeFrame(47.4, 8.5, 488.0)
@@ -321,3 +322,14 @@ def test_px4_flies_past_its_stop_point_and_turns_back() -> None:
     run(firmware, 8.0)
     assert 3.0 < turned_back - firmware.copter.north < 10.0
     assert abs(firmware.copter.v_north) < 0.3
+
+
+@pytest.mark.parametrize("flavour", [Px4, ArduCopter])
+def test_without_a_fix_it_says_so_and_lands_after_a_while(flavour: type[Px4 | ArduCopter]) -> None:
+    firmware = flying(flavour)
+    firmware.navigation.lose_fix(20.0)
+    run(firmware, 4.0)
+    assert firmware.mode != "LAND"
+    assert (gps_raw_int(firmware).fix_type, firmware.navigation.satellites) == (1, 0)
+    run(firmware, 2.0)
+    assert firmware.mode == "LAND"
