@@ -82,6 +82,7 @@ CheckName = Literal[
     "battery",
     "home",
     "ready_to_arm",
+    "remote_id",
     "control",
     "failsafe",
     "receiver",

@@ -55,6 +55,7 @@ ARDUPILOT = Dialect(
     reposition_modes=frozenset({GUIDED}),
     reposition_sets_speed=False,
     turn_methods=("condition_yaw", "condition_yaw", "condition_yaw_absolute"),
+    prearm_has_present_bit=True,
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",
@@ -74,6 +75,19 @@ ARDUPILOT = Dialect(
             "fence",
             frozenset({1, 2, 3, 4, 5}),
             1,  # RTL or land
+        ),
+        FailsafeRule(
+            "BATT_FS_LOW_ACT",
+            "battery",
+            frozenset({1, 2, 3, 4}),
+            2,  # RTL
+        ),
+        FailsafeRule(
+            "BATT_FS_CRT_ACT",
+            "battery_critical",
+            frozenset({1, 2, 3, 4}),
+            1,  # land
+            blocking=False,
         ),
         FailsafeRule(
             "FS_THR_ENABLE",

@@ -58,6 +58,8 @@ class Dialect:
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
     turn_methods: ways to turn a full circle, in the order in which to try them.
+    prearm_has_present_bit: SYS_STATUS says by a bit of its own whether it reports the checks before arming; else their
+    health bit alone counts.
     """
 
     name: Literal["px4", "ardupilot"]
@@ -77,10 +79,16 @@ class Dialect:
     reposition_modes: frozenset[int]
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
+    prearm_has_present_bit: bool
     failsafes: tuple[FailsafeRule, ...]
 
     def mode_name(self, custom_mode: int) -> str:
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")
+
+    def prearm_ok(self, present: bool | None, healthy: bool | None) -> bool | None:
+        """Whether the autopilot would arm, from the bits of SYS_STATUS; None while it does not say."""
+        reported = present if self.prearm_has_present_bit else healthy is not None
+        return healthy if reported else None
 
     def mode_kind(self, custom_mode: int) -> ModeKind:
         if custom_mode in self.waiting_modes:

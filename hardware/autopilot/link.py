@@ -33,6 +33,9 @@ STATION_SYSTEM = 255
 """Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
 SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
 
+FROM_ANY_COMPONENT = frozenset({"OPEN_DRONE_ID_ARM_STATUS"})
+"""Messages that a device of the vehicle sends itself; of all others only the autopilot's own count."""
+
 Fields = dict[str, Any]
 
 
@@ -101,7 +104,7 @@ class MavlinkLink:
         self._param = Param(system)
 
         def heard(message: MavlinkMessage, _: Any) -> None:
-            if message.component_id == AUTOPILOT_COMPONENT:
+            if message.component_id == AUTOPILOT_COMPONENT or message.message_name in FROM_ANY_COMPONENT:
                 with contextlib.suppress(RuntimeError):  # the loop has ended
                     loop.call_soon_threadsafe(self._dispatch, message)
 

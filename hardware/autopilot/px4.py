@@ -62,6 +62,7 @@ PX4 = Dialect(
     reposition_modes=frozenset({HOLD}),
     reposition_sets_speed=True,
     turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
+    prearm_has_present_bit=False,
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",
@@ -81,6 +82,12 @@ PX4 = Dialect(
             "fence",
             frozenset({2, 3, 5}),
             3,  # return
+        ),
+        FailsafeRule(
+            "COM_LOW_BAT_ACT",
+            "battery",
+            frozenset({2, 3}),
+            3,  # return when critical, land in an emergency
         ),
         FailsafeRule(
             "COM_OBL_RC_ACT",

@@ -63,11 +63,15 @@ class MavsdkVehicle:
         return self._monitor.changes()
 
     async def preflight(self) -> list[PreflightCheck]:
-        """Checks of link, GPS, heading, battery, home, readiness and failsafe parameters, with remedies."""
+        """Checks of link, GPS, heading, battery, home, readiness, Remote ID and failsafe parameters, with remedies."""
         dialect, monitor = self._monitor.dialect, self._monitor
-        checks = telemetry_checks(self.telemetry(), monitor.snapshot.prearm_ok, self._minimum_battery_percent)
+        heard, snapshot = self.telemetry(), monitor.snapshot
+        prearm_ok = dialect.prearm_ok(snapshot.prearm_present, snapshot.prearm_healthy)
+        in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.before_take_off.modes
+        checks = telemetry_checks(heard, prearm_ok, in_our_mode, monitor.remote_id, self._minimum_battery_percent)
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
-        return checks + [failsafe_check(rule, name, value) for rule, name, value in found]
+        charge_known = heard.battery_percent is not None
+        return checks + [failsafe_check(rule, name, value, charge_known) for rule, name, value in found]
 
     async def _failsafe(self, rule: FailsafeRule) -> tuple[str, float | None]:
         """(the name this version has, its value or None)."""

@@ -275,6 +275,7 @@ export const de: Record<MessageKey, string> = {
   "check.battery": "Akku",
   "check.home": "Startplatz",
   "check.ready_to_arm": "Bereit zum Scharfschalten",
+  "check.remote_id": "Remote ID",
   "check.control": "Steuerung",
   "check.failsafe": "Ausfallschutz",
   "check.receiver": "Empfänger",

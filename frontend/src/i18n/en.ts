@@ -274,6 +274,7 @@ export const en = {
   "check.battery": "Battery",
   "check.home": "Home position",
   "check.ready_to_arm": "Ready to arm",
+  "check.remote_id": "Remote ID",
   "check.control": "Control",
   "check.failsafe": "Failsafe",
   "check.receiver": "Receiver",

@@ -65,6 +65,7 @@ class ArduCopter(Firmware):
     pilot_mode: ClassVar[str] = "LOITER"
     give_back_mode: ClassVar[str] = "BRAKE"
     heartbeat_on_mode_change: ClassVar[bool] = True
+    prearm_has_present_bit: ClassVar[bool] = True
     ready_after: ClassVar[float] = 3.0
     streams_by_default: ClassVar[dict[int, float]] = {}
 

@@ -89,6 +89,8 @@ class Firmware(ABC):
     heartbeat_on_mode_change: ClassVar[bool]
     streams_by_default: ClassVar[dict[int, float]]
     """Message id -> Hz sent without being asked."""
+    prearm_has_present_bit: ClassVar[bool]
+    """Whether SYS_STATUS says that the checks before arming are reported; PX4 only ever sets their health bit."""
     ready_after: ClassVar[float]
     """Seconds from boot until prearm checks pass."""
 
@@ -142,6 +144,12 @@ class Firmware(ABC):
 
     def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+
+    def report_remote_id(self, problem: str) -> None:
+        """What a Remote ID transmitter would say now; no problem: the vehicle may arm."""
+        good, bad = mavlink.MAV_ODID_ARM_STATUS_GOOD_TO_ARM, mavlink.MAV_ODID_ARM_STATUS_PRE_ARM_FAIL_GENERIC
+        words = problem.encode()[:50]
+        self.outbox.append(mavlink.MAVLink_open_drone_id_arm_status_message(bad if problem else good, words))
 
     # -- commands --------------------------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
     {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent", "count": 1}
     {"do": "prearm", "ok": false}
+    {"do": "remote_id", "problem": ""}        Remote ID says once what is wrong (nothing: good)
     {"do": "reboot"}                          on the ground only
     {"do": "truth"}                           where the vehicle truly is
     {"do": "commands", "since_s": 0}          every command received (time since boot, MAV_CMD)
@@ -89,6 +90,8 @@ class Orders:
                 firmware.parameters.set(str(order.get("name")), _number(order, "value"))
             case "prearm":
                 faults.no_prearm = not order.get("ok", True)
+            case "remote_id":
+                firmware.report_remote_id(str(order.get("problem", "")))
             case "reboot":
                 firmware.reboot()
             case "fault":

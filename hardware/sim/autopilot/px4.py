@@ -74,6 +74,7 @@ class Px4(Firmware):
     pilot_mode: ClassVar[str] = "POSCTL"
     give_back_mode: ClassVar[str] = "HOLD"
     heartbeat_on_mode_change: ClassVar[bool] = False
+    prearm_has_present_bit: ClassVar[bool] = False
     ready_after: ClassVar[float] = 6.0
     streams_by_default: ClassVar[dict[int, float]] = {
         mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,

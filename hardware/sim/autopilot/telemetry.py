@@ -24,7 +24,6 @@ _SENSORS = (
     | mavlink.MAV_SYS_STATUS_SENSOR_GPS
     | mavlink.MAV_SYS_STATUS_AHRS
     | mavlink.MAV_SYS_STATUS_SENSOR_BATTERY
-    | mavlink.MAV_SYS_STATUS_PREARM_CHECK
 )
 
 
@@ -54,12 +53,14 @@ def current_mode(firmware: Firmware) -> Message:
 
 
 def sys_status(firmware: Firmware) -> Message:
-    health = _SENSORS if firmware.prearm_ok else _SENSORS & ~mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    prearm = mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    present = _SENSORS | prearm if firmware.prearm_has_present_bit else _SENSORS
+    health = _SENSORS | prearm if firmware.prearm_ok else _SENSORS
     percent = firmware.copter.battery_percent
     volts = 13.2 + 3.6 * percent / 100.0
     amps = firmware.copter.power / volts
     return mavlink.MAVLink_sys_status_message(
-        _SENSORS, _SENSORS, health, 300, int(volts * 1000), int(amps * 100), round(percent), 0, 0, 0, 0, 0, 0
+        present, present, health, 300, int(volts * 1000), int(amps * 100), round(percent), 0, 0, 0, 0, 0, 0
     )
 
 

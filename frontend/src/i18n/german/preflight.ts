@@ -4,12 +4,18 @@ import type { ReasonTable } from "../reasons";
 const WATCH =
   "{watch?station=Bodenstation verloren|station_id=Die Bodenstation, auf die sein Ausfallschutz achtet|fence=Zaun verlassen" +
   "|transmitter=Verbindung zum Handsender verloren|sticks=Die Steuerknüppel des Piloten beenden den automatischen Flug" +
-  "|offboard=Offboard-Verbindung verloren, die Crossfix nicht benutzt}";
+  "|offboard=Offboard-Verbindung verloren, die Crossfix nicht benutzt|battery=Akku schwach|battery_critical=Akku fast leer}";
 const SET_IT =
   "{parameter} auf {wanted} setzen{watch?station=: Sonst schwebt ein Fluggerät ohne seine Station, bis der Akku leer ist" +
   "|station_id=, die MAVLink-Kennung von Crossfix: Den Verlust einer anderen bemerkt der Autopilot nicht" +
   "|fence=: Sonst meldet der Autopilot nur, dass der Zaun verlassen wird|transmitter=, wenn ein Pilot mit Handsender bereitsteht" +
-  "|sticks=: Die Steuerknüppel des Piloten müssen den automatischen Flug sofort beenden|offboard=}.";
+  "|sticks=: Die Steuerknüppel des Piloten müssen den automatischen Flug sofort beenden|offboard=" +
+  "|battery=: Sonst fliegt ein Fluggerät, dem niemand etwas befiehlt, bis der Akku leer ist" +
+  "|battery_critical=, falls es nicht bis nach Hause kommt}.";
+
+const FIX =
+  "{fix?no GPS=Kein GPS|no fix=Keine Position|2D=2D-Position|3D=3D-Position|DGPS=DGPS-Position" +
+  "|RTK float=RTK-Position, nicht fixiert|RTK fixed=RTK-Position, fixiert|static=Feste Position|PPP=PPP-Position}";
 
 export const preflight = {
   link_checked: {
@@ -17,8 +23,21 @@ export const preflight = {
     remedy: "",
   },
   gps_checked: {
-    text: "{fix?no GPS=Kein GPS|no fix=Keine Position|2D=2D-Position|3D=3D-Position|DGPS=DGPS-Position|RTK float=RTK-Position, nicht fixiert|RTK fixed=RTK-Position, fixiert|static=Feste Position|PPP=PPP-Position}, {satellites|Satellit|Satelliten}.",
+    text: `${FIX}, {satellites|Satellit|Satelliten}.`,
     remedy: "Unter freiem Himmel auf eine 3D-Position mit mindestens {wanted_satellites|Satellit|Satelliten} warten.",
+  },
+  satellites_unknown: {
+    text: `${FIX}, aber der Autopilot weiß nicht, wie viele Satelliten er hat.`,
+    remedy: "Den GPS-Empfänger ansehen: Seine Position lässt sich nicht beurteilen.",
+  },
+  remote_id_checked: {
+    text: "{state?good=Der Remote-ID-Sender arbeitet|silent=Der Remote-ID-Sender ist verstummt|unknown=Kein Remote-ID-Sender meldet seinen Zustand}.",
+    remedy:
+      "{state?silent=Seine Stromversorgung und sein Kabel prüfen|*=Wo Remote ID vorgeschrieben ist, den Sender vor dem Flug auf anderem Weg prüfen}.",
+  },
+  remote_id_refuses: {
+    text: "Der Remote-ID-Sender ist nicht bereit für einen Flug: „{text}“.",
+    remedy: "Beheben, was er sagt: Oft fehlt die Kennung oder der Ort des Betreibers.",
   },
   never_reported: {
     text: "Der Autopilot hat {what?gps=sein GPS|position=seine Position|heading=seine Richtung|battery=den Ladestand des Akkus|home=seinen Startplatz} nicht gemeldet.",
@@ -33,8 +52,9 @@ export const preflight = {
   battery_charge: { text: "Der Akku hat {charge_percent}.", remedy: "Ihn auf mindestens {wanted_percent} laden." },
   home_set: { text: "Der Startplatz liegt bei {lat@lon}.", remedy: "" },
   arming_checked: {
-    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.",
-    remedy: "Die Meldungen des Autopiloten lesen: Seine eigenen Prüfungen verweigern das Scharfschalten.",
+    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|not_in_this_mode=Der Autopilot ist in seinem jetzigen Modus nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.",
+    remedy:
+      "{state?not_in_this_mode=Seinen Modus zum Halten wählen, um zu erfahren, ob er darin scharfschalten würde|*=Die Meldungen des Autopiloten lesen: Seine eigenen Prüfungen verweigern das Scharfschalten}.",
   },
   control_checked: {
     text: "{who?pilot=Der Pilot steuert|failsafe=Der Ausfallschutz des Autopiloten steuert|nobody=Niemand greift ein}.",
