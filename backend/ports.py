@@ -64,6 +64,10 @@ class Journal(Protocol):
 
     async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None: ...
 
+    async def of_nets(self) -> list[Recorded]:
+        """Facts about the vehicles' own nets, oldest mission first, in order: what a restart must put back."""
+        ...
+
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft still flies: what a restart must bring back."""
         ...

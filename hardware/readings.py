@@ -85,6 +85,7 @@ CheckName = Literal[
     "remote_id",
     "control",
     "failsafe",
+    "nets",
     "receiver",
     "antenna",
     "pattern",

@@ -43,6 +43,34 @@ class ModeOrder:
     modes: frozenset[int]
 
 
+@dataclass(frozen=True, slots=True)
+class OwnFence:
+    """What the parameters make of the fence that the autopilot holds. Metres; None: no such limit.
+
+    watched: the polygons and circles it holds are in force. any_inclusion: inside one of several is enough.
+    """
+
+    watched: bool
+    ceiling_m: float | None
+    ceiling_parameter: str
+    radius_m: float | None
+    any_inclusion: bool
+
+
+@dataclass(frozen=True, slots=True)
+class NetRules:
+    """parameters: those of the fence, in the order in which to set them; `required` must be readable.
+
+    for_mission: (present values, ceiling m above home) -> those to change, so that the fence is in force.
+    """
+
+    parameters: tuple[str, ...]
+    required: frozenset[str]
+    own: Callable[[Mapping[str, float]], OwnFence]
+    for_mission: Callable[[Mapping[str, float], float], dict[str, float]]
+    most_corners: int
+
+
 TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "condition_yaw_absolute"]
 
 
@@ -80,6 +108,7 @@ class Dialect:
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
     prearm_has_present_bit: bool
+    nets: NetRules
     failsafes: tuple[FailsafeRule, ...]
 
     def mode_name(self, custom_mode: int) -> str:

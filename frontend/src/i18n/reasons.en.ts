@@ -771,6 +771,42 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
+  parameter_to_set: {
+    text: "{parameter} goes from {before} to {after}.",
+    remedy: "",
+  },
+  nets_to_set: {
+    text: "The start sets the autopilot's own fence: {corners|corner|corners}, {no_fly|no-fly area|no-fly areas}, {ceiling_m} above home. {own_zones?0=It holds no other|*=Its own makes room meanwhile}; after the flight everything is put back as it was. {changes}",
+    remedy: "",
+  },
+  own_ceiling_lower: {
+    text: "The autopilot's own fence ends at {own_m} ({parameter}), the mission's at {ceiling_m}.",
+    remedy: "Lower the mission's ceiling, or raise {parameter} with the vehicle's ground station.",
+  },
+  own_fence_tighter: {
+    text: "The mission's fence reaches {beyond_m} beyond the fence that the autopilot holds already.",
+    remedy: "Draw the mission's fence inside it, or change the vehicle's own with its ground station.",
+  },
+  fence_too_detailed: {
+    text: "Fence and no-fly areas have {corners|corner|corners}; the autopilot can hold {most}.",
+    remedy: "Draw them with fewer corners.",
+  },
+  fence_not_transferred: {
+    text: "The autopilot's fence could not be {way?read=read|sent=sent} ({why}).",
+    remedy: "Check the link; a fence on the autopilot's storage card may be damaged.",
+  },
+  fence_unknown_form: {
+    text: "The autopilot holds a fence that Crossfix does not understand ({what}).",
+    remedy: "Look at it with the vehicle's ground station, and clear it there.",
+  },
+  fence_read_back_different: {
+    text: "The autopilot holds another fence than it was sent: corner {corner} differs.",
+    remedy: "Try again; when it stays so, set the fence with the vehicle's ground station.",
+  },
+  fence_parameter_unread: {
+    text: "The autopilot's fence cannot be judged: {parameter} could not be read.",
+    remedy: "Check the link and try again.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",

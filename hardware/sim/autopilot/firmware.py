@@ -19,6 +19,7 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.copter import Airframe, Copter, Wind
+from hardware.sim.autopilot.fence import Fence
 from hardware.sim.autopilot.flight import Flight
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.parameters import Parameters
@@ -70,6 +71,12 @@ class Faults:
     silent: int = 0
     link_lost_until: float = -1.0
     no_prearm: bool = False
+    fence_mute: int = 0
+    """So many answers about the fence get lost."""
+    fence_deaf_after: int = -1
+    """After so many messages about the fence every other gets lost; -1: none."""
+    fence_altered: bool = False
+    """It keeps another fence than it is sent."""
 
 
 def deg_or_none(value: float) -> float | None:
@@ -91,6 +98,8 @@ class Firmware(ABC):
     """Message id -> Hz sent without being asked."""
     prearm_has_present_bit: ClassVar[bool]
     """Whether SYS_STATUS says that the checks before arming are reported; PX4 only ever sets their health bit."""
+    any_inclusion: ClassVar[bool]
+    """Of several zones to stay in, one is enough."""
     ready_after: ClassVar[float]
     """Seconds from boot until prearm checks pass."""
 
@@ -110,6 +119,7 @@ class Firmware(ABC):
         )
         self.flight = Flight(self.copter, self.navigation)
         self.faults = Faults()
+        self.fence = Fence(self.home, self.any_inclusion)
         self.time = 0.0
         self.mode = next(iter(self.modes))
         self.mode_changed_at = 0.0

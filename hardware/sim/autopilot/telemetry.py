@@ -27,6 +27,14 @@ _SENSORS = (
 )
 
 
+_CAPABILITIES = (
+    mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+)
+
+
 def _boot_ms(firmware: Firmware) -> int:
     return int(firmware.time * 1000.0)
 
@@ -156,7 +164,7 @@ def autopilot_version(firmware: Firmware) -> Message:
         if firmware.parameters.bytewise
         else mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
     )
-    capabilities = encoding | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    capabilities = encoding | _CAPABILITIES
     version = 0x011000FF if firmware.name == "px4" else 0x040700FF
     return mavlink.MAVLink_autopilot_version_message(
         capabilities, version, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, firmware.conditions.seed, [0] * 18

@@ -63,6 +63,40 @@ export const preflight = {
   failsafe_parameter: { text: `${WATCH}: {parameter} = {value}.`, remedy: SET_IT },
   failsafe_unread: { text: `${WATCH}: {parameter} war nicht zu lesen.`, remedy: SET_IT },
 
+  parameter_to_set: { text: "{parameter} geht von {before} auf {after}.", remedy: "" },
+  nets_to_set: {
+    text: "Der Start setzt den eigenen Zaun des Autopiloten: {corners|Ecke|Ecken}, {no_fly|Flugverbotszone|Flugverbotszonen}. {own_zones?0=Einen anderen hat er nicht|*=Sein eigener macht solange Platz}; nach dem Flug wird alles wiederhergestellt, wie es war. {changes}",
+    remedy: "",
+  },
+  own_ceiling_lower: {
+    text: "Der eigene Zaun des Autopiloten endet bei {own_m} ({parameter}), der der Mission bei {ceiling_m}.",
+    remedy: "Die größte Höhe der Mission senken oder {parameter} mit der Bodenstation des Fluggeräts erhöhen.",
+  },
+  own_fence_tighter: {
+    text: "Der Zaun der Mission reicht {beyond_m} über den Zaun hinaus, den der Autopilot schon hat.",
+    remedy: "Den Zaun der Mission darin zeichnen oder den des Fluggeräts mit seiner Bodenstation ändern.",
+  },
+  fence_too_detailed: {
+    text: "Zaun und Flugverbotszonen haben {corners|Ecke|Ecken}; der Autopilot fasst {most}.",
+    remedy: "Sie mit weniger Ecken zeichnen.",
+  },
+  fence_not_transferred: {
+    text: "Der Zaun des Autopiloten ließ sich nicht {way?read=lesen|sent=senden} ({why}).",
+    remedy: "Die Funkstrecke prüfen; ein Zaun auf der Speicherkarte des Autopiloten kann beschädigt sein.",
+  },
+  fence_unknown_form: {
+    text: "Der Autopilot hat einen Zaun, den Crossfix nicht versteht ({what}).",
+    remedy: "Ihn mit der Bodenstation des Fluggeräts ansehen und dort löschen.",
+  },
+  fence_read_back_different: {
+    text: "Der Autopilot hat einen anderen Zaun, als ihm gesendet wurde: Ecke {corner} weicht ab.",
+    remedy: "Noch einmal versuchen; bleibt es dabei, den Zaun mit der Bodenstation des Fluggeräts setzen.",
+  },
+  fence_parameter_unread: {
+    text: "Der Zaun des Autopiloten lässt sich nicht beurteilen: {parameter} war nicht zu lesen.",
+    remedy: "Die Funkstrecke prüfen und es noch einmal versuchen.",
+  },
+
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
   receiver_delivers: { text: "Der Empfänger liefert Messwerte auf {channels|Kanal|Kanälen}.", remedy: "" },
