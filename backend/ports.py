@@ -68,6 +68,10 @@ class Journal(Protocol):
         """Oldest first. Raises JournalUnavailable, FactRefused (then they were kept aside)."""
         ...
 
+    async def of_nets(self) -> list[Recorded]:
+        """Facts about the vehicles' own nets, oldest mission first, in order: what a restart must put back."""
+        ...
+
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft still flies: what a restart must bring back."""
         ...

@@ -187,12 +187,18 @@ class FlightSpec(Model):
     """True: the next place is flown to at once; False: it waits for the operator's accept, veto or override."""
 
 
-class TimerSpec(Model):
-    """What happens when links are lost. Seconds; the autopilot's own failsafes act besides."""
+LONGEST_S = {"console_lost_hold_s": 120.0, "console_lost_return_s": 600.0, "receiver_silent_s": 60.0}
 
-    console_lost_hold_s: Positive = 10.0
-    console_lost_return_s: Positive = 60.0
-    receiver_silent_s: Positive = 5.0
+
+class TimerSpec(Model):
+    """What happens when links are lost. Seconds; the autopilot's own failsafes act besides.
+
+    Bounded: a timer that outlasts a battery protects nobody.
+    """
+
+    console_lost_hold_s: float = Field(default=10.0, gt=0, le=LONGEST_S["console_lost_hold_s"])
+    console_lost_return_s: float = Field(default=60.0, gt=0, le=LONGEST_S["console_lost_return_s"])
+    receiver_silent_s: float = Field(default=5.0, gt=0, le=LONGEST_S["receiver_silent_s"])
 
 
 class SearchArea(Model):

@@ -11,6 +11,7 @@ from typing import Protocol
 
 from hardware.authority import Authority
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.readings import (
     Announcement,
     BearingReading,
@@ -97,6 +98,20 @@ class Vehicle(Protocol):
     async def take_off(self, altitude_relative_m: float) -> None:
         """Arm and climb, in the air already: climb or descend; returns once telemetry says that the altitude is
         reached."""
+        ...
+
+    async def plan_nets(self, wanted: MissionNets, own: Nets | None = None) -> NetsPlan:
+        """What the autopilot's own fence would have to be for a mission; sets nothing. own: what its owner has set,
+        None: what it holds now. Raises VehicleError when that would loosen the owner's, or cannot be."""
+        ...
+
+    async def set_nets(self, nets: Nets) -> None:
+        """Returns once the autopilot, asked afterwards, holds exactly that. Raises VehicleError."""
+        ...
+
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+        """The owner's, wherever it still holds what we set or were about to. False: somebody has changed something
+        since, and that stays as they have it. Raises VehicleError."""
         ...
 
     async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:

@@ -6,6 +6,7 @@ import asyncio
 
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening, channels_of
+from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Situation, limits_of, start_vetoes
 from backend.events import CheckFact
@@ -57,6 +58,7 @@ async def checklist(
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
     found.append(sound)
     if task is not None:
+        found.append(await nets_check(equipment.vehicle, limits_of(task)))
         vetoes = start_vetoes(limits_of(task), await recent(situation))
         found += [_fact("safety", False, veto) for veto in vetoes]
         if not vetoes:

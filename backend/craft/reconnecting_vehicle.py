@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from typing import Protocol, runtime_checkable
 
 from backend.reasons.checks import ConnectingBroke, NoVehicleYet
 from hardware.authority import NOBODY, Authority
+from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, Vehicle, VehicleUnreachable
 from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, Telemetry
 from hardware.reasons.vehicle_news import ParameterSet
@@ -118,6 +119,15 @@ class ReconnectingVehicle:
         """Only on the operator's explicit wish. Nothing for a vehicle that has no such parameters."""
         vehicle = self._present()
         return await vehicle.mend_failsafes() if isinstance(vehicle, MendsFailsafes) else []
+
+    async def plan_nets(self, wanted: MissionNets, own: Nets | None = None) -> NetsPlan:
+        return await self._present().plan_nets(wanted, own)
+
+    async def set_nets(self, nets: Nets) -> None:
+        await self._present().set_nets(nets)
+
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+        return await self._present().put_nets_back(before, ours)
 
     async def take_off(self, altitude_relative_m: float) -> None:
         await self._present().take_off(altitude_relative_m)

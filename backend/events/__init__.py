@@ -57,6 +57,7 @@ from backend.events.mission import (
     Outcome,
     ServerRestarted,
 )
+from backend.events.nets import NetsNoted, NetsPutBack
 from backend.events.orders import (
     AbortOrdered,
     AutomaticChanged,
@@ -105,6 +106,8 @@ __all__ = [
     "MissionEnded",
     "MissionPhase",
     "MissionStarted",
+    "NetsNoted",
+    "NetsPutBack",
     "Outcome",
     "Peak",
     "PersonSource",
@@ -136,6 +139,8 @@ Event = Annotated[
     | PreflightChecked
     | AntennaChecked
     | MissionStarted
+    | NetsNoted
+    | NetsPutBack
     | PhaseChanged
     | TookOff
     | PlanChosen

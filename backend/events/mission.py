@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal, cast
+
+from pydantic import BeforeValidator
 
 from backend.events.craft import Phase
 from backend.events.fact import Fact
 from backend.reasons import Reason
-from backend.spec import MissionSpec, SearchArea
+from backend.spec import LONGEST_S, MissionSpec, SearchArea
 
 MissionPhase = Literal["draft", "ready", "searching", "done", "aborted", "failed"] | Phase
 """A mission in one word: what its craft does while one flies, else the stage of its search."""
@@ -15,18 +17,34 @@ MissionPhase = Literal["draft", "ready", "searching", "done", "aborted", "failed
 Outcome = Literal["localized", "not_localized", "aborted", "failed"]
 
 
+def _with_bounded_timers(spec: object) -> object:
+    """Timers had no upper bound at first: a stored mission with a longer one is read with the longest there is now."""
+    stored = cast(dict[str, Any], spec) if isinstance(spec, dict) else {}
+    timers = stored.get("timers")
+    if not isinstance(timers, dict):
+        return spec
+    bounded = {
+        name: min(value, LONGEST_S[name]) if name in LONGEST_S and isinstance(value, int | float) else value
+        for name, value in cast(dict[str, Any], timers).items()
+    }
+    return stored | {"timers": bounded}
+
+
+StoredSpec = Annotated[MissionSpec, BeforeValidator(_with_bounded_timers)]
+
+
 class MissionDrafted(Fact):
     """The first fact of every mission."""
 
     kind: Literal["mission_drafted"] = "mission_drafted"
-    spec: MissionSpec
+    spec: StoredSpec
 
 
 class MissionEdited(Fact):
     """The whole specification, before the start only; a checklist that passed counts no more."""
 
     kind: Literal["mission_edited"] = "mission_edited"
-    spec: MissionSpec
+    spec: StoredSpec
 
 
 class AreaChanged(Fact):

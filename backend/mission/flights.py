@@ -14,13 +14,15 @@ from backend import commands
 from backend.commands import CommandReply, CommandRequest
 from backend.craft.checklist import checklist
 from backend.craft.equipment import CraftEquipment
-from backend.craft.inputs import Abandoned, StartFacts
+from backend.craft.inputs import Abandoned, StartFacts, WorkFailed
 from backend.craft.listening import Listening
 from backend.craft.runner import CraftRunner
 from backend.craft.safety import resume_vetoes
+from backend.events import Event
 from backend.mission.effects import Effect, Reply
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
+from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
@@ -31,7 +33,7 @@ from backend.search.errors import MissionInputError
 from backend.search.inputs import SearchOver
 from backend.search.other_area import task_or_reason
 from backend.search.planning import lay_out_ways
-from backend.search.task import search_task
+from backend.search.task import SearchTask, search_task
 
 log = logging.getLogger("crossfix.mission")
 
@@ -43,6 +45,7 @@ class Flights:
 
     equipment: MissionEquipment
     records: Records
+    nets: NetsKeeper
     active: MissionRunner | None = None
     starting: asyncio.Lock = field(default_factory=asyncio.Lock)
     _tasks: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
@@ -84,6 +87,8 @@ class Flights:
             runner = self.running(mission_id)
             if runner is not None:
                 asked = runner.change_area(str(request.command_id), by, request.command, task)
+                if isinstance(task, SearchTask) and _accepted(asked):
+                    await self._nets_elsewhere(runner, task)
                 return await _answered(runner, request, asked)
         if runner is not None:
             return await _in_flight(runner, request, by)
@@ -92,6 +97,18 @@ class Flights:
             if runner is not None:
                 return await _in_flight(runner, request, by)
             return await self._on_the_ground(mission_id, request, by)
+
+    async def _nets_elsewhere(self, runner: MissionRunner, task: SearchTask) -> None:
+        """The autopilot's nets follow the search area. When they do not, it refuses what lies beyond, and says so."""
+
+        async def record(event: Event) -> None:
+            runner.outbox.record([event])
+            await runner.outbox.flushed()
+
+        for craft_id, craft in list(runner.crafts.items()):
+            trouble = await self.nets.change(craft.equipment, task, record)
+            if trouble is not None:
+                runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
 
     async def _on_the_ground(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
         state, last_seq = await self.records.load(mission_id)
@@ -134,6 +151,10 @@ class Flights:
             software, antenna = self.equipment.software, antenna_fact(craft.pattern)
             start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna)
             objections += resume_vetoes(craft.vehicle.telemetry())
+            if task is not None and not objections and all(check.ok or not check.blocking for check in checks):
+                trouble = await self.nets.put_up(mission_id, craft, task)
+                objections = () if trouble is None else (trouble,)
+                state, last_seq = await self.records.load(mission_id)
             contexts = {craft.craft_id: Context(objections, start)}
             given = Commanded(str(request.command_id), by, command, contexts)
             if task is None or objections:
@@ -161,11 +182,16 @@ class Flights:
         await runner.close()
         if self.active is runner:
             self.active = None
+        async with self.starting:
+            if self.active is None:
+                await self.nets.settle()
 
     # Life
 
     async def recover(self) -> None:
         """Bring back what was in the air when the server went away: in hold, unless somebody else flies it."""
+        await self.nets.recall()
+        self._tasks.append(asyncio.create_task(self.nets.run(self.starting, lambda: self.active is not None)))
         unfinished = await self.equipment.journal.unfinished()
         for mission_id in unfinished[:-1]:
             await self._close_interrupted(mission_id, Interrupted("later_mission"))
@@ -221,6 +247,10 @@ async def _in_flight(runner: MissionRunner, request: CommandRequest, by: str) ->
 async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:
     await runner.outbox.flushed()
     return _reply(request, asked, runner.outbox.last_seq)
+
+
+def _accepted(asked: tuple[Effect, ...]) -> bool:
+    return any(isinstance(effect, Reply) and effect.reason is None for effect in asked)
 
 
 def _reply(request: CommandRequest, asked: tuple[Effect, ...], seq: int) -> CommandReply:

@@ -10,6 +10,7 @@ from backend.mission.display import Display
 from backend.mission.drafts import Drafts
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
+from backend.mission.nets import NetsKeeper
 from backend.mission.questions import Questions
 from backend.mission.records import Records
 from hardware.ports import VehicleUnreachable
@@ -54,7 +55,7 @@ class MissionRoom:
 def mission_room(equipment: MissionEquipment) -> MissionRoom:
     """Nothing runs before `start_up`."""
     records = Records(equipment.journal, equipment.publisher, equipment.clock)
-    flights = Flights(equipment, records)
+    flights = Flights(equipment, records, NetsKeeper(equipment, records))
     return MissionRoom(
         equipment=equipment,
         records=records,

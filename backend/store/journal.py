@@ -68,6 +68,10 @@ class DatabaseReport:
     refused: int
 
 
+NETS_MISSIONS = 100
+"""So many missions back a vehicle's own nets may still wait to be put back."""
+
+
 @dataclass(slots=True)
 class Written:
     """A mission that was written to: all its events, and what they add up to (None before the first)."""
@@ -377,6 +381,13 @@ class SqlJournal:
     async def missions(self) -> list[MissionDigest]:
         """All missions, newest first."""
         return await self._stored.missions()
+
+    async def of_nets(self) -> list[Recorded]:
+        """Of the newest missions, oldest first: who flies a hundred missions puts the nets of the first back before."""
+        newest = (await self._patiently(self._stored.missions))[:NETS_MISSIONS]
+        known = {digest.mission_id for digest in newest} | set(self._written)
+        stored = [d.mission_id for d in reversed(newest)] + sorted(known - {d.mission_id for d in newest})
+        return [record for each in stored for record in await self.read_kinds(each, ("nets_noted", "nets_put_back"))]
 
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft is not down yet; oldest start first. Asked at a

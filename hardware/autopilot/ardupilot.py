@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
+from collections.abc import Mapping
+
+from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
 from hardware.autopilot.link import STATION_SYSTEM
 from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, set_mode
 from hardware.reasons.vehicle import CommandName
@@ -16,6 +18,27 @@ def _order(command: CommandName, mode: int) -> ModeOrder:
 
 def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
     return command_long(TAKE_OFF, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, relative_m)
+
+
+_ALTITUDE, _CIRCLE, _POLYGON = 1, 2, 4  # FENCE_TYPE
+_UNION = 2  # FENCE_OPTIONS: inside one inclusion is enough
+
+
+def _own_fence(values: Mapping[str, float]) -> OwnFence:
+    enabled, kinds = values["FENCE_ENABLE"] > 0, int(values["FENCE_TYPE"])
+    return OwnFence(
+        watched=enabled and bool(kinds & _POLYGON),
+        ceiling_m=values["FENCE_ALT_MAX"] if enabled and kinds & _ALTITUDE else None,
+        ceiling_parameter="FENCE_ALT_MAX",
+        radius_m=values.get("FENCE_RADIUS") if enabled and kinds & _CIRCLE else None,
+        any_inclusion=bool(int(values.get("FENCE_OPTIONS", 0.0)) & _UNION),
+    )
+
+
+def _fence_for_mission(values: Mapping[str, float], ceiling_m: float) -> dict[str, float]:
+    """What the owner has in force stays so; what is not enabled is none of the mission's business."""
+    own = int(values["FENCE_TYPE"]) if values["FENCE_ENABLE"] > 0 else 0
+    return {"FENCE_TYPE": float(own | _ALTITUDE | _POLYGON), "FENCE_ALT_MAX": ceiling_m, "FENCE_ENABLE": 1.0}
 
 
 ARDUPILOT = Dialect(
@@ -56,6 +79,14 @@ ARDUPILOT = Dialect(
     steering=_order("steering_mode", GUIDED),
     reposition_sets_speed=False,
     turn_methods=("condition_yaw", "condition_yaw", "condition_yaw_absolute"),
+    prearm_has_present_bit=True,
+    nets=NetRules(
+        parameters=("FENCE_TYPE", "FENCE_ALT_MAX", "FENCE_RADIUS", "FENCE_OPTIONS", "FENCE_ENABLE"),
+        required=frozenset({"FENCE_TYPE", "FENCE_ALT_MAX", "FENCE_ENABLE"}),
+        own=_own_fence,
+        for_mission=_fence_for_mission,
+        most_corners=70,
+    ),
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",
@@ -75,6 +106,19 @@ ARDUPILOT = Dialect(
             "fence",
             frozenset({1, 2, 3, 4, 5}),
             1,  # RTL or land
+        ),
+        FailsafeRule(
+            "BATT_FS_LOW_ACT",
+            "battery",
+            frozenset({1, 2, 3, 4}),
+            2,  # RTL
+        ),
+        FailsafeRule(
+            "BATT_FS_CRT_ACT",
+            "battery_critical",
+            frozenset({1, 2, 3, 4}),
+            1,  # land
+            blocking=False,
         ),
         FailsafeRule(
             "FS_THR_ENABLE",

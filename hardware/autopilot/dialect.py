@@ -44,6 +44,34 @@ class ModeOrder:
     modes: frozenset[int]
 
 
+@dataclass(frozen=True, slots=True)
+class OwnFence:
+    """What the parameters make of the fence that the autopilot holds. Metres; None: no such limit.
+
+    watched: the polygons and circles it holds are in force. any_inclusion: inside one of several is enough.
+    """
+
+    watched: bool
+    ceiling_m: float | None
+    ceiling_parameter: str
+    radius_m: float | None
+    any_inclusion: bool
+
+
+@dataclass(frozen=True, slots=True)
+class NetRules:
+    """parameters: those of the fence, in the order in which to set them; `required` must be readable.
+
+    for_mission: (present values, ceiling m above home) -> those to change, so that the fence is in force.
+    """
+
+    parameters: tuple[str, ...]
+    required: frozenset[str]
+    own: Callable[[Mapping[str, float]], OwnFence]
+    for_mission: Callable[[Mapping[str, float], float], dict[str, float]]
+    most_corners: int
+
+
 TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "condition_yaw_absolute"]
 
 
@@ -61,6 +89,8 @@ class Dialect:
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
     turn_methods: ways to turn a full circle, in the order in which to try them.
+    prearm_has_present_bit: SYS_STATUS says by a bit of its own whether it reports the checks before arming; else their
+    health bit alone counts.
     """
 
     name: Literal["px4", "ardupilot"]
@@ -81,11 +111,18 @@ class Dialect:
     steering: ModeOrder
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
+    prearm_has_present_bit: bool
+    nets: NetRules
     failsafes: tuple[FailsafeRule, ...]
 
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")
+
+    def prearm_ok(self, present: bool | None, healthy: bool | None) -> bool | None:
+        """Whether the autopilot would arm, from the bits of SYS_STATUS; None while it does not say."""
+        reported = present if self.prearm_has_present_bit else healthy is not None
+        return healthy if reported else None
 
     def mode_kind(self, custom_mode: int) -> ModeKind:
         """What the raw mode means for who flies; "other" may be the pilot."""

@@ -14,14 +14,17 @@ import contextlib
 import json
 import logging
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
+from mavsdk.plugins.geofence import Geofence, GeofenceError
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
+from mavsdk.plugins.mission_raw import MissionItem, MissionRaw, MissionRawError, MissionRawResult
 from mavsdk.plugins.param import Param, ParamError, ParamResult
 
+from hardware.autopilot.fence_items import FenceItem
 from hardware.ports import VehicleUnreachable
 from hardware.reasons.vehicle import NoAutopilotAnswers, VehicleLinkNotOpened
 
@@ -33,7 +36,35 @@ STATION_SYSTEM = 255
 """Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
 SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
 
+FROM_ANY_COMPONENT = frozenset({"OPEN_DRONE_ID_ARM_STATUS"})
+"""Messages that a device of the vehicle sends itself; of all others only the autopilot's own count."""
+
 Fields = dict[str, Any]
+
+
+_GLOBAL, _FENCE = 0, 1  # MAV_FRAME, MAV_MISSION_TYPE
+
+
+class FenceTransferFailed(Exception):
+    """The library's word for why: timeout, denied, too_many_mission_items ..."""
+
+
+def _wire_item(seq: int, item: FenceItem) -> MissionItem:
+    return MissionItem(
+        seq=seq,
+        frame=_GLOBAL,
+        command=item.number,
+        current=int(seq == 0),
+        autocontinue=0,
+        param1=item.first,
+        param2=0.0,
+        param3=0.0,
+        param4=0.0,
+        x=item.lat_e7,
+        y=item.lon_e7,
+        z=0.0,
+        mission_type=_FENCE,
+    )
 
 
 def _keep_log(level: LogLevel, message: str, file: str | None, line: int) -> bool:
@@ -74,6 +105,8 @@ class MavlinkLink:
         self._mavsdk: Mavsdk | None = None
         self._direct: MavlinkDirect | None = None
         self._param: Param | None = None
+        self._mission: MissionRaw | None = None
+        self._geofence: Geofence | None = None
         self._sender = ThreadPoolExecutor(1, "mavlink-send")
         self._blocking = ThreadPoolExecutor(2, "mavlink-param")
         self._closed = False
@@ -99,9 +132,10 @@ class MavlinkLink:
         self.system_id = system.get_system_id()
         self._direct = direct = MavlinkDirect(system)
         self._param = Param(system)
+        self._mission, self._geofence = MissionRaw(system), Geofence(system)
 
         def heard(message: MavlinkMessage, _: Any) -> None:
-            if message.component_id == AUTOPILOT_COMPONENT:
+            if message.component_id == AUTOPILOT_COMPONENT or message.message_name in FROM_ANY_COMPONENT:
                 with contextlib.suppress(RuntimeError):  # the loop has ended
                     loop.call_soon_threadsafe(self._dispatch, message)
 
@@ -160,23 +194,58 @@ class MavlinkLink:
             return float(self._param.get_param_float(name))
         return None
 
+    async def fence(self) -> list[FenceItem]:
+        """The fence that the autopilot holds. Raises FenceTransferFailed."""
+        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._read_fence)
+
+    def _read_fence(self) -> list[FenceItem]:
+        if self._mission is None:
+            raise FenceTransferFailed("no link")
+        try:
+            items = self._mission.download_geofence()
+        except MissionRawError as error:
+            if error.result == MissionRawResult.NO_MISSION_AVAILABLE:
+                return []
+            raise FenceTransferFailed(error.result.name.lower()) from error
+        return [FenceItem(item.command, item.param1, item.x, item.y) for item in items]
+
+    async def set_fence(self, items: Sequence[FenceItem]) -> None:
+        """As a whole, in place of the one before; none clears it. Raises FenceTransferFailed."""
+        await asyncio.get_running_loop().run_in_executor(self._blocking, self._write_fence, items)
+
+    def _write_fence(self, items: Sequence[FenceItem]) -> None:
+        if self._mission is None or self._geofence is None:
+            raise FenceTransferFailed("no link")
+        try:
+            if items:
+                self._mission.upload_geofence([_wire_item(seq, item) for seq, item in enumerate(items)])
+            else:
+                self._geofence.clear_geofence()
+        except (MissionRawError, GeofenceError) as error:
+            raise FenceTransferFailed(error.result.name.lower()) from error
+
     async def set_parameter(self, name: str, value: float) -> bool:
         """True when the autopilot confirmed the new value."""
         return await asyncio.get_running_loop().run_in_executor(self._blocking, self._write_parameter, name, value)
 
     def _write_parameter(self, name: str, value: float) -> bool:
+        """By the type it has: the bytes of a whole number, taken for a float, would be another value."""
         if self._param is None:
             return False
         try:
-            self._param.set_param_int(name, round(value))
+            self._param.get_param_int(name)
+            whole = True
         except ParamError as error:
             if error.result != ParamResult.WRONG_TYPE:
                 return False
-            with contextlib.suppress(ParamError):
+            whole = False
+        with contextlib.suppress(ParamError):
+            if whole:
+                self._param.set_param_int(name, round(value))
+            else:
                 self._param.set_param_float(name, value)
-                return True
-            return False
-        return True
+            return True
+        return False
 
     async def close(self) -> None:
         """Idempotent."""

@@ -17,6 +17,7 @@ from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
 from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, request_message
 from hardware.autopilot.px4 import PX4
+from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
 from hardware.autopilot.snapshot import NAMES, Snapshot
 from hardware.autopilot.timesync import Timesync
@@ -70,8 +71,10 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.clock = clock
-        self.link = MavlinkLink(url, (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC"), self._on_message)
+        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", ARM_STATUS)
+        self.link = MavlinkLink(url, listened, self._on_message)
         self.snapshot = Snapshot()
+        self.remote_id = RemoteId()
         self.wakeup = Wakeup()
         self.connected = False
         self._dialect: Dialect | None = None
@@ -188,6 +191,8 @@ class Monitor:
             self.timesync.heard(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(str(fields["text"]).rstrip("\x00\t "))
+        elif name == ARM_STATUS:
+            self.remote_id = remote_id(int(fields["status"]), str(fields["error"]), now)
         else:
             if name == "HEARTBEAT":
                 self._autopilot_number = int(fields["autopilot"])

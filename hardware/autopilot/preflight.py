@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from hardware.autopilot.dialect import FailsafeRule
+from hardware.autopilot.remote_id import RemoteId
 from hardware.readings import PreflightCheck, Telemetry
 from hardware.reasons.preflight import (
     ArmingChecked,
@@ -16,19 +17,27 @@ from hardware.reasons.preflight import (
     HomeSet,
     LinkChecked,
     NeverReported,
+    RemoteIdChecked,
+    RemoteIdRefuses,
     ReportAge,
+    SatellitesUnknown,
 )
 from hardware.reasons.vehicle_news import VehicleUnheard
 
 FRESH_S = 3.0
 MINIMUM_SATELLITES = 6
+REMOTE_ID_FRESH_S = 10.0
 _GOOD_FIXES = frozenset({"3D", "DGPS", "RTK float", "RTK fixed", "PPP"})
 
 
 def telemetry_checks(
-    telemetry: Telemetry, prearm_ok: bool | None, minimum_battery_percent: float
+    telemetry: Telemetry,
+    prearm_ok: bool | None,
+    in_our_mode: bool,
+    remote_id: RemoteId,
+    minimum_battery_percent: float,
 ) -> list[PreflightCheck]:
-    """Link, position, heading, battery, home, readiness, control."""
+    """Link, position, heading, battery, home, readiness, Remote ID, control."""
     t = telemetry
     return [
         PreflightCheck("vehicle_link", t.connected, LinkChecked(t.autopilot) if t.connected else VehicleUnheard()),
@@ -39,15 +48,18 @@ def telemetry_checks(
         PreflightCheck("home", False, NeverReported("home"))
         if t.home is None
         else PreflightCheck("home", True, HomeSet(t.home.lat, t.home.lon)),
-        _ready_to_arm(t, prearm_ok),
+        _ready_to_arm(t, prearm_ok, in_our_mode),
+        _remote_id(remote_id, t.at_s),
         _control(t),
     ]
 
 
 def _gps(telemetry: Telemetry) -> PreflightCheck:
     fix, satellites = telemetry.gps_fix, telemetry.satellites
-    if fix is None or satellites is None:
+    if fix is None:
         return PreflightCheck("gps", False, NeverReported("gps"))
+    if satellites is None:
+        return PreflightCheck("gps", False, SatellitesUnknown(fix), blocking=fix not in _GOOD_FIXES)
     ok = fix in _GOOD_FIXES and satellites >= MINIMUM_SATELLITES
     return PreflightCheck("gps", ok, GpsChecked(fix, satellites, MINIMUM_SATELLITES))
 
@@ -66,11 +78,25 @@ def _battery(telemetry: Telemetry, minimum_percent: float) -> PreflightCheck:
     return PreflightCheck("battery", charge >= minimum_percent, BatteryCharge(charge, minimum_percent))
 
 
-def _ready_to_arm(telemetry: Telemetry, prearm_ok: bool | None) -> PreflightCheck:
+def _ready_to_arm(telemetry: Telemetry, prearm_ok: bool | None, in_our_mode: bool) -> PreflightCheck:
+    """in_our_mode: in one that we would arm in; PX4 answers for the present one only."""
     if telemetry.in_air:
         return PreflightCheck("ready_to_arm", True, ArmingChecked("in_the_air"))
+    if prearm_ok is False and not in_our_mode:
+        return PreflightCheck("ready_to_arm", False, ArmingChecked("not_in_this_mode"), blocking=False)
     state = "not_reported" if prearm_ok is None else "ready" if prearm_ok else "not_ready"
     return PreflightCheck("ready_to_arm", prearm_ok is not False, ArmingChecked(state))
+
+
+def _remote_id(heard: RemoteId, now_s: float) -> PreflightCheck:
+    """Unknown is not fine, but not every vehicle must have one."""
+    if heard.at_s is None:
+        return PreflightCheck("remote_id", False, RemoteIdChecked("unknown"), blocking=False)
+    if now_s - heard.at_s > REMOTE_ID_FRESH_S:
+        return PreflightCheck("remote_id", False, RemoteIdChecked("silent"))
+    if heard.problem is None:
+        return PreflightCheck("remote_id", True, RemoteIdChecked("good"))
+    return PreflightCheck("remote_id", False, RemoteIdRefuses(heard.problem))
 
 
 def _control(telemetry: Telemetry) -> PreflightCheck:
@@ -81,10 +107,12 @@ def _control(telemetry: Telemetry) -> PreflightCheck:
     return PreflightCheck("control", False, ControlChecked(authority.who))
 
 
-def failsafe_check(rule: FailsafeRule, name: str, value: float | None) -> PreflightCheck:
-    """name: of the parameter in this version of the autopilot; value: None when it could not be read."""
+def failsafe_check(rule: FailsafeRule, name: str, value: float | None, charge_known: bool = True) -> PreflightCheck:
+    """name: of the parameter in this version of the autopilot; value: None when it could not be read. charge_known:
+    the vehicle reports its battery; of one that does not, no failsafe can watch it."""
     wanted = rule.wanted(value)
+    blocking = rule.blocking and (charge_known or rule.watch != "battery")
     if value is None:
-        return PreflightCheck("failsafe", False, FailsafeUnread(rule.watch, name, wanted), rule.blocking)
+        return PreflightCheck("failsafe", False, FailsafeUnread(rule.watch, name, wanted), blocking)
     reason = FailsafeParameter(rule.watch, name, value, wanted)
-    return PreflightCheck("failsafe", rule.holds(value), reason, rule.blocking)
+    return PreflightCheck("failsafe", rule.holds(value), reason, blocking)

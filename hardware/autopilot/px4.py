@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
-from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder
+from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
 from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
 from hardware.reasons.vehicle import CommandName
 
@@ -26,6 +27,24 @@ def _order(command: CommandName, sub: int, *modes: int) -> ModeOrder:
 
 def _take_off(relative_m: float, amsl_m: float) -> Outgoing:
     return replace(command_long(TAKE_OFF, None, None, None, None, None, None, amsl_m), changes_mode=True)
+
+
+def _own_fence(values: Mapping[str, float]) -> OwnFence:
+    """GF_ACTION 0 looks at nothing; 1 only warns, but is the owner's limit all the same."""
+    watched = values["GF_ACTION"] > 0
+    high, far = values["GF_MAX_VER_DIST"], values.get("GF_MAX_HOR_DIST", 0.0)
+    return OwnFence(
+        watched=watched,
+        ceiling_m=high if watched and high > 0.0 else None,
+        ceiling_parameter="GF_MAX_VER_DIST",
+        radius_m=far if watched and far > 0.0 else None,
+        any_inclusion=False,
+    )
+
+
+def _fence_for_mission(values: Mapping[str, float], ceiling_m: float) -> dict[str, float]:
+    """GF_ACTION is asked for by the failsafe rules."""
+    return {"GF_MAX_VER_DIST": ceiling_m}
 
 
 PX4 = Dialect(
@@ -65,6 +84,14 @@ PX4 = Dialect(
     steering=_order("steering_mode", _LOITER, HOLD),
     reposition_sets_speed=True,
     turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
+    prearm_has_present_bit=False,
+    nets=NetRules(
+        parameters=("GF_ACTION", "GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"),
+        required=frozenset({"GF_ACTION", "GF_MAX_VER_DIST"}),
+        own=_own_fence,
+        for_mission=_fence_for_mission,
+        most_corners=60,
+    ),
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",
@@ -84,6 +111,12 @@ PX4 = Dialect(
             "fence",
             frozenset({2, 3, 5}),
             3,  # return
+        ),
+        FailsafeRule(
+            "COM_LOW_BAT_ACT",
+            "battery",
+            frozenset({2, 3}),
+            3,  # return when critical, land in an emergency
         ),
         FailsafeRule(
             "COM_OBL_RC_ACT",

@@ -25,6 +25,8 @@ _ARMED = 128  # MAV_MODE_FLAG_SAFETY_ARMED
 _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
 _FIXES: tuple[GpsFixName, ...] = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
 _ON_GROUND, _UNDEFINED = 1, 0  # MAV_LANDED_STATE
+_UNKNOWN_COUNT = 255
+"""GPS_RAW_INT: so many satellites are "not known"."""
 
 NAMES = (
     "HEARTBEAT",
@@ -55,7 +57,9 @@ class Snapshot:
     arming_at_s: float = -math.inf
     """When the autopilot last agreed to arm."""
     landed_state: int = _UNDEFINED
-    prearm_ok: bool | None = None
+    prearm_present: bool | None = None
+    prearm_healthy: bool | None = None
+    """The autopilot's own checks before arming, as SYS_STATUS has them; a Dialect says what they mean together."""
     position: Place | None = None
     position_at_s: float | None = None
     jumped_m: float | None = None
@@ -132,11 +136,12 @@ class Snapshot:
             case "GLOBAL_POSITION_INT":
                 self._global_position(fields, heard_at_s)
             case "GPS_RAW_INT":
-                self.fix_type, self.satellites = int(fields["fix_type"]), int(fields["satellites_visible"])
+                seen = int(fields["satellites_visible"])
+                self.fix_type, self.satellites = int(fields["fix_type"]), None if seen == _UNKNOWN_COUNT else seen
             case "SYS_STATUS":
                 self._battery(fields, heard_at_s)
-                if int(fields["onboard_control_sensors_present"]) & _PREARM:
-                    self.prearm_ok = bool(int(fields["onboard_control_sensors_health"]) & _PREARM)
+                self.prearm_present = bool(int(fields["onboard_control_sensors_present"]) & _PREARM)
+                self.prearm_healthy = bool(int(fields["onboard_control_sensors_health"]) & _PREARM)
             case "BATTERY_STATUS":
                 if int(fields.get("id", 0)) == 0:
                     self._battery(fields, heard_at_s)

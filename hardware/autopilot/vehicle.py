@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from typing import Literal
 
 from hardware.authority import Authority, OperatorTookControl
 from hardware.autopilot.dialect import FailsafeRule
+from hardware.autopilot.fence_plan import plan_nets
 from hardware.autopilot.flight import fly_to
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hold import hold
 from hardware.autopilot.monitor import Monitor
+from hardware.autopilot.nets import put_nets_back, read_nets, set_nets
 from hardware.autopilot.preflight import failsafe_check, telemetry_checks
 from hardware.autopilot.take_off import take_off
 from hardware.autopilot.turn import turn_around
+from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, VehicleError
 from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, Telemetry
 from hardware.reasons.vehicle import (
@@ -59,11 +62,15 @@ class MavsdkVehicle:
         return self._monitor.changes()
 
     async def preflight(self) -> list[PreflightCheck]:
-        """Checks of link, GPS, heading, battery, home, readiness and failsafe parameters, with remedies."""
+        """Checks of link, GPS, heading, battery, home, readiness, Remote ID and failsafe parameters, with remedies."""
         dialect, monitor = self._monitor.dialect, self._monitor
-        checks = telemetry_checks(self.telemetry(), monitor.snapshot.prearm_ok, self._minimum_battery_percent)
+        heard, snapshot = self.telemetry(), monitor.snapshot
+        prearm_ok = dialect.prearm_ok(snapshot.prearm_present, snapshot.prearm_healthy)
+        in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.before_take_off.modes
+        checks = telemetry_checks(heard, prearm_ok, in_our_mode, monitor.remote_id, self._minimum_battery_percent)
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
-        return checks + [failsafe_check(rule, name, value) for rule, name, value in found]
+        charge_known = heard.battery_percent is not None
+        return checks + [failsafe_check(rule, name, value, charge_known) for rule, name, value in found]
 
     async def _failsafe(self, rule: FailsafeRule) -> tuple[str, float | None]:
         """(the name this version has, its value or None)."""
@@ -86,6 +93,26 @@ class MavsdkVehicle:
             done.append(ParameterSet(name, value, wanted))
             self._monitor.announce(done[-1])
         return done
+
+    async def nets(self) -> Nets:
+        """What the autopilot's own fence is now. Raises VehicleError when it cannot be read."""
+        return await read_nets(self._monitor)
+
+    async def plan_nets(self, wanted: MissionNets, own: Nets | None = None) -> NetsPlan:
+        """What `set_nets` would have to set for a mission; sets nothing. own: the owner's, None: those it holds now.
+        Raises VehicleError when that would loosen what the owner has set, or cannot be."""
+        present = await read_nets(self._monitor) if own is None else own
+        return plan_nets(self._monitor.dialect, present, wanted)
+
+    async def set_nets(self, nets: Nets) -> None:
+        """Returns once the autopilot, asked afterwards, holds exactly that. Raises VehicleError; what it holds then is
+        not known."""
+        await set_nets(self._monitor, nets)
+
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+        """Of what is still as we left it, or were about to. False: somebody has changed something since, and that stays
+        as they have it. Raises VehicleError."""
+        return await put_nets_back(self._monitor, before, ours)
 
     def take_control(self) -> None:
         """The operator's explicit deed that lets commands pass again after somebody else took control."""

@@ -6,6 +6,7 @@ Values are in SI with the unit in the name; angles in degrees, as they are shown
 from hardware.reasons.antenna import AntennaReason
 from hardware.reasons.channels import ChannelReason
 from hardware.reasons.iq_recording import IqRecordingReason
+from hardware.reasons.nets import NetsReason
 from hardware.reasons.pattern import PatternReason
 from hardware.reasons.payload import PayloadReason
 from hardware.reasons.payload_link import PayloadLinkReason
@@ -33,6 +34,7 @@ HardwareReason = (
     | VehicleReason
     | VehicleNews
     | PreflightReason
+    | NetsReason
 )
 
 RecordingReason = TableReason | IqRecordingReason
@@ -43,6 +45,7 @@ __all__ = [
     "ChannelReason",
     "HardwareReason",
     "IqRecordingReason",
+    "NetsReason",
     "PatternReason",
     "PayloadLinkReason",
     "PayloadReason",

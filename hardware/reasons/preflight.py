@@ -8,7 +8,15 @@ from typing import ClassVar, Literal
 from planner.reason import Words
 
 GpsFixName = Literal["no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP"]
-FailsafeWatch = Literal["station", "station_id", "fence", "transmitter", "sticks", "offboard"]
+FailsafeWatch = Literal[
+    "station", "station_id", "fence", "transmitter", "sticks", "offboard", "battery", "battery_critical"
+]
+
+
+_FIX = (
+    "{fix?no GPS=No GPS|no fix=No fix|2D=2D fix|3D=3D fix|DGPS=DGPS fix|RTK float=RTK float fix"
+    "|RTK fixed=RTK fixed|static=Static position|PPP=PPP fix}"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,9 +35,49 @@ class GpsChecked:
     code: Literal["gps_checked"] = "gps_checked"
 
     english: ClassVar[Words] = Words(
-        "{fix?no GPS=No GPS|no fix=No fix|2D=2D fix|3D=3D fix|DGPS=DGPS fix|RTK float=RTK float fix"
-        "|RTK fixed=RTK fixed|static=Static position|PPP=PPP fix}, {satellites|satellite|satellites}.",
+        f"{_FIX}, {{satellites|satellite|satellites}}.",
         "Wait for a 3D fix with at least {wanted_satellites|satellite|satellites} under open sky.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SatellitesUnknown:
+    """There is a fix, but the autopilot does not know of how many satellites."""
+
+    fix: GpsFixName
+    code: Literal["satellites_unknown"] = "satellites_unknown"
+
+    english: ClassVar[Words] = Words(
+        f"{_FIX}, but the autopilot does not know how many satellites it has.",
+        "Look at the GPS receiver: its position cannot be judged.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteIdChecked:
+    """state: silent: the transmitter reported before, but not lately; unknown: never."""
+
+    state: Literal["good", "silent", "unknown"]
+    code: Literal["remote_id_checked"] = "remote_id_checked"
+
+    english: ClassVar[Words] = Words(
+        "{state?good=The Remote ID transmitter works|silent=The Remote ID transmitter has fallen silent"
+        "|unknown=No Remote ID transmitter reports its state}.",
+        "{state?silent=Check its power and its cable"
+        "|*=Where Remote ID is required, check the transmitter by other means before the flight}.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteIdRefuses:
+    """text: the transmitter's own words."""
+
+    text: str
+    code: Literal["remote_id_refuses"] = "remote_id_refuses"
+
+    english: ClassVar[Words] = Words(
+        "The Remote ID transmitter is not ready for a flight: “{text}”.",
+        "Mend what it says: often the operator's id or the operator's place is missing.",
     )
 
 
@@ -86,13 +134,15 @@ class HomeSet:
 class ArmingChecked:
     """state: of the autopilot's own checks; not every autopilot reports them."""
 
-    state: Literal["ready", "not_ready", "in_the_air", "not_reported"]
+    state: Literal["ready", "not_ready", "not_in_this_mode", "in_the_air", "not_reported"]
     code: Literal["arming_checked"] = "arming_checked"
 
     english: ClassVar[Words] = Words(
         "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm"
+        "|not_in_this_mode=The autopilot is not ready to arm in its present mode"
         "|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
-        "Read the autopilot's messages: its own checks refuse to arm.",
+        "{state?not_in_this_mode=Select its mode for holding to learn whether it would arm in that"
+        "|*=Read the autopilot's messages: its own checks refuse to arm}.",
     )
 
 
@@ -112,14 +162,17 @@ class ControlChecked:
 _WATCHES = (
     "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches"
     "|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight"
-    "|offboard=Offboard link lost, which Crossfix does not use}"
+    "|offboard=Offboard link lost, which Crossfix does not use"
+    "|battery=Battery low|battery_critical=Battery almost empty}"
 )
 _SET = (
     "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty"
     "|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other"
     "|fence=: else the autopilot only reports that the fence was left"
     "|transmitter= when a pilot stands by with a transmitter"
-    "|sticks=: the pilot's sticks must end automatic flight at once|offboard=}."
+    "|sticks=: the pilot's sticks must end automatic flight at once|offboard="
+    "|battery=: else a vehicle that nobody commands flies until its battery is empty"
+    "|battery_critical=, in case it does not reach home}."
 )
 
 
@@ -149,6 +202,9 @@ class FailsafeUnread:
 PreflightReason = (
     LinkChecked
     | GpsChecked
+    | SatellitesUnknown
+    | RemoteIdChecked
+    | RemoteIdRefuses
     | NeverReported
     | ReportAge
     | BatteryCharge

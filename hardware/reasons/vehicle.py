@@ -327,7 +327,7 @@ class DoesNotHold:
 @dataclass(frozen=True, slots=True)
 class ParameterNotSet:
     parameter: str
-    wanted: int
+    wanted: float
     code: Literal["parameter_not_set"] = "parameter_not_set"
 
     english: ClassVar[Words] = Words(

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
-from backend.events import BearingMeasured, CraftSource, ImportSource, MissionEnded, PersonSource, Recorded
+from backend.events import (
+    BearingMeasured,
+    CraftSource,
+    ImportSource,
+    MissionDrafted,
+    MissionEnded,
+    PersonSource,
+    Recorded,
+)
 from backend.reasons import Interrupted
-from backend.spec import Place
+from backend.spec import MissionSpec, Place, Polygon, TimerSpec
+
+SQUARE = Polygon(coordinates=[[(7.0, 50.0), (7.01, 50.0), (7.01, 50.01), (7.0, 50.0)]])
 
 BEARING: dict[str, Any] = {
     "emitter_id": "emitter-1",
@@ -65,3 +76,14 @@ def test_a_bearing_keeps_its_source(source: CraftSource | ImportSource | PersonS
 def test_a_fact_names_its_craft_or_emitter_by_an_id() -> None:
     with pytest.raises(ValidationError, match="emitter_id"):
         BearingMeasured(**{**BEARING, "emitter_id": "no id: blanks"})
+
+
+def test_timers_are_bounded_for_what_is_drafted_and_read_bounded_from_what_was_stored() -> None:
+    long = {"console_lost_hold_s": 1e9, "console_lost_return_s": 3_600.0, "receiver_silent_s": 1e12}
+    for name, value in long.items():
+        with pytest.raises(ValidationError, match=name):
+            TimerSpec.model_validate({name: value})
+    drafted = MissionDrafted(spec=MissionSpec(name="before", area=SQUARE)).model_dump(mode="json")
+    drafted["spec"]["timers"] = long
+    read = MissionDrafted.model_validate_json(json.dumps(drafted))
+    assert read.spec.timers == TimerSpec(console_lost_hold_s=120.0, console_lost_return_s=600.0, receiver_silent_s=60.0)

@@ -14,8 +14,9 @@ from hardware.authority import Authority, CommandSent, ModeHeard, ModeKind, Oper
 from hardware.autopilot.control import Control
 from hardware.clock import ScaledClock
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.fence import MissionNets, Nets, NetsPlan, ParameterValue
 from hardware.frame import LocalFrame
-from hardware.ports import Clock, NotInControl, ReceiverError, VehicleUnreachable
+from hardware.ports import Clock, NotInControl, ReceiverError, VehicleError, VehicleUnreachable
 from hardware.readings import (
     Announcement,
     BearingReading,
@@ -27,6 +28,7 @@ from hardware.readings import (
     Sweep,
     Telemetry,
 )
+from hardware.reasons.nets import FenceReadBackDifferent
 from hardware.reasons.preflight import LinkChecked
 from hardware.reasons.receiver import ReceiverUnplugged
 from hardware.reasons.sweep import NoDirection
@@ -91,6 +93,9 @@ class FlatVehicle:
             home_amsl_m=100.0,
             autopilot="px4",
         )
+        self.nets = Nets((), (ParameterValue("CEILING", 0.0),))
+        self.nets_set: list[Nets] = []
+        self.nets_refused: FenceReadBackDifferent | None = None
         self.control = Control(lambda before, after: None)
         self.heard = True
         self.silence_unnoticed = False
@@ -147,6 +152,22 @@ class FlatVehicle:
 
     async def _takes(self, seconds: float) -> None:
         await self.clock.sleep(math.inf if self.stuck else seconds)
+
+    async def plan_nets(self, wanted: MissionNets, own: Nets | None = None) -> NetsPlan:
+        before = self.nets if own is None else own
+        return NetsPlan(before, Nets(wanted.zones, (ParameterValue("CEILING", wanted.net_ceiling_m),)))
+
+    async def set_nets(self, nets: Nets) -> None:
+        if self.nets_refused is not None:
+            raise VehicleError(self.nets_refused)
+        self.nets = nets
+        self.nets_set.append(nets)
+
+    async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
+        whole = self.nets in (before, *ours)
+        if whole:
+            await self.set_nets(before)
+        return whole
 
     async def take_off(self, altitude_relative_m: float) -> None:
         self._order("take_off", "take_off")

@@ -16,6 +16,8 @@ from backend.events import (
     Event,
     MissionEnded,
     MissionStarted,
+    NetsNoted,
+    NetsPutBack,
     PhaseChanged,
     Recorded,
 )
@@ -83,6 +85,10 @@ class MemoryJournal:
 
     async def save_track(self, mission_id: str, craft_id: str, points: Sequence[TrackPoint]) -> None:
         self.track += [(craft_id, point) for point in points]
+
+    async def of_nets(self) -> list[Recorded]:
+        every = (record for stored in self.stored.values() for record in stored)
+        return [record for record in every if isinstance(record.event, NetsNoted | NetsPutBack)]
 
     async def unfinished(self) -> list[str]:
         """As the stored journal's digest has it: not ended, or a craft of it is not down."""

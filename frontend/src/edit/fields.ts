@@ -143,9 +143,9 @@ export const sections: readonly Section[] = [
   {
     title: "edit.section.timers",
     fields: [
-      number("timers.console_lost_hold_s", "edit.consoleHold", "s", { min: 1 }),
-      number("timers.console_lost_return_s", "edit.consoleReturn", "s", { min: 1 }),
-      number("timers.receiver_silent_s", "edit.receiverSilent", "s", { min: 1, more: true }),
+      number("timers.console_lost_hold_s", "edit.consoleHold", "s", { min: 1, max: 120 }),
+      number("timers.console_lost_return_s", "edit.consoleReturn", "s", { min: 1, max: 600 }),
+      number("timers.receiver_silent_s", "edit.receiverSilent", "s", { min: 1, max: 60, more: true }),
     ],
   },
 ];

@@ -738,6 +738,19 @@ export const reasonsEn: ReasonTable = {
     text: "{fix?no GPS=No GPS|no fix=No fix|2D=2D fix|3D=3D fix|DGPS=DGPS fix|RTK float=RTK float fix|RTK fixed=RTK fixed|static=Static position|PPP=PPP fix}, {satellites|satellite|satellites}.",
     remedy: "Wait for a 3D fix with at least {wanted_satellites|satellite|satellites} under open sky.",
   },
+  satellites_unknown: {
+    text: "{fix?no GPS=No GPS|no fix=No fix|2D=2D fix|3D=3D fix|DGPS=DGPS fix|RTK float=RTK float fix|RTK fixed=RTK fixed|static=Static position|PPP=PPP fix}, but the autopilot does not know how many satellites it has.",
+    remedy: "Look at the GPS receiver: its position cannot be judged.",
+  },
+  remote_id_checked: {
+    text: "{state?good=The Remote ID transmitter works|silent=The Remote ID transmitter has fallen silent|unknown=No Remote ID transmitter reports its state}.",
+    remedy:
+      "{state?silent=Check its power and its cable|*=Where Remote ID is required, check the transmitter by other means before the flight}.",
+  },
+  remote_id_refuses: {
+    text: "The Remote ID transmitter is not ready for a flight: “{text}”.",
+    remedy: "Mend what it says: often the operator's id or the operator's place is missing.",
+  },
   never_reported: {
     text: "The autopilot has not reported {what?gps=its GPS|position=its position|heading=its heading|battery=the battery's charge|home=its home}.",
     remedy:
@@ -756,22 +769,59 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   arming_checked: {
-    text: "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
-    remedy: "Read the autopilot's messages: its own checks refuse to arm.",
+    text: "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm|not_in_this_mode=The autopilot is not ready to arm in its present mode|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
+    remedy:
+      "{state?not_in_this_mode=Select its mode for holding to learn whether it would arm in that|*=Read the autopilot's messages: its own checks refuse to arm}.",
   },
   control_checked: {
     text: "{who?pilot=The pilot has control|failsafe=The autopilot's failsafe has control|nobody=Nobody is intervening}.",
     remedy: "{who?failsafe=Let it land|*=Give control back with the transmitter, then resume}.",
   },
   failsafe_parameter: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use}: {parameter} = {value}.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} = {value}.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
   failsafe_unread: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use}: {parameter} could not be read.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} could not be read.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
+  },
+  parameter_to_set: {
+    text: "{parameter} goes from {before} to {after}.",
+    remedy: "",
+  },
+  nets_to_set: {
+    text: "The start sets the autopilot's own fence: {corners|corner|corners}, {no_fly|no-fly area|no-fly areas}. {own_zones?0=It holds no other|*=Its own makes room meanwhile}; after the flight everything is put back as it was. {changes}",
+    remedy: "",
+  },
+  own_ceiling_lower: {
+    text: "The autopilot's own fence ends at {own_m} ({parameter}), the mission's at {ceiling_m}.",
+    remedy: "Lower the mission's ceiling, or raise {parameter} with the vehicle's ground station.",
+  },
+  own_fence_tighter: {
+    text: "The mission's fence reaches {beyond_m} beyond the fence that the autopilot holds already.",
+    remedy: "Draw the mission's fence inside it, or change the vehicle's own with its ground station.",
+  },
+  fence_too_detailed: {
+    text: "Fence and no-fly areas have {corners|corner|corners}; the autopilot can hold {most}.",
+    remedy: "Draw them with fewer corners.",
+  },
+  fence_not_transferred: {
+    text: "The autopilot's fence could not be {way?read=read|sent=sent} ({why}).",
+    remedy: "Check the link; a fence on the autopilot's storage card may be damaged.",
+  },
+  fence_unknown_form: {
+    text: "The autopilot holds a fence that Crossfix does not understand ({what}).",
+    remedy: "Look at it with the vehicle's ground station, and clear it there.",
+  },
+  fence_read_back_different: {
+    text: "The autopilot holds another fence than it was sent: corner {corner} differs.",
+    remedy: "Try again; when it stays so, set the fence with the vehicle's ground station.",
+  },
+  fence_parameter_unread: {
+    text: "The autopilot's fence cannot be judged: {parameter} could not be read.",
+    remedy: "Check the link and try again.",
   },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",

@@ -72,6 +72,10 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
           });
     case "mission_started":
       return t("event.mission_started", { by: byWords(event.by) });
+    case "nets_noted":
+      return t("event.nets_noted");
+    case "nets_put_back":
+      return t(event.whole ? "event.nets_put_back" : "event.nets_left");
     case "phase_changed":
       return t("event.phase_changed", { phase: phaseName(event.after), reason: reasonText(event.reason) });
     case "took_off":

@@ -25,11 +25,12 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "FS_GCS_ENABLE": (1, INT8),
     "FS_GCS_TIMEOUT": (5.0, REAL32),
     "FS_THR_ENABLE": (1, INT8),
-    "FENCE_ENABLE": (1, INT8),
+    "FENCE_ENABLE": (0, INT8),
     "FENCE_ACTION": (1, INT8),
     "FENCE_TYPE": (7, INT8),
-    "FENCE_RADIUS": (0.0, REAL32),
-    "FENCE_ALT_MAX": (0.0, REAL32),
+    "FENCE_RADIUS": (300.0, REAL32),
+    "FENCE_ALT_MAX": (100.0, REAL32),
+    "FENCE_OPTIONS": (1, INT16),
     "DISARM_DELAY": (10, INT8),
     "BATT_LOW_VOLT": (10.5, REAL32),
     "BATT_FS_LOW_ACT": (2, INT8),
@@ -68,6 +69,8 @@ class ArduCopter(Firmware):
     give_back_mode: ClassVar[str] = "BRAKE"
     heartbeat_on_mode_change: ClassVar[bool] = True
     mode_reported_on_change: ClassVar[bool] = False
+    prearm_has_present_bit: ClassVar[bool] = True
+    any_inclusion: ClassVar[bool] = False
     ready_after: ClassVar[float] = 3.0
     streams_by_default: ClassVar[dict[int, float]] = {}
 
@@ -90,9 +93,16 @@ class ArduCopter(Firmware):
         if self.parameters["FENCE_ENABLE"] and self.mode not in ("RTL", "LAND"):
             self._watch_fence()
 
+    def _within_fence(self, north: float, east: float, up: float) -> bool:
+        """FENCE_TYPE: bit 0 the ceiling, 1 the circle around home, 2 the polygons."""
+        kinds = int(self.parameters["FENCE_TYPE"])
+        too_high = bool(kinds & 1) and up > self.parameters["FENCE_ALT_MAX"]
+        too_far = bool(kinds & 2) and math.hypot(north, east) > self.parameters["FENCE_RADIUS"]
+        return not (too_high or too_far) and (not kinds & 4 or self.fence.allows(north, east))
+
     def _watch_fence(self) -> None:
-        far, high = self.parameters["FENCE_RADIUS"], self.parameters["FENCE_ALT_MAX"]
-        outside = 0.0 < far < math.hypot(self.navigation.north, self.navigation.east) or 0.0 < high < self.navigation.up
+        nav = self.navigation
+        outside = not self._within_fence(nav.north, nav.east, nav.up)
         action = {1: "RTL", 2: "LAND", 3: "SMART_RTL", 4: "BRAKE"}.get(int(self.parameters["FENCE_ACTION"]))
         if outside and action and self.mode != action:
             self.say("Fence Breached", mavlink.MAV_SEVERITY_WARNING)
@@ -157,6 +167,10 @@ class ArduCopter(Firmware):
             return DENIED
         if self._spoiled_goto():
             return ACCEPTED
+        up = self.navigation.up if math.isnan(command.z) else command.z - self.home.amsl_m
+        place = self.home.to_local(command.lat, command.lon)
+        if self.parameters["FENCE_ENABLE"] and not self._within_fence(*place, up):
+            return FAILED
         if self.mode != "GUIDED":
             if self._select(self.modes["GUIDED"]) != ACCEPTED:
                 return FAILED

@@ -19,6 +19,7 @@ from typing import ClassVar
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.sim.autopilot.copter import Airframe, Copter, Wind
+from hardware.sim.autopilot.fence import Fence
 from hardware.sim.autopilot.flight import Flight
 from hardware.sim.autopilot.geodesy import HomeFrame
 from hardware.sim.autopilot.parameters import Parameters
@@ -74,6 +75,12 @@ class Faults:
     link_delay: float = 0.0
     """Seconds each way."""
     no_prearm: bool = False
+    fence_mute: int = 0
+    """So many answers about the fence get lost."""
+    fence_deaf_after: int = -1
+    """After so many messages about the fence every other gets lost; -1: none."""
+    fence_altered: bool = False
+    """It keeps another fence than it is sent."""
 
 
 def deg_or_none(value: float) -> float | None:
@@ -96,6 +103,10 @@ class Firmware(ABC):
     """CURRENT_MODE is sent when the mode changed, no faster than asked for, and else twice a second."""
     streams_by_default: ClassVar[dict[int, float]]
     """Message id -> Hz sent without being asked."""
+    prearm_has_present_bit: ClassVar[bool]
+    """Whether SYS_STATUS says that the checks before arming are reported; PX4 only ever sets their health bit."""
+    any_inclusion: ClassVar[bool]
+    """Of several zones to stay in, one is enough."""
     ready_after: ClassVar[float]
     """Seconds from boot until prearm checks pass."""
 
@@ -115,6 +126,7 @@ class Firmware(ABC):
         )
         self.flight = Flight(self.copter, self.navigation)
         self.faults = Faults()
+        self.fence = Fence(self.home, self.any_inclusion)
         self.time = 0.0
         self.mode = next(iter(self.modes))
         self.mode_changed_at = 0.0
@@ -151,6 +163,12 @@ class Firmware(ABC):
     def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         """As STATUSTEXT, cut to its 50 bytes."""
         self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+
+    def report_remote_id(self, problem: str) -> None:
+        """What a Remote ID transmitter would say now; no problem: the vehicle may arm."""
+        good, bad = mavlink.MAV_ODID_ARM_STATUS_GOOD_TO_ARM, mavlink.MAV_ODID_ARM_STATUS_PRE_ARM_FAIL_GENERIC
+        words = problem.encode()[:50]
+        self.outbox.append(mavlink.MAVLink_open_drone_id_arm_status_message(bad if problem else good, words))
 
     # -- commands --------------------------------------------------------------------------------------------------
 

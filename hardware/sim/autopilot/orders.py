@@ -12,6 +12,9 @@
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
     {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent", "count": 1}
     {"do": "prearm", "ok": false}
+    {"do": "fence_fault", "mute": 0, "deaf_after": -1, "altered": false}   see firmware.Faults; as given, all at once
+    {"do": "fence"}                           the fence that it holds
+    {"do": "remote_id", "problem": ""}        Remote ID says once what is wrong (nothing: good)
     {"do": "reboot"}                          on the ground only
     {"do": "truth"}                           where the vehicle truly is
     {"do": "commands", "since_s": 0}          every command received (time since boot, MAV_CMD)
@@ -24,6 +27,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import asdict
 from typing import Any, cast
 
 from hardware.sim.autopilot.firmware import Firmware
@@ -104,6 +108,14 @@ class Orders:
                 firmware.parameters.set(str(order.get("name")), _number(order, "value"))
             case "prearm":
                 faults.no_prearm = not order.get("ok", True)
+            case "fence_fault":
+                faults.fence_mute = int(_number(order, "mute", 0.0))
+                faults.fence_deaf_after = int(_number(order, "deaf_after", -1.0))
+                faults.fence_altered = bool(order.get("altered", False))
+            case "fence":
+                return {"items": [asdict(item) for item in firmware.fence.items]}
+            case "remote_id":
+                firmware.report_remote_id(str(order.get("problem", "")))
             case "reboot":
                 firmware.reboot()
             case "fault":

@@ -83,6 +83,8 @@ class Px4(Firmware):
     give_back_mode: ClassVar[str] = "HOLD"
     heartbeat_on_mode_change: ClassVar[bool] = False
     mode_reported_on_change: ClassVar[bool] = True
+    prearm_has_present_bit: ClassVar[bool] = False
+    any_inclusion: ClassVar[bool] = False
     ready_after: ClassVar[float] = 6.0
     streams_by_default: ClassVar[dict[int, float]] = {
         mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
@@ -131,9 +133,14 @@ class Px4(Firmware):
     def landed(self) -> None:
         self.mode = "HOLD"
 
-    def _watch_fence(self) -> None:
+    def _within_fence(self, north: float, east: float, up: float) -> bool:
         far, high = self.parameters["GF_MAX_HOR_DIST"], self.parameters["GF_MAX_VER_DIST"]
-        outside = 0.0 < far < math.hypot(self.navigation.north, self.navigation.east) or 0.0 < high < self.navigation.up
+        too_far = 0.0 < far < math.hypot(north, east) or 0.0 < high < up
+        return not too_far and self.fence.allows(north, east)
+
+    def _watch_fence(self) -> None:
+        nav = self.navigation
+        outside = not self._within_fence(nav.north, nav.east, nav.up)
         action = {2: "HOLD", 3: "RETURN", 5: "LAND"}.get(int(self.parameters["GF_ACTION"]))
         if outside and action and self.mode != action:
             self.say("Geofence breached", mavlink.MAV_SEVERITY_WARNING)
@@ -197,6 +204,8 @@ class Px4(Firmware):
 
     def _fly(self, command: Command) -> None:
         nav = self.navigation
+        if self._refused_place(command):
+            return
         if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
             self.flight.stop(STOP_REACH)  # "all three set to NaN - pause vehicle"
             return
@@ -213,6 +222,16 @@ class Px4(Firmware):
         elif yaw is None and math.hypot(place[0] - nav.north, place[1] - nav.east) > 2.0:
             # with no yaw asked for the nose turns to where it flies
             self.flight.turn_to(math.degrees(math.atan2(place[1] - nav.east, place[0] - nav.north)), limit)
+
+    def _refused_place(self, command: Command) -> bool:
+        """The commander has accepted it before the navigator looks at the fence, and says no by a text alone."""
+        if command.lat is None or command.lon is None or self.parameters["GF_ACTION"] < 2.0:
+            return False
+        up = self.navigation.up if math.isnan(command.z) else command.z - self.home.amsl_m
+        if self._within_fence(*self.home.to_local(command.lat, command.lon), up):
+            return False
+        self.say("Reposition is outside geofence\t", mavlink.MAV_SEVERITY_CRITICAL)
+        return True
 
     def disarm_delay(self) -> float:
         return self.parameters["COM_DISARM_PRFLT"]

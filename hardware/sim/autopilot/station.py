@@ -11,6 +11,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import development as mavlink
 
+from hardware.sim.autopilot.fence_protocol import FENCE, FenceProtocol
 from hardware.sim.autopilot.firmware import ACCEPTED, DENIED, UNSUPPORTED, Command, Firmware
 from hardware.sim.autopilot.telemetry import autopilot_version, builders
 
@@ -40,6 +41,7 @@ class Station:
     def __init__(self, firmware: Firmware) -> None:
         self.firmware = firmware
         self._builders = builders(firmware.name)
+        self._fence = FenceProtocol(firmware.fence, firmware.faults)
         self._encoder = mavlink.MAVLink(None, _SYSTEM, _COMPONENT)
         self._decoder = mavlink.MAVLink(None)
         self._decoder.robust_parsing = True
@@ -128,6 +130,8 @@ class Station:
                 for wanted in _DATA_STREAMS.get(message.req_stream_id, ()):
                     self._set_interval(wanted, message.req_message_rate if message.start_stop else 0.0)
                 return []
+            case name if name.startswith("MISSION_") and getattr(message, "mission_type", None) == FENCE:
+                return self._fence.answer(message)
             case "MISSION_REQUEST_LIST":
                 return [
                     mavlink.MAVLink_mission_count_message(

@@ -24,7 +24,14 @@ _SENSORS = (
     | mavlink.MAV_SYS_STATUS_SENSOR_GPS
     | mavlink.MAV_SYS_STATUS_AHRS
     | mavlink.MAV_SYS_STATUS_SENSOR_BATTERY
-    | mavlink.MAV_SYS_STATUS_PREARM_CHECK
+)
+
+
+_CAPABILITIES = (
+    mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
 )
 
 
@@ -58,14 +65,16 @@ def current_mode(firmware: Firmware) -> Message:
 
 
 def sys_status(firmware: Firmware) -> Message:
-    health = _SENSORS if firmware.prearm_ok else _SENSORS & ~mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    prearm = mavlink.MAV_SYS_STATUS_PREARM_CHECK
+    present = _SENSORS | prearm if firmware.prearm_has_present_bit else _SENSORS
+    health = _SENSORS | prearm if firmware.prearm_ok else _SENSORS
     if firmware.navigation.without_fix_for > SYS_STATUS_LATE:
         health &= ~mavlink.MAV_SYS_STATUS_SENSOR_GPS
     percent = firmware.copter.battery_percent
     volts = 13.2 + 3.6 * percent / 100.0
     amps = firmware.copter.power / volts
     return mavlink.MAVLink_sys_status_message(
-        _SENSORS, _SENSORS, health, 300, int(volts * 1000), int(amps * 100), round(percent), 0, 0, 0, 0, 0, 0
+        present, present, health, 300, int(volts * 1000), int(amps * 100), round(percent), 0, 0, 0, 0, 0, 0
     )
 
 
@@ -161,7 +170,7 @@ def autopilot_version(firmware: Firmware) -> Message:
         if firmware.parameters.bytewise
         else mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
     )
-    capabilities = encoding | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    capabilities = encoding | _CAPABILITIES
     version = 0x011000FF if firmware.name == "px4" else 0x040700FF
     return mavlink.MAVLink_autopilot_version_message(
         capabilities, version, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, firmware.conditions.seed, [0] * 18
@@ -175,9 +184,7 @@ def _estimator_flags(firmware: Firmware) -> int:
 
 def estimator_status(firmware: Firmware) -> Message:
     flags = _estimator_flags(firmware)
-    return mavlink.MAVLink_estimator_status_message(
-        int(firmware.time * 1e6), flags, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.8, 1.2
-    )
+    return mavlink.MAVLink_estimator_status_message(int(firmware.time * 1e6), flags, *[0.1] * 6, 0.8, 1.2)
 
 
 def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:

@@ -32,7 +32,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_a_vehicle_that_stands_ready_passes_every_check() -> None:
     found, task = await checklist(spec(), Stage().craft(), None)
     assert all(check.ok for check in found)
-    assert {check.name for check in found} == {"vehicle_link", "area", "safety", "receiver", "pattern"}
+    assert {check.name for check in found} == {"vehicle_link", "area", "nets", "safety", "receiver", "pattern"}
     assert task is not None
 
 

@@ -12,6 +12,8 @@ from hardware.autopilot.connect import connect_vehicle
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import WallClock
 from hardware.ports import VehicleError, VehicleUnreachable
+from hardware.readings import PreflightCheck
+from hardware.reasons.preflight import ArmingChecked, RemoteIdRefuses
 from hardware.reasons.vehicle import CommandUnanswered, NoProgress
 from hardware.reasons.vehicle_news import VehicleHeardAgain, VehicleUnheard
 from hardware.sim.autopilot.launch import free_port
@@ -100,3 +102,26 @@ async def test_nobody_there_is_said_in_words() -> None:
             await connect_vehicle(f"udpin://127.0.0.1:{taken.getsockname()[1]}", WallClock(), timeout_s=0.3)
     with pytest.raises(ValueError, match="udpin://"):
         MavsdkVehicle("14540", WallClock())
+
+
+async def test_the_checklist_says_what_a_remote_id_transmitter_says(rig: Rig) -> None:
+    async def row() -> PreflightCheck:
+        return next(check for check in await rig.vehicle.preflight() if check.name == "remote_id")
+
+    await rig.sim.order("remote_id", problem="")
+    await rig.clock.sleep(2.0)
+    assert (await row()).ok
+    await rig.sim.order("remote_id", problem="operator ID \x1b missing")
+    await rig.clock.sleep(2.0)
+    assert (await row()).reason == RemoteIdRefuses("operator ID missing")
+
+
+async def test_ready_to_arm_is_what_the_autopilot_says_of_itself(rig: Rig) -> None:
+    async def row() -> PreflightCheck:
+        return next(check for check in await rig.vehicle.preflight() if check.name == "ready_to_arm")
+
+    assert (await row()).reason == ArmingChecked("ready")
+    await rig.sim.order("prearm", ok=False)
+    await rig.clock.sleep(3.0)
+    check = await row()
+    assert (check.ok, check.blocking, check.reason) == (False, True, ArmingChecked("not_ready"))

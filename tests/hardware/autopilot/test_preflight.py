@@ -9,8 +9,16 @@ from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.preflight import failsafe_check, telemetry_checks
 from hardware.autopilot.px4 import PX4
+from hardware.autopilot.remote_id import RemoteId
 from hardware.readings import Place, Telemetry
-from hardware.reasons.preflight import FailsafeParameter, FailsafeUnread
+from hardware.reasons.preflight import (
+    ArmingChecked,
+    FailsafeParameter,
+    FailsafeUnread,
+    RemoteIdChecked,
+    RemoteIdRefuses,
+    SatellitesUnknown,
+)
 from planner.reason import remedy_of
 
 NOW = 1_700_000_000.0
@@ -27,12 +35,26 @@ READY = Telemetry(
     home=Place(47.0, 8.0),
     autopilot="px4",
 )
-SAFE_PX4 = {"NAV_DLL_ACT": 2.0, "COM_RC_OVERRIDE": 1.0, "GF_ACTION": 2.0, "COM_OBL_RC_ACT": 0.0}
-SAFE_ARDUPILOT = {"FS_GCS_ENABLE": 1.0, "MAV_GCS_SYSID": 255.0, "FENCE_ACTION": 1.0, "FS_THR_ENABLE": 1.0}
+SAFE_PX4 = {
+    "NAV_DLL_ACT": 2.0,
+    "COM_RC_OVERRIDE": 1.0,
+    "GF_ACTION": 2.0,
+    "COM_OBL_RC_ACT": 0.0,
+    "COM_LOW_BAT_ACT": 3.0,
+}
+SAFE_ARDUPILOT = {
+    "FS_GCS_ENABLE": 1.0,
+    "MAV_GCS_SYSID": 255.0,
+    "FENCE_ACTION": 1.0,
+    "FS_THR_ENABLE": 1.0,
+    "BATT_FS_LOW_ACT": 2.0,
+    "BATT_FS_CRT_ACT": 1.0,
+}
+NO_REMOTE_ID = RemoteId()
 
 
-def refused(telemetry: Telemetry, prearm_ok: bool | None = True) -> list[str]:
-    checks = telemetry_checks(telemetry, prearm_ok, minimum_battery_percent=30.0)
+def refused(telemetry: Telemetry, prearm_ok: bool | None = True, remote_id: RemoteId = NO_REMOTE_ID) -> list[str]:
+    checks = telemetry_checks(telemetry, prearm_ok, True, remote_id, minimum_battery_percent=30.0)
     assert all(check.ok or remedy_of(check.reason) for check in checks)
     return [check.name for check in checks if check.blocking and not check.ok]
 
@@ -67,6 +89,59 @@ def test_an_autopilot_that_would_not_arm_and_a_pilot_in_control_refuse() -> None
     assert refused(taken) == ["control"]
     assert refused(replace(taken, armed=True)) == ["control"]
     assert refused(replace(taken, armed=False)) == []
+
+
+def test_satellites_that_the_autopilot_does_not_know_are_not_fine() -> None:
+    unknown = replace(READY, satellites=None)
+    (check,) = [one for one in telemetry_checks(unknown, True, True, NO_REMOTE_ID, 30.0) if one.name == "gps"]
+    assert (check.ok, check.blocking, check.reason) == (False, False, SatellitesUnknown("3D"))
+    assert refused(replace(unknown, gps_fix="2D")) == ["gps"]
+
+
+@pytest.mark.parametrize(
+    ("heard", "ok", "blocks", "reason"),
+    [
+        (NO_REMOTE_ID, False, False, RemoteIdChecked("unknown")),
+        (RemoteId(NOW - 1.0), True, False, RemoteIdChecked("good")),
+        (RemoteId(NOW - 60.0), False, True, RemoteIdChecked("silent")),
+        (RemoteId(NOW - 1.0, "operator ID missing"), False, True, RemoteIdRefuses("operator ID missing")),
+    ],
+)
+def test_remote_id_counts_by_what_its_transmitter_says(
+    heard: RemoteId, ok: bool, blocks: bool, reason: RemoteIdChecked | RemoteIdRefuses
+) -> None:
+    (check,) = [one for one in telemetry_checks(READY, True, True, heard, 30.0) if one.name == "remote_id"]
+    assert (check.ok, check.reason) == (ok, reason)
+    assert refused(READY, remote_id=heard) == (["remote_id"] if blocks else [])
+
+
+@pytest.mark.parametrize(
+    ("dialect", "present", "healthy", "ready"),
+    [
+        (PX4, False, True, True),
+        (PX4, False, False, False),
+        (PX4, None, None, None),
+        (ARDUPILOT, True, True, True),
+        (ARDUPILOT, True, False, False),
+        (ARDUPILOT, False, False, None),
+    ],
+)
+def test_each_autopilot_says_in_its_own_way_whether_it_would_arm(
+    dialect: Dialect, present: bool | None, healthy: bool | None, ready: bool | None
+) -> None:
+    assert dialect.prearm_ok(present, healthy) is ready
+
+
+def test_what_an_autopilot_says_of_another_mode_than_ours_blocks_nothing() -> None:
+    found = telemetry_checks(READY, False, False, NO_REMOTE_ID, 30.0)
+    (check,) = [one for one in found if one.name == "ready_to_arm"]
+    assert (check.ok, check.blocking, check.reason) == (False, False, ArmingChecked("not_in_this_mode"))
+
+
+def test_no_failsafe_watches_a_battery_that_is_not_reported() -> None:
+    rule = next(rule for rule in PX4.failsafes if rule.watch == "battery")
+    assert failsafe_check(rule, rule.parameter, 0.0).blocking
+    assert not failsafe_check(rule, rule.parameter, 0.0, charge_known=False).blocking
 
 
 def test_a_battery_that_is_not_reported_is_a_caution_only() -> None:

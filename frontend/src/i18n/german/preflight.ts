@@ -4,12 +4,18 @@ import type { ReasonTable } from "../reasons";
 const WATCH =
   "{watch?station=Bodenstation verloren|station_id=Die Bodenstation, auf die sein Ausfallschutz achtet|fence=Zaun verlassen" +
   "|transmitter=Verbindung zum Handsender verloren|sticks=Die Steuerknüppel des Piloten beenden den automatischen Flug" +
-  "|offboard=Offboard-Verbindung verloren, die Crossfix nicht benutzt}";
+  "|offboard=Offboard-Verbindung verloren, die Crossfix nicht benutzt|battery=Akku schwach|battery_critical=Akku fast leer}";
 const SET_IT =
   "{parameter} auf {wanted} setzen{watch?station=: Sonst schwebt ein Fluggerät ohne seine Station, bis der Akku leer ist" +
   "|station_id=, die MAVLink-Kennung von Crossfix: Den Verlust einer anderen bemerkt der Autopilot nicht" +
   "|fence=: Sonst meldet der Autopilot nur, dass der Zaun verlassen wird|transmitter=, wenn ein Pilot mit Handsender bereitsteht" +
-  "|sticks=: Die Steuerknüppel des Piloten müssen den automatischen Flug sofort beenden|offboard=}.";
+  "|sticks=: Die Steuerknüppel des Piloten müssen den automatischen Flug sofort beenden|offboard=" +
+  "|battery=: Sonst fliegt ein Fluggerät, dem niemand etwas befiehlt, bis der Akku leer ist" +
+  "|battery_critical=, falls es nicht bis nach Hause kommt}.";
+
+const FIX =
+  "{fix?no GPS=Kein GPS|no fix=Keine Position|2D=2D-Position|3D=3D-Position|DGPS=DGPS-Position" +
+  "|RTK float=RTK-Position, nicht fixiert|RTK fixed=RTK-Position, fixiert|static=Feste Position|PPP=PPP-Position}";
 
 export const preflight = {
   link_checked: {
@@ -17,8 +23,21 @@ export const preflight = {
     remedy: "",
   },
   gps_checked: {
-    text: "{fix?no GPS=Kein GPS|no fix=Keine Position|2D=2D-Position|3D=3D-Position|DGPS=DGPS-Position|RTK float=RTK-Position, nicht fixiert|RTK fixed=RTK-Position, fixiert|static=Feste Position|PPP=PPP-Position}, {satellites|Satellit|Satelliten}.",
+    text: `${FIX}, {satellites|Satellit|Satelliten}.`,
     remedy: "Unter freiem Himmel auf eine 3D-Position mit mindestens {wanted_satellites|Satellit|Satelliten} warten.",
+  },
+  satellites_unknown: {
+    text: `${FIX}, aber der Autopilot weiß nicht, wie viele Satelliten er hat.`,
+    remedy: "Den GPS-Empfänger ansehen: Seine Position lässt sich nicht beurteilen.",
+  },
+  remote_id_checked: {
+    text: "{state?good=Der Remote-ID-Sender arbeitet|silent=Der Remote-ID-Sender ist verstummt|unknown=Kein Remote-ID-Sender meldet seinen Zustand}.",
+    remedy:
+      "{state?silent=Seine Stromversorgung und sein Kabel prüfen|*=Wo Remote ID vorgeschrieben ist, den Sender vor dem Flug auf anderem Weg prüfen}.",
+  },
+  remote_id_refuses: {
+    text: "Der Remote-ID-Sender ist nicht bereit für einen Flug: „{text}“.",
+    remedy: "Beheben, was er sagt: Oft fehlt die Kennung oder der Ort des Betreibers.",
   },
   never_reported: {
     text: "Der Autopilot hat {what?gps=sein GPS|position=seine Position|heading=seine Richtung|battery=den Ladestand des Akkus|home=seinen Startplatz} nicht gemeldet.",
@@ -33,8 +52,9 @@ export const preflight = {
   battery_charge: { text: "Der Akku hat {charge_percent}.", remedy: "Ihn auf mindestens {wanted_percent} laden." },
   home_set: { text: "Der Startplatz liegt bei {lat@lon}.", remedy: "" },
   arming_checked: {
-    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.",
-    remedy: "Die Meldungen des Autopiloten lesen: Seine eigenen Prüfungen verweigern das Scharfschalten.",
+    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|not_in_this_mode=Der Autopilot ist in seinem jetzigen Modus nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.",
+    remedy:
+      "{state?not_in_this_mode=Seinen Modus zum Halten wählen, um zu erfahren, ob er darin scharfschalten würde|*=Die Meldungen des Autopiloten lesen: Seine eigenen Prüfungen verweigern das Scharfschalten}.",
   },
   control_checked: {
     text: "{who?pilot=Der Pilot steuert|failsafe=Der Ausfallschutz des Autopiloten steuert|nobody=Niemand greift ein}.",
@@ -42,6 +62,40 @@ export const preflight = {
   },
   failsafe_parameter: { text: `${WATCH}: {parameter} = {value}.`, remedy: SET_IT },
   failsafe_unread: { text: `${WATCH}: {parameter} war nicht zu lesen.`, remedy: SET_IT },
+
+  parameter_to_set: { text: "{parameter} geht von {before} auf {after}.", remedy: "" },
+  nets_to_set: {
+    text: "Der Start setzt den eigenen Zaun des Autopiloten: {corners|Ecke|Ecken}, {no_fly|Flugverbotszone|Flugverbotszonen}. {own_zones?0=Einen anderen hat er nicht|*=Sein eigener macht solange Platz}; nach dem Flug wird alles wiederhergestellt, wie es war. {changes}",
+    remedy: "",
+  },
+  own_ceiling_lower: {
+    text: "Der eigene Zaun des Autopiloten endet bei {own_m} ({parameter}), der der Mission bei {ceiling_m}.",
+    remedy: "Die größte Höhe der Mission senken oder {parameter} mit der Bodenstation des Fluggeräts erhöhen.",
+  },
+  own_fence_tighter: {
+    text: "Der Zaun der Mission reicht {beyond_m} über den Zaun hinaus, den der Autopilot schon hat.",
+    remedy: "Den Zaun der Mission darin zeichnen oder den des Fluggeräts mit seiner Bodenstation ändern.",
+  },
+  fence_too_detailed: {
+    text: "Zaun und Flugverbotszonen haben {corners|Ecke|Ecken}; der Autopilot fasst {most}.",
+    remedy: "Sie mit weniger Ecken zeichnen.",
+  },
+  fence_not_transferred: {
+    text: "Der Zaun des Autopiloten ließ sich nicht {way?read=lesen|sent=senden} ({why}).",
+    remedy: "Die Funkstrecke prüfen; ein Zaun auf der Speicherkarte des Autopiloten kann beschädigt sein.",
+  },
+  fence_unknown_form: {
+    text: "Der Autopilot hat einen Zaun, den Crossfix nicht versteht ({what}).",
+    remedy: "Ihn mit der Bodenstation des Fluggeräts ansehen und dort löschen.",
+  },
+  fence_read_back_different: {
+    text: "Der Autopilot hat einen anderen Zaun, als ihm gesendet wurde: Ecke {corner} weicht ab.",
+    remedy: "Noch einmal versuchen; bleibt es dabei, den Zaun mit der Bodenstation des Fluggeräts setzen.",
+  },
+  fence_parameter_unread: {
+    text: "Der Zaun des Autopiloten lässt sich nicht beurteilen: {parameter} war nicht zu lesen.",
+    remedy: "Die Funkstrecke prüfen und es noch einmal versuchen.",
+  },
 
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },

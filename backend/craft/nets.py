@@ -1,0 +1,89 @@
+"""What the autopilot's own fence is to be for a mission: its fence and no-fly areas as few corners, a little outside.
+
+The mission's vetoes hold the vehicle inside the fence; the autopilot's net hangs beyond them, so that a hovering
+vehicle at the edge does not fall into it. No-fly areas are sent as they were drawn.
+"""
+
+from __future__ import annotations
+
+from shapely import LinearRing, Point, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from backend.craft.safety import Limits
+from backend.events import CheckFact
+from backend.reasons import carried
+from hardware.fence import FencePolygon, MissionNets, NetsPlan
+from hardware.frame import LocalFrame
+from hardware.ports import Vehicle, VehicleError
+from hardware.reasons.nets import NetsToSet, ParameterToSet
+
+MARGIN_M = 5.0
+CEILING_MARGIN_M = 3.0
+MOST_OUTLINE_CORNERS = 32
+ROUGHNESS_M = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""The outline may be so much rougher, always outwards, to have no more corners than that."""
+
+
+def mission_nets(limits: Limits) -> MissionNets:
+    """The part of the fence that home lies in (or next to), with what may not be entered there."""
+    home = Point(0.0, 0.0)
+    outline = min(_polygons(limits.fence), key=lambda part: part.distance(home))
+    room = _outwards(outline)
+    frame = limits.frame
+    no_fly = [part for zone in limits.no_fly for part in _polygons(zone) if part.intersects(room)]
+    kept_out = tuple(_zone(part.exterior, False, frame) for part in no_fly)
+    ceiling_m = limits.maximum_altitude_relative_m
+    return MissionNets(
+        home=frame.origin,
+        needed=(*_zones(outline, frame), *kept_out),
+        zones=(*_zones(room, frame), *kept_out),
+        ceiling_m=ceiling_m,
+        net_ceiling_m=ceiling_m + CEILING_MARGIN_M,
+    )
+
+
+def _zones(shape: Polygon, frame: LocalFrame) -> list[FencePolygon]:
+    return [_zone(shape.exterior, True, frame), *(_zone(hole, False, frame) for hole in shape.interiors)]
+
+
+def _outwards(outline: Polygon) -> Polygon:
+    """Contains the outline with its margin."""
+    grown = outline
+    for roughness_m in ROUGHNESS_M:
+        wide = outline.buffer(MARGIN_M + roughness_m, join_style="mitre", mitre_limit=2.0)
+        grown = max(_polygons(wide.simplify(roughness_m) if roughness_m else wide), key=lambda part: part.area)
+        if len(grown.exterior.coords) - 1 <= MOST_OUTLINE_CORNERS:
+            break
+    return grown
+
+
+def _polygons(shape: BaseGeometry) -> list[Polygon]:
+    return [part for part in getattr(shape, "geoms", (shape,)) if isinstance(part, Polygon)]
+
+
+def _zone(ring: LinearRing, inside: bool, frame: LocalFrame) -> FencePolygon:
+    return FencePolygon(tuple(frame.to_geo(corner[0], corner[1]) for corner in ring.coords[:-1]), inside)
+
+
+async def nets_check(vehicle: Vehicle, limits: Limits) -> CheckFact:
+    """The line of the checklist: what the start would set, or why it cannot. Sets nothing."""
+    try:
+        plan = await vehicle.plan_nets(mission_nets(limits))
+    except VehicleError as error:
+        return CheckFact(name="nets", ok=False, reason=carried(error.reason), blocking=True)
+    return CheckFact(name="nets", ok=True, reason=to_set(plan), blocking=True)
+
+
+def to_set(plan: NetsPlan) -> NetsToSet:
+    """What the start would set, in the words of the checklist's row."""
+    polygons = [zone for zone in plan.after.zones if isinstance(zone, FencePolygon)]
+    after = plan.after.values()
+    changes = tuple(
+        ParameterToSet(name, value, after[name]) for name, value in plan.before.values().items() if after[name] != value
+    )
+    return NetsToSet(
+        corners=sum(len(zone.corners) for zone in polygons),
+        no_fly=sum(not zone.inside for zone in polygons),
+        own_zones=len(plan.before.zones),
+        changes=changes,
+    )
