@@ -63,6 +63,10 @@ from backend.events.orders import (
     CommandAccepted,
     CommandRefused,
     HoldOrdered,
+    LandOrdered,
+    OrderDone,
+    OrderNotDone,
+    OrderTried,
     ResumeOrdered,
     ReturnOrdered,
 )
@@ -97,6 +101,7 @@ __all__ = [
     "HoldOrdered",
     "ImportSource",
     "Known",
+    "LandOrdered",
     "Link",
     "LinkLost",
     "LinkRestored",
@@ -105,6 +110,9 @@ __all__ = [
     "MissionEnded",
     "MissionPhase",
     "MissionStarted",
+    "OrderDone",
+    "OrderNotDone",
+    "OrderTried",
     "Outcome",
     "Peak",
     "PersonSource",
@@ -151,7 +159,11 @@ Event = Annotated[
     | HoldOrdered
     | ResumeOrdered
     | ReturnOrdered
+    | LandOrdered
     | AbortOrdered
+    | OrderTried
+    | OrderNotDone
+    | OrderDone
     | AutomaticChanged
     | AuthorityChanged
     | CommandAccepted
