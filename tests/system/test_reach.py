@@ -65,6 +65,7 @@ async def test_a_vehicle_in_the_air_without_a_mission_is_shown_and_reached_and_n
         commanded = {22, 176, 192, 400}  # take-off, mode, reposition, arm
         async with serving(tmp_path / "two", "--vehicle", vehicle.url) as (url, _), console(url) as after:
             since = (await vehicle.order("ping"))["time_s"]
+            await after.draft(planner={"seed": 3})
             await after.watch()
 
             def shown() -> bool:
@@ -76,7 +77,6 @@ async def test_a_vehicle_in_the_air_without_a_mission_is_shown_and_reached_and_n
             await asyncio.sleep(1.0)
             sent = (await vehicle.order("commands", since_s=since))["commands"]
             assert not [number for _, number in sent if number in commanded]
-            await after.draft(planner={"seed": 3})
             assert (await after.order("start"))["reason"]["code"] == "already_in_air"
             assert (await order_craft(after, "hold"))["accepted"]
             assert (await order_craft(after, "return"))["accepted"]
