@@ -1,6 +1,6 @@
 """What a browser may ask: REST bodies. Commands are idempotent by the client-made `command_id`.
 
-craft_id None: of hold, return and abort every craft of the mission; of all others its only craft.
+craft_id None: of hold, return, land and abort every craft of the mission; of all others its only craft.
 """
 
 from __future__ import annotations
@@ -42,6 +42,12 @@ class Return(CraftCommand):
     """The autopilot's own return; on the way the craft may still be held, and the search resumed."""
 
     kind: Literal["return"] = "return"
+
+
+class Land(CraftCommand):
+    """Land where the vehicle is: the last resort, what is below is not known."""
+
+    kind: Literal["land"] = "land"
 
 
 class Abort(CraftCommand):
@@ -99,7 +105,7 @@ class AcknowledgeAlert(Model):
     alert_id: str
 
 
-ForCraft = Start | Hold | Resume | Return | Abort | Override | Accept | Veto | SetAutomatic
+ForCraft = Start | Hold | Resume | Return | Land | Abort | Override | Accept | Veto | SetAutomatic
 ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
 Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
 
@@ -109,6 +115,13 @@ class CommandRequest(Model):
 
     command_id: UUID
     command: Command
+
+
+class CraftRequest(Model):
+    """To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back."""
+
+    command_id: UUID
+    command: Annotated[Hold | Return | Land | Resume, Field(discriminator="kind")]
 
 
 class CommandReply(Model):

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from backend.events import Event, MissionPhase, Phase, Recorded
+from backend.reasons import Reason
+from backend.reasons.flight import OrderName, Way
 from hardware.readings import Sweep, Telemetry
 from planner.belief.grid import GridBelief
 from planner.reason import ReasonedError
@@ -78,8 +80,20 @@ class Journal(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class OrderStatus:
+    """The order that a craft carries out. way: what of it is tried, or done; because: why what was tried before was not
+    done."""
+
+    order: OrderName
+    way: Way
+    stage: Literal["tried", "waits", "done"]
+    because: Reason | None
+
+
+@dataclass(frozen=True, slots=True)
 class CraftStatus:
-    """What a craft does now, and the health of its parts. mission_id None: it flies for none."""
+    """What a craft does now, and the health of its parts. mission_id None: it flies for none; phase is not "ground"
+    when it is in the air all the same. order None: nothing was ordered, or something else has come of it."""
 
     craft_id: str
     mission_id: str | None
@@ -88,6 +102,7 @@ class CraftStatus:
     receiver_power_db: float | None
     receiver_age_s: float | None
     battery_to_return_percent: float | None
+    order: OrderStatus | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from ipaddress import ip_address
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -93,3 +93,13 @@ class Settings(BaseSettings):
     def spool_path(self) -> Path:
         """Where facts wait while the database is away."""
         return self.data_dir / "journal.spool"
+
+
+def settings_of(**given: Any) -> Settings:
+    """Settings from the environment, overruled by what is not None. Raises ValueError with one sentence."""
+    try:
+        return Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(str(part) for part in first["loc"])
+        raise ValueError(f"{name}: {first['msg']}") from None

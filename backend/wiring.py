@@ -11,6 +11,7 @@ from backend.api.suggestion import suggested_mission
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
+from backend.first_hold import FirstHold
 from backend.live.hub import Hub
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
@@ -49,6 +50,10 @@ def _warm_up() -> None:
     preview(localization(spec, home), home, threads=2)
 
 
+def _warming() -> asyncio.Task[None]:
+    return asyncio.create_task(asyncio.to_thread(_warm_up))
+
+
 def _receiver(
     settings: Settings,
     vehicle: Vehicle,
@@ -79,11 +84,14 @@ async def open_services(settings: Settings) -> AsyncGenerator[Services]:
 
 @asynccontextmanager
 async def open_simulation(
-    settings: Settings, leave_flying: bool = True, emitters: Sequence[SimulatedEmitter] = EMITTERS
+    settings: Settings,
+    leave_flying: bool = True,
+    emitters: Sequence[SimulatedEmitter] = EMITTERS,
+    first: FirstHold | None = None,
 ) -> AsyncGenerator[tuple[Services, EmittersAroundHome | None]]:
     """The same, with the simulated emitters beside it (for whoever grades the answer), None when the receiver is real.
 
-    emitters: what transmits in the simulated world.
+    emitters: what transmits in the simulated world. first: the vehicle that was found in flight and held already.
 
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
@@ -91,19 +99,25 @@ async def open_simulation(
     pattern = load_pattern(settings.antenna_pattern or SMALL_YAGI)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
-    clock = ScaledClock(factor=settings.time_factor)
-    warming = asyncio.create_task(asyncio.to_thread(_warm_up))
+    clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
+    warming: asyncio.Task[None] | None = None
     async with open_journal(settings, lambda: clock.now()) as journal:
         unfinished = await journal.unfinished()
-        latest = await _latest_utc_s(journal)
-        if latest is not None and latest > clock.now():
-            clock = ScaledClock(latest, settings.time_factor)
+        if first is None:
+            latest = await _latest_utc_s(journal)
+            if latest is not None and latest > clock.now():
+                clock = ScaledClock(latest, settings.time_factor)
         hangar = Hangar(settings)
         simulated = None if settings.vehicle_url else await hangar.enter(bool(unfinished))
         missions: MissionRoom | None = None
         try:
             url = settings.vehicle_url if simulated is None else simulated.url
-            vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "")
+            found = None
+            if first is not None and first.url == url:
+                found = (first.vehicle, first.authority)
+            elif first is not None:
+                await first.vehicle.close()
+            vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
             hub = Hub(journal.read, clock.now)
             payload = PayloadHub(settings.payload_tokens, clock.now) if settings.payload_tokens else None
             receiver = _receiver(settings, vehicle, clock, payload, emitters)
@@ -127,8 +141,12 @@ async def open_simulation(
                     database=lambda: journal.report().state,
                 )
             )
+            if not unfinished:
+                warming = _warming()
             await missions.start_up()
-            if not unfinished:  # a mission in flight needs its page at once
+            if warming is None:  # a mission in flight needs its hold and its page first
+                warming = _warming()
+            else:
                 await warming
             services = Services(missions, journal, hub, settings, clock.now, payload, finder=finder, pattern=pattern)
             try:
@@ -136,9 +154,10 @@ async def open_simulation(
             finally:
                 await services.workers.close()
         finally:
-            await asyncio.gather(warming, return_exceptions=True)
             in_flight = missions is not None and missions.flights.active is not None
             if missions is not None:
                 await missions.shut_down()
+            if warming is not None:
+                await asyncio.gather(warming, return_exceptions=True)
             if simulated is not None and not (leave_flying and in_flight):
                 await hangar.leave(simulated)

@@ -14,7 +14,7 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
-from backend.api import maps, missions, planning, read_export, recordings, review, scene, system
+from backend.api import crafts, maps, missions, planning, read_export, recordings, review, scene, system
 from backend.commands import Command
 from backend.events import Event
 from backend.generated import write_or_check
@@ -27,6 +27,7 @@ from backend.wire.problem import Problem
 ROUTERS = (
     system.router,
     missions.router,
+    crafts.router,
     recordings.router,
     review.router,
     read_export.router,

@@ -16,8 +16,8 @@ import websockets
 from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import sentences, summary
 from backend.cli.edge import print_json, remark, stop, words_of
-from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
-from backend.settings import Settings
+from backend.cli.running import CannotServe, running_server, stop_on_signals
+from backend.settings import Settings, settings_of
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.spec import MOST_EMITTERS, EmitterSpec
 from backend.store.journal import DatabaseAway
@@ -136,7 +136,7 @@ async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool, tag
         if not headless:
             _tell(result, err=json_)
             remark("the page stays open to look at; Ctrl-C stops the server")
-            stop_on_signals(running)
+            stop_on_signals(running, remark)
             await running.gone
         return result
 

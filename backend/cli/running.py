@@ -5,16 +5,16 @@ from __future__ import annotations
 import asyncio
 import signal
 import socket
-from collections.abc import AsyncGenerator, Generator, Sequence
+from collections.abc import AsyncGenerator, Callable, Generator, Sequence
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass
-from typing import Any
 
 import uvicorn
-from pydantic import ValidationError
 
 from backend.api.services import Services
+from backend.first_hold import FirstHold
 from backend.main import create_app, server_config
+from backend.mission.flights import LeftFlying
 from backend.settings import Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.receiver import EmittersAroundHome
@@ -23,16 +23,6 @@ from backend.wiring import open_simulation
 
 class CannotServe(RuntimeError):
     """The server cannot start; the message says why and what to try."""
-
-
-def settings_of(**given: Any) -> Settings:
-    """Settings from the environment, overruled by what is not None. Raises ValueError with one sentence."""
-    try:
-        return Settings(**{name: value for name, value in given.items() if value is not None})
-    except ValidationError as error:
-        first = error.errors()[0]
-        name = ".".join(str(part) for part in first["loc"])
-        raise ValueError(f"{name}: {first['msg']}") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,15 +59,18 @@ class _Server(uvicorn.Server):
 
 @asynccontextmanager
 async def running_server(
-    settings: Settings, leave_flying: bool = False, emitters: Sequence[SimulatedEmitter] = EMITTERS
+    settings: Settings,
+    leave_flying: bool = False,
+    emitters: Sequence[SimulatedEmitter] = EMITTERS,
+    first: FirstHold | None = None,
 ) -> AsyncGenerator[RunningServer]:
     """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError.
 
-    emitters: what transmits in the simulated world.
+    emitters: what transmits in the simulated world. first: the vehicle that was found in flight and held already.
     """
     bound = _bind(settings.host, settings.port)
     try:
-        async with open_simulation(settings, leave_flying, emitters) as (services, receiver):
+        async with open_simulation(settings, leave_flying, emitters, first) as (services, receiver):
             app = create_app(settings, lambda _: nullcontext(services))
             server = _Server(server_config(settings, app))
             gone = asyncio.create_task(server.serve(sockets=[bound]))
@@ -98,16 +91,52 @@ async def running_server(
         bound.close()
 
 
-def stop_on_signals(running: RunningServer) -> None:
-    """Ctrl-C and SIGTERM end the server politely; a second one ends it at once."""
+STOPPING = (signal.SIGINT, signal.SIGTERM)
+HOLD_PATIENCE_S = 5.0
+"""So long a vehicle may take to confirm its hold before the server ends without."""
+
+
+def stop_on_signals(running: RunningServer, say: Callable[[str], None]) -> None:
+    """Ctrl-C and SIGTERM hold what flies by itself, say what became of it, and end the server; a second one of either
+    ends it at once."""
     loop = asyncio.get_running_loop()
+    leaving: list[asyncio.Task[None]] = []
 
-    def stop(number: int) -> None:
+    def stop() -> None:
+        for number in STOPPING:
+            loop.remove_signal_handler(number)
+            signal.signal(number, signal.SIG_DFL)
+        leaving.append(asyncio.create_task(_leave(running, say)))
+
+    for number in STOPPING:
+        loop.add_signal_handler(number, stop)
+
+
+async def _leave(running: RunningServer, say: Callable[[str], None]) -> None:
+    try:
+        for left in await running.services.missions.flights.leave(HOLD_PATIENCE_S):
+            say(f"{left.craft_id}: {_left_words(left)}")
+    finally:
         running.stop()
-        loop.remove_signal_handler(number)
 
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, stop, number)
+
+def _left_words(left: LeftFlying) -> str:
+    if not left.confirmed:
+        return (
+            "what it was ordered is NOT confirmed. The link is closed: its autopilot's own failsafe acts. "
+            "Look at the vehicle; the pilot can take over."
+        )
+    if left.who == "failsafe":
+        return "its autopilot brings it home by itself."
+    match left.phase:
+        case "hold":
+            return "held in the air. Without this server its autopilot's failsafe acts; the next one finds it in hold."
+        case "returning" | "landing":
+            return "on its way home; its autopilot goes on by itself."
+        case "manual":
+            return "the pilot flies."
+        case _:
+            return f"left in {left.phase}."
 
 
 def _bind(host: str, port: int) -> socket.socket:

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
 from backend.cli.edge import print_json, remark, stop
-from backend.cli.running import CannotServe, running_server, settings_of, stop_on_signals
-from backend.settings import Settings
-from backend.store.journal import DatabaseAway
-from backend.store.opening import DatabaseUnusable
-from backend.store.reading import JournalUnavailable
-from hardware.direction_finding.pattern_file import PatternError
-from hardware.ports import HardwareError
+from backend.settings import Settings, settings_of
+from planner.reason import ReasonedError
 
 
 def serve(
@@ -74,20 +70,39 @@ def serve(
         remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:
         asyncio.run(_serve(settings, json_))
-    except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
-        stop(error)
-    except (DatabaseAway, JournalUnavailable) as error:
-        stop(f"the database does not answer ({error}); try again when the machine is less busy")
+    except (ReasonedError, RuntimeError, ValueError) as error:
+        _stop_because(error)
     except KeyboardInterrupt:
         raise typer.Exit(0) from None
 
 
 async def _serve(settings: Settings, json_: bool) -> None:
-    async with running_server(settings, leave_flying=True) as running:
-        stop_on_signals(running)
+    """What was left in flight is held before anything else is loaded, which takes seconds: a thread does that while
+    the link is served."""
+    from backend.first_hold import hold_what_flies
+
+    first = await hold_what_flies(settings)
+    server = await asyncio.to_thread(importlib.import_module, "backend.cli.running")
+    async with server.running_server(settings, leave_flying=True, first=first) as running:
+        server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         if json_:
             print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
         await running.gone
+
+
+def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:
+    """Raises what nobody foresaw."""
+    from backend.cli.running import CannotServe
+    from backend.ports import JournalUnavailable
+    from backend.store.journal import DatabaseAway
+
+    match error:
+        case DatabaseAway() | JournalUnavailable():
+            stop(f"the database does not answer ({error}); try again when the machine is less busy")
+        case ReasonedError() | ValueError() | CannotServe():
+            stop(error)
+        case _:
+            raise error

@@ -10,7 +10,7 @@ from backend.reasons import Reason
 from backend.search.effects import Record, Refuse
 from backend.spec import Place
 
-TimerName = Literal["console_hold", "console_return", "landing"]
+TimerName = Literal["console_hold", "console_return", "landing", "order"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +58,7 @@ class HoldVehicle:
 
 @dataclass(frozen=True, slots=True)
 class ReturnHome:
-    """The autopilot's own return. `hold_first`: brake before it (abort)."""
-
-    hold_first: bool = False
+    """The autopilot's own return."""
 
 
 @dataclass(frozen=True, slots=True)

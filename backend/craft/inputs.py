@@ -8,7 +8,7 @@ from backend.commands import ForCraft
 from backend.craft.effects import TimerName
 from backend.events import AntennaFact, BearingMeasured, CheckFact, Link, PlanChosen, SweepRejected
 from backend.reasons import Reason
-from backend.reasons.flight import StepName, WatchBroke
+from backend.reasons.flight import StepName, WatchBroke, Way
 from backend.spec import Place
 from hardware.authority import Authority
 
@@ -78,6 +78,13 @@ class SweepTaken:
     """One turn: what it said of each emitter."""
 
     results: tuple[BearingMeasured | SweepRejected, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedOut:
+    """Telemetry shows that the vehicle does what it was told."""
+
+    way: Way
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +179,11 @@ class Restarted:
 
 
 @dataclass(frozen=True, slots=True)
+class Leaving:
+    """This server is about to end; nobody is there to fly on."""
+
+
+@dataclass(frozen=True, slots=True)
 class Abandoned:
     """Nobody brings this flight back after a restart: another one took its place, or it cannot be read."""
 
@@ -186,6 +198,7 @@ CraftInput = (
     | NothingToPlan
     | Arrived
     | SweepTaken
+    | CarriedOut
     | WorkFailed
     | WorkVetoed
     | AuthorityHeard
@@ -199,5 +212,6 @@ CraftInput = (
     | TimerExpired
     | Broke
     | Restarted
+    | Leaving
     | Abandoned
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from backend.craft import orders
-from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, HoldVehicle, Land, ReturnHome, StartTimer
+from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, StartTimer
 from backend.craft.inputs import (
     Abandoned,
     Arrived,
@@ -18,12 +18,14 @@ from backend.craft.inputs import (
     BatteryLow,
     BatteryReported,
     Broke,
+    CarriedOut,
     CraftInput,
     CraftOrdered,
     FailsafeEnded,
     HomeReached,
     InTheAir,
     Landed,
+    Leaving,
     LinkDown,
     LinkUp,
     NothingToPlan,
@@ -35,20 +37,24 @@ from backend.craft.inputs import (
     WorkFailed,
     WorkVetoed,
 )
-from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, ours_to_order, pilot_has
 from backend.craft.step import (
     CraftStep,
     alert,
     bring_down,
     cancel_timers,
+    carried_out,
     clear_alerts,
     clear_failsafe,
     come_down,
     go_home,
     go_on,
     hold,
+    insist,
     measure,
+    not_done,
     refuse_flight,
+    try_rung,
 )
 from backend.events import (
     AuthorityChanged,
@@ -64,7 +70,6 @@ from backend.events import (
 from backend.reasons import (
     NotLocalized,
     NoUsableBearing,
-    OrderedAgainLater,
     Reason,
     ReceiverTrouble,
     flight,
@@ -104,6 +109,8 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _search_changed(step)
         case InTheAir() | Planned() | NothingToPlan() | Arrived() | SweepTaken():
             _finished(step, given)
+        case CarriedOut(way=way):
+            carried_out(step, way)
         case WorkFailed():
             _failed(step, given)
         case WorkVetoed(vetoes=vetoes):
@@ -129,6 +136,11 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _timer(step, given)
         case Restarted(authority=authority):
             _restarted(step, authority)
+        case Leaving():
+            if craft.engaged and craft.phase in AUTOMATIC and not craft.taken_over:
+                reason = flight.ServerEnds()
+                step.record(HoldOrdered(craft_id=craft.craft_id, by=None, reason=reason))
+                hold(step, reason)
         case Abandoned(because=because):
             if craft.engaged:
                 come_down(step, because, "failed")
@@ -204,15 +216,18 @@ def _doubt_place(step: CraftStep, bearing: BearingMeasured) -> None:
 
 
 def _failed(step: CraftStep, given: WorkFailed) -> None:
-    phase, way_home = step.craft.phase, given.step in ("return", "land")
-    if not step.craft.engaged or step.craft.taken_over:
+    craft, phase = step.craft, step.craft.phase
+    if not craft.engaged or craft.taken_over:
         return
-    unheard = "vehicle" in step.craft.links_down and (way_home or given.step == "hold")
-    alert(step, "failure", "warning", OrderedAgainLater(given.because) if unheard else given.because)
+    ladder = craft.ladder
+    if ladder is not None and ladder.stage == "tried" and ladder.way == given.step:
+        not_done(step, ladder, given.because)
+        return
+    alert(step, "failure", "warning", given.because)
     if phase == "taking_off" and given.step == "take_off" and given.in_air is False:
         step.do(CancelWork())
         come_down(step, given.because, "failed")
-    elif phase in AUTOMATIC or (phase in HOMEWARD and way_home and not (unheard or step.comes_by_itself)):
+    elif phase in AUTOMATIC:
         hold(step, given.because)
 
 
@@ -226,6 +241,9 @@ def _authority(step: CraftStep, heard: Authority) -> None:
         step.do(CancelWork())
         cancel_timers(step)
     step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
+    if not ours_to_order(heard):
+        step.do(CancelTimer("order"))
+        clear_alerts(step, "order")
     if taken:
         clear_failsafe(step)
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
@@ -296,11 +314,11 @@ def _heard_again(step: CraftStep) -> None:
     craft = step.craft
     if craft.phase in HOMEWARD:
         clear_alerts(step, "failure")
-        bring_down(step, Land() if craft.phase == "landing" else ReturnHome())
+        bring_down(step, "land" if craft.phase == "landing" else "return")
     elif craft.phase == "hold" and step.comes_by_itself:
         alert(step, "vehicle", "caution", flight.FailsafeFlies("link_lost"))
     elif craft.phase == "hold":
-        step.do(HoldVehicle())
+        insist(step, "hold")
 
 
 def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
@@ -339,6 +357,8 @@ def _on_the_ground(step: CraftStep) -> None:
         step.go("hold", reason)
     if all(raised.topic != "ground" for raised in step.craft.open_alerts):
         clear_failsafe(step)
+        step.do(CancelTimer("order"))
+        clear_alerts(step, "order")
         alert(step, "ground", "warning", reason)
 
 
@@ -355,7 +375,10 @@ def _timer(step: CraftStep, given: TimerExpired) -> None:
             step.record(ReturnOrdered(craft_id=craft_id, by=None, reason=reason))
             go_home(step, reason)
         case "landing" if phase == "landing":
-            bring_down(step, Land())
+            bring_down(step, "land")
+        case "order" if step.craft.ladder is not None and step.craft.ladder.stage == "waits":
+            step.do(CancelWork())
+            try_rung(step, step.craft.ladder)
         case _:
             return
 
@@ -378,5 +401,5 @@ def _restarted(step: CraftStep, heard: Authority) -> None:
         ordered = craft.phase in HOMEWARD
         _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
     else:
-        step.do(HoldVehicle())
+        insist(step, "hold")
         step.go("hold", flight.BackAfterRestart())

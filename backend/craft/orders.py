@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from backend.commands import Abort, Accept, Hold, Override, Resume, Return, SetAutomatic, Start, Veto
-from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, ReturnHome, TakeControl
+from backend.commands import Abort, Accept, Hold, Land, Override, Resume, Return, SetAutomatic, Start, Veto
+from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, TakeControl
 from backend.craft.inputs import CraftOrdered
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.craft.step import (
@@ -14,6 +14,7 @@ from backend.craft.step import (
     clear_alerts,
     clear_failsafe,
     go_on,
+    insist,
     record_vetoes,
     take_off,
 )
@@ -22,6 +23,7 @@ from backend.events import (
     AuthorityChanged,
     AutomaticChanged,
     HoldOrdered,
+    LandOrdered,
     MissionStarted,
     PlanChosen,
     PlanVetoed,
@@ -48,6 +50,8 @@ def carry_out(step: CraftStep, given: CraftOrdered) -> None:
             _resume(step, given)
         case Return():
             _return(step, given)
+        case Land():
+            _land(step, given)
         case Abort():
             _abort(step, given)
         case Override():
@@ -98,8 +102,8 @@ def _hold(step: CraftStep, given: CraftOrdered) -> None:
     _refuse_out_of_reach(step)
     step.do(CancelWork())
     _take_from_failsafe(step, given.by)
-    step.do(HoldVehicle())
     step.record(HoldOrdered(craft_id=step.craft.craft_id, by=given.by, reason=None))
+    insist(step, "hold")
     step.go("hold", Ordered("hold", given.by))
 
 
@@ -115,12 +119,13 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
     _refuse_objections(step, given)
     step.record(ResumeOrdered(craft_id=craft.craft_id, by=given.by))
     _take_control(step, given.by)
-    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground")
+    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground", "order")
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
+    step.do(CancelTimer("order"))
     reason = Ordered("resume", given.by)
     if search.stage == "ended":
-        step.do(HoldVehicle())
+        insist(step, "hold")
         step.go("hold", reason)
     elif given.on_ground and not search.localized:
         take_off(step, reason)
@@ -130,13 +135,24 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
 
 def _return(step: CraftStep, given: CraftOrdered) -> None:
     _refuse_out_of_reach(step)
-    if step.craft.phase == "landing":
+    ladder = step.craft.ladder
+    lands_at_home = ladder is None or ladder.way != "land"
+    if step.craft.phase == "landing" and lands_at_home:
         raise Refused(refusals.LandingAlready())
     step.do(CancelWork())
     _take_from_failsafe(step, given.by)
     step.record(ReturnOrdered(craft_id=step.craft.craft_id, by=given.by, reason=None))
     step.go("returning", Ordered("return", given.by))
-    step.do(ReturnHome())
+    insist(step, "return")
+
+
+def _land(step: CraftStep, given: CraftOrdered) -> None:
+    _refuse_out_of_reach(step)
+    step.do(CancelWork())
+    _take_from_failsafe(step, given.by)
+    step.record(LandOrdered(craft_id=step.craft.craft_id, by=given.by, reason=None))
+    step.go("landing", Ordered("land", given.by))
+    insist(step, "land")
 
 
 def _abort(step: CraftStep, given: CraftOrdered) -> None:
@@ -147,12 +163,11 @@ def _abort(step: CraftStep, given: CraftOrdered) -> None:
     reason = Ordered("abort", given.by)
     step.do(CancelWork())
     _take_from_failsafe(step, given.by)
-    if not step.craft.taken_over:
-        step.do(ReturnHome(hold_first=True))
     step.record(AbortOrdered(craft_id=step.craft.craft_id, by=given.by))
+    cancel_timers(step)
     if not step.craft.taken_over:
         step.go("returning", reason)
-    cancel_timers(step)
+        insist(step, "abort")
     step.do(LeaveSearch(reason, "aborted"))
 
 

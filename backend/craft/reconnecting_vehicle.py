@@ -34,9 +34,16 @@ class ReconnectingVehicle:
     """The Vehicle port on a link that is opened when somebody answers. `make` builds one not yet connected.
 
     Until then commands raise VehicleUnreachable, telemetry is not connected, `changes` waits, and preflight says why.
+    connected: one that answers already, and from whose authority it was told to go on.
     """
 
-    def __init__(self, make: Callable[[], Vehicle], clock: Clock, where: str) -> None:
+    def __init__(
+        self,
+        make: Callable[[], Vehicle],
+        clock: Clock,
+        where: str,
+        connected: tuple[Vehicle, Authority] | None = None,
+    ) -> None:
         self._make = make
         self._clock = clock
         self._where = where
@@ -45,10 +52,14 @@ class ReconnectingVehicle:
         self._connecting: asyncio.Task[None] | None = None
         self._restored: Authority | None = None
         self.reason: Reason | None = NoVehicleYet(where)
+        if connected is not None:
+            self._vehicle, self._restored = connected
+            self.reason = None
+            self._there.set()
 
     async def connect(self, timeout_s: float = 30.0) -> None:
         """Wait at most so long for the first answer; goes on trying afterwards. Raises VehicleUnreachable."""
-        if self._connecting is None:
+        if self._connecting is None and self._vehicle is None:
             self._connecting = asyncio.create_task(self._keep_trying())
         try:
             async with asyncio.timeout(timeout_s):
@@ -152,7 +163,9 @@ class ReconnectingVehicle:
             self._vehicle.take_control()
 
     def restore(self, authority: Authority) -> None:
-        """Kept for the vehicle that answers later."""
+        """Kept for the vehicle that answers later. The same again changes nothing: what was heard since counts."""
+        if self._vehicle is not None and authority == self._restored:
+            return
         self._restored = authority
         if self._vehicle is not None:
             self._vehicle.restore(authority)

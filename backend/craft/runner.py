@@ -10,33 +10,28 @@ import asyncio
 import logging
 from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
-from typing import Literal, assert_never
+from typing import Literal
 
 from backend.commands import ForCraft, Override, Resume
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
+from backend.craft.hands import Hands
 from backend.craft.listening import Listening, channels_of
 from backend.craft.measuring import Measured
 from backend.craft.safety import Limits, battery_vetoes, limits_of, resume_vetoes
-from backend.craft.state import AUTOMATIC, CraftState
+from backend.craft.state import CraftState
 from backend.craft.watch.watch import Watch
 from backend.craft.work import Work
 from backend.ports import TrackPoint
-from backend.reasons import Reason, carried
-from backend.reasons.flight import StepBroke, StepName, WatchBroke
+from backend.reasons import Reason
+from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
-from hardware.ports import HardwareError, NotInControl
-from planner.types import PlannerError
 
 log = logging.getLogger("crossfix.craft")
 
 TRACK_SAVED_S = 2.5
 KEEP_ON_S = 1.0
-
-Slot = Literal["command", "planning"]
-Doing = Callable[[], Coroutine[None, None, inputs.CraftInput | None]]
-"""A piece of work, begun when its turn comes: one that is cancelled before was never begun."""
 
 
 class CraftRunner:
@@ -57,7 +52,6 @@ class CraftRunner:
         keep_sweep: Callable[[Measured, int, int], None],
     ) -> None:
         self.equipment = equipment
-        self._craft = craft
         self._search = search
         self._give = give
         self._keep_track = keep_track
@@ -67,8 +61,7 @@ class CraftRunner:
         )
         self.watch = Watch(equipment, limits, self.listening, craft, give)
         self.work = Work(equipment, task, limits, mission_id, self.listening, self.watch.situation, search, keep_sweep)
-        self._slots: dict[Slot, asyncio.Task[None]] = {}
-        self._timers: dict[effects.TimerName, asyncio.Task[None]] = {}
+        self._hands = Hands(equipment.vehicle, equipment.clock, craft, give, self.watch.look_at_authority)
         self._background: list[asyncio.Task[None]] = []
 
     @property
@@ -86,10 +79,10 @@ class CraftRunner:
 
     async def close(self) -> None:
         """Stop everything; the track so far is handed over. Sends nothing."""
-        tasks = [*self._background, *self._slots.values(), *self._timers.values()]
-        for task in tasks:
+        for task in self._background:
             task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
+        await asyncio.gather(*self._background, return_exceptions=True)
+        await self._hands.close()
         self.flush_track()
         await self.listening.stop()
 
@@ -98,12 +91,6 @@ class CraftRunner:
         limits = limits_of(task)
         self.watch.limits = self.work.limits = limits
         self.work.task = task
-
-    @property
-    def down(self) -> bool:
-        """Certainly on the ground and disarmed."""
-        telemetry = self.equipment.vehicle.telemetry()
-        return telemetry.in_air is False and telemetry.armed is False
 
     def objections(self, command: ForCraft) -> tuple[Reason, ...]:
         """What safety has against an override, or against resuming, right now."""
@@ -121,110 +108,19 @@ class CraftRunner:
 
     def carry_out(self, effect: effects.CraftEffect) -> None:
         """Begins the work and returns; what comes of it is given to the machine."""
-        vehicle = self.equipment.vehicle
         match effect:
-            case effects.CancelWork():
-                self._cancel("command")
-                self._cancel("planning")
             case effects.TakeOff():
-                self._run("command", "take_off", partial(self.work.take_off, effect))
+                self._hands.run("command", "take_off", partial(self.work.take_off, effect))
             case effects.FlyTo():
-                self._run("command", "fly", partial(self.work.fly, effect))
+                self._hands.run("command", "fly", partial(self.work.fly, effect))
             case effects.Measure():
-                self._run("command", "measure", partial(self.work.measure, effect))
-            case effects.HoldVehicle():
-                self._run("command", "hold", self._hold)
-            case effects.ReturnHome(hold_first=hold_first):
-                self._run("command", "return", partial(self._return_home, hold_first))
-            case effects.Land():
-                self._run("command", "land", self._land)
+                self._hands.run("command", "measure", partial(self.work.measure, effect))
             case effects.PlanNext():
-                self._run("planning", "plan", partial(self.work.plan, effect))
-            case effects.TakeControl():
-                vehicle.take_control()
-            case effects.StartTimer(name=name, seconds=seconds):
-                self._stop_timer(name)
-                self._timers[name] = asyncio.create_task(self._expire(name, seconds))
-            case effects.CancelTimer(name=name):
-                self._stop_timer(name)
+                self._hands.run("planning", "plan", partial(self.work.plan, effect))
             case effects.Record() | effects.Refuse() | effects.LeaveSearch():
                 pass
             case _:
-                assert_never(effect)
-
-    async def _hold(self) -> None:
-        await self.equipment.vehicle.hold()
-
-    async def _land(self) -> None:
-        if not (self.down or self._comes_by_itself):
-            await self.equipment.vehicle.land()
-
-    @property
-    def _comes_by_itself(self) -> bool:
-        return self.equipment.vehicle.telemetry().authority.who == "failsafe"
-
-    async def _return_home(self, hold_first: bool) -> None:
-        vehicle = self.equipment.vehicle
-        if self.down or self._comes_by_itself:
-            return
-        if hold_first:
-            try:
-                await vehicle.hold()
-            except NotInControl:
-                raise
-            except HardwareError as error:
-                log.warning("%s: no hold before the return: %s", self.equipment.craft_id, error)
-        await vehicle.return_home()
-
-    # Work: one a slot, the newest wins; the result of a cancelled one is never given
-
-    def _cancel(self, slot: Slot) -> None:
-        running = self._slots.pop(slot, None)
-        if running is not None and running is not asyncio.current_task():
-            running.cancel()
-
-    def _run(self, slot: Slot, name: StepName, work: Doing) -> None:
-        self._cancel(slot)
-        self._slots[slot] = asyncio.create_task(self._finish(slot, name, work))
-
-    async def _finish(self, slot: Slot, name: StepName, work: Doing) -> None:
-        task = asyncio.current_task()
-        try:
-            result = await work()
-        except NotInControl as error:
-            self.watch.look_at_authority()
-            unnoticed = self._craft().phase in AUTOMATIC
-            result = self._failure(name, carried(error.reason)) if unnoticed else None
-        except (HardwareError, PlannerError) as error:
-            result = self._failure(name, carried(error.reason))
-        except Exception:
-            log.exception("%s: %s failed", self.equipment.craft_id, name)
-            result = self._failure(name, StepBroke(name))
-        if result is not None and self._slots.get(slot) is task:
-            del self._slots[slot]
-            try:
-                self._give(result)
-            except Exception:
-                log.exception("%s: the result of %s could not be taken", self.equipment.craft_id, name)
-                self._give(self._failure(name, StepBroke(name)))
-
-    def _failure(self, name: StepName, because: Reason) -> inputs.WorkFailed:
-        telemetry = self.equipment.vehicle.telemetry()
-        may_rise = telemetry.in_air is False and telemetry.armed is not False
-        return inputs.WorkFailed(name, because, None if may_rise else telemetry.in_air)
-
-    def _stop_timer(self, name: effects.TimerName) -> None:
-        timer = self._timers.pop(name, None)
-        if timer is not None and timer is not asyncio.current_task():
-            timer.cancel()
-
-    async def _expire(self, name: effects.TimerName, seconds: float) -> None:
-        """Consoles and the people before them live in the wall's time, however fast a simulation runs."""
-        if name == "landing":
-            await self.equipment.clock.sleep(seconds)
-        else:
-            await asyncio.sleep(seconds)
-        self._give(inputs.TimerExpired(name))
+                self._hands.carry_out(effect)
 
     # What goes on beside the work
 

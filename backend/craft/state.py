@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from backend.craft.ladder import Ladder
 from backend.events import (
     AbortOrdered,
     AlertCleared,
@@ -22,6 +23,9 @@ from backend.events import (
     MissionDrafted,
     MissionEdited,
     MissionStarted,
+    OrderDone,
+    OrderNotDone,
+    OrderTried,
     Phase,
     PhaseChanged,
     PlanChosen,
@@ -46,7 +50,8 @@ class CraftState:
 
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
     or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
-    from the specification. return_reason: why it is on its way home.
+    from the specification. return_reason: why it is on its way home. ladder: of the hold, return or landing that was
+    ordered last; None once something else has come of it.
     """
 
     craft_id: str
@@ -63,6 +68,7 @@ class CraftState:
     place_number: int = 0
     avoid: tuple[Place, ...] = ()
     return_reason: Reason | None = None
+    ladder: Ladder | None = None
     authority: Authority = NOBODY
     links_down: frozenset[Link] = frozenset()
     open_alerts: tuple[OpenAlert, ...] = ()
@@ -84,6 +90,11 @@ def pilot_has(authority: Authority) -> bool:
     return authority.taken_by is not None and authority.who != "failsafe"
 
 
+def ours_to_order(authority: Authority) -> bool:
+    """Neither a pilot nor the autopilot's failsafe has the vehicle."""
+    return authority.who != "failsafe" and not pilot_has(authority)
+
+
 def evolve(state: CraftState, event: Event) -> CraftState:
     """The state after one fact of the mission."""
     owner = getattr(event, "craft_id", None)
@@ -99,11 +110,13 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case PhaseChanged(after=after, reason=reason):
             back = reason if after == "returning" else state.return_reason
             up = after != "ground"
+            ordered = after in HOMEWARD or after == "hold"
             return replace(
                 state,
                 phase=after,
                 phase_reason=reason,
                 return_reason=back,
+                ladder=state.ladder if ordered else None,
                 engaged=state.engaged and up,
                 searching=state.searching and up,
             )
@@ -114,13 +127,19 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case AbortOrdered():
             return replace(state, searching=False)
         case AuthorityChanged(authority=authority):
-            return replace(state, authority=authority)
+            return replace(state, authority=authority, ladder=state.ladder if ours_to_order(authority) else None)
+        case OrderTried(order=order, rung=rung, because=because):
+            return replace(state, ladder=Ladder(order, rung, "tried", because))
+        case OrderNotDone(order=order, rung=rung, reason=reason):
+            return replace(state, ladder=Ladder(order, rung, "waits", reason))
+        case OrderDone() if state.ladder is not None:
+            return replace(state, ladder=replace(state.ladder, stage="done"))
         case LinkLost(link=link):
             return replace(state, links_down=state.links_down | {link})
         case LinkRestored(link=link):
             return replace(state, links_down=state.links_down - {link})
         case ServerRestarted():
-            return replace(state, links_down=frozenset())
+            return replace(state, links_down=frozenset(), ladder=None)
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=str()):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)

@@ -16,14 +16,19 @@ from backend.craft.effects import (
     Measure,
     PlanNext,
     ReturnHome,
+    StartTimer,
     TakeOff,
 )
+from backend.craft.ladder import Ladder
 from backend.craft.state import CraftState, evolve
 from backend.events import (
     AlertCleared,
     AlertRaised,
     Event,
     FlightStarted,
+    OrderDone,
+    OrderNotDone,
+    OrderTried,
     Outcome,
     Phase,
     PhaseChanged,
@@ -31,7 +36,8 @@ from backend.events import (
     SweepStarted,
     Topic,
 )
-from backend.reasons import NotLocalized, PlacesUsedUp, Reason
+from backend.reasons import Instead, NotDone, NotLocalized, OrderedAgainLater, PlacesUsedUp, Reason
+from backend.reasons.flight import OrderName, Way
 from backend.reasons.safety import BATTERY
 from backend.reasons.search import Localized
 from backend.search.altitude import altitude_at
@@ -41,6 +47,7 @@ from backend.search.state import evolve as evolve_search
 
 OF_THE_FLIGHT: tuple[Topic, ...] = (
     "vehicle", "receiver", "console", "payload", "gps", "pilot", "battery", "place", "failure", "safety", "ground",
+    "order",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
 
@@ -119,19 +126,19 @@ def go_home(step: CraftStep, reason: Reason) -> None:
     """Whatever work runs is dropped; the autopilot's own return brings the vehicle down."""
     step.do(CancelWork())
     step.go("returning", reason)
-    bring_down(step, ReturnHome())
+    bring_down(step, "return")
 
 
-def bring_down(step: CraftStep, way: ReturnHome | Land) -> None:
+def bring_down(step: CraftStep, order: Literal["return", "land"]) -> None:
     """Not by an order of its own while the autopilot is on its way already."""
     if not step.comes_by_itself:
-        step.do(way)
+        insist(step, order)
 
 
 def hold(step: CraftStep, reason: Reason) -> None:
     """Stop automatic flight by the mission's own decision."""
     step.do(CancelWork())
-    step.do(HoldVehicle())
+    insist(step, "hold")
     step.go("hold", reason)
 
 
@@ -148,6 +155,84 @@ def cancel_timers(step: CraftStep) -> None:
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("landing"))
+    step.do(CancelTimer("order"))
+
+
+# Orders are ladders: see ladder.py
+
+COMMAND: dict[Way, HoldVehicle | ReturnHome | Land] = {"hold": HoldVehicle(), "return": ReturnHome(), "land": Land()}
+
+
+def insist(step: CraftStep, order: OrderName) -> None:
+    """Begin an order; it takes the place of the one before."""
+    step.do(CancelTimer("order"))
+    clear_alerts(step, "order")
+    try_rung(step, Ladder(order))
+
+
+def try_rung(step: CraftStep, ladder: Ladder) -> None:
+    """Command it, and say so."""
+    craft_id = step.craft.craft_id
+    step.record(
+        OrderTried(craft_id=craft_id, order=ladder.order, way=ladder.way, rung=ladder.rung, because=ladder.because)
+    )
+    step.do(COMMAND[ladder.way])
+
+
+def not_done(step: CraftStep, ladder: Ladder, because: Reason) -> None:
+    """Go to the next rung, after its pause; the same one when a lost link is heard again: nobody has refused it."""
+    if "vehicle" in step.craft.links_down:
+        _waits(step, ladder, because, ladder, None)
+        alert(step, "order", "warning", OrderedAgainLater(because))
+        return
+    following = ladder.next(because)
+    _waits(step, ladder, because, following, following.after_s)
+    alert(step, "order", "warning", NotDone(ladder.order, ladder.way, because, following.way, following.after_s))
+
+
+def _waits(step: CraftStep, failed: Ladder, because: Reason, following: Ladder, seconds: float | None) -> None:
+    step.record(
+        OrderNotDone(
+            craft_id=step.craft.craft_id,
+            order=failed.order,
+            way=failed.way,
+            reason=because,
+            rung=following.rung,
+            next_way=following.way,
+            next_in_s=seconds,
+        )
+    )
+    if seconds is not None:
+        step.do(StartTimer("order", seconds))
+
+
+def carried_out(step: CraftStep, way: Way) -> None:
+    """The vehicle does what was tried last."""
+    ladder = step.craft.ladder
+    if ladder is None or ladder.stage != "tried" or ladder.way != way:
+        return
+    if ladder.fulfils:
+        step.record(OrderDone(craft_id=step.craft.craft_id, order=ladder.order, way=way))
+        clear_alerts(step, "order")
+        _does_instead(step, ladder)
+        return
+    following = ladder.next(None)
+    if following.because is None:
+        try_rung(step, following)
+    else:  # it hovers, and what was refused before is tried again after a while
+        _waits(step, ladder, following.because, following, following.after_s)
+
+
+def _does_instead(step: CraftStep, ladder: Ladder) -> None:
+    """The vehicle took another rung than the one that was ordered: the phase says what it does."""
+    if ladder.as_ordered:
+        return
+    phase: dict[Way, Phase] = {"hold": "hold", "return": "returning", "land": "landing"}
+    after = phase[ladder.way]
+    if after != step.craft.phase and ladder.because is not None:
+        reason = Instead(ladder.order, ladder.way, ladder.because)
+        alert(step, "order", "warning", reason)
+        step.go(after, reason)
 
 
 def alert(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:

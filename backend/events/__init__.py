@@ -64,6 +64,10 @@ from backend.events.orders import (
     CommandAccepted,
     CommandRefused,
     HoldOrdered,
+    LandOrdered,
+    OrderDone,
+    OrderNotDone,
+    OrderTried,
     ResumeOrdered,
     ReturnOrdered,
 )
@@ -98,6 +102,7 @@ __all__ = [
     "HoldOrdered",
     "ImportSource",
     "Known",
+    "LandOrdered",
     "Link",
     "LinkLost",
     "LinkRestored",
@@ -108,6 +113,9 @@ __all__ = [
     "MissionStarted",
     "NetsNoted",
     "NetsPutBack",
+    "OrderDone",
+    "OrderNotDone",
+    "OrderTried",
     "Outcome",
     "Peak",
     "PersonSource",
@@ -156,7 +164,11 @@ Event = Annotated[
     | HoldOrdered
     | ResumeOrdered
     | ReturnOrdered
+    | LandOrdered
     | AbortOrdered
+    | OrderTried
+    | OrderNotDone
+    | OrderDone
     | AutomaticChanged
     | AuthorityChanged
     | CommandAccepted

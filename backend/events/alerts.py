@@ -23,6 +23,7 @@ Topic = Literal[
     "failure",
     "safety",
     "ground",
+    "order",
     "storage",
 ]
 """What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place."""

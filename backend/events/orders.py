@@ -1,4 +1,7 @@
-"""What somebody ordered, and whether it was accepted. by: who, None when the mission did by itself."""
+"""What somebody ordered, whether it was accepted, and what the vehicle made of it.
+
+by: who, None when the mission did by itself.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ from typing import Literal
 
 from backend.events.fact import Fact
 from backend.reasons import Reason
+from backend.reasons.flight import OrderName, Way
 from backend.spec import Id
 
 
@@ -35,12 +39,56 @@ class ReturnOrdered(Fact):
     reason: Reason | None
 
 
+class LandOrdered(Fact):
+    """Where the vehicle is, not at home."""
+
+    kind: Literal["land_ordered"] = "land_ordered"
+    craft_id: Id
+    by: str | None
+    reason: Reason | None
+
+
 class AbortOrdered(Fact):
     """The search is over for this craft: it holds, then returns."""
 
     kind: Literal["abort_ordered"] = "abort_ordered"
     craft_id: Id
     by: str
+
+
+class OrderTried(Fact):
+    """The vehicle is told to. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
+    was not done, None of the first try."""
+
+    kind: Literal["order_tried"] = "order_tried"
+    craft_id: Id
+    order: OrderName
+    way: Way
+    rung: int
+    because: Reason | None = None
+
+
+class OrderNotDone(Fact):
+    """What was tried was refused, not heard or not seen. rung: of what is tried next; next_in_s None: when the vehicle
+    is heard again."""
+
+    kind: Literal["order_not_done"] = "order_not_done"
+    craft_id: Id
+    order: OrderName
+    way: Way
+    reason: Reason
+    rung: int
+    next_way: Way
+    next_in_s: float | None
+
+
+class OrderDone(Fact):
+    """Telemetry has confirmed it. way: what the vehicle does now, where the order itself could not be done another."""
+
+    kind: Literal["order_done"] = "order_done"
+    craft_id: Id
+    order: OrderName
+    way: Way
 
 
 class AutomaticChanged(Fact):

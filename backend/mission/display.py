@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import channels_of
 from backend.craft.safety import battery_to_return_percent
+from backend.craft.state import CraftState
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
-from backend.ports import CraftStatus, Status
+from backend.ports import CraftStatus, OrderStatus, Status
 
 TELEMETRY_S = 0.1
 TICKS_A_STATUS = 10
@@ -26,14 +27,25 @@ class Display:
     async def run(self) -> None:
         """Seconds of the wall, until cancelled."""
         publisher, clock = self.equipment.publisher, self.equipment.clock
-        tick = 0
+        tick, orders = 0, self._orders()
         while True:
             for craft in self.equipment.crafts.values():
                 publisher.telemetry(craft.craft_id, craft.vehicle.telemetry(), clock.now())
-            if tick % TICKS_A_STATUS == 0:
+            before, orders = orders, self._orders()
+            if tick % TICKS_A_STATUS == 0 or orders != before:
                 publisher.status(self.status())
             tick += 1
             await asyncio.sleep(TELEMETRY_S)
+
+    def _orders(self) -> list[OrderStatus | None]:
+        return [_order(self._state(craft)) for craft in self.equipment.crafts.values()]
+
+    def _state(self, craft: CraftEquipment) -> CraftState | None:
+        """None: it is not known to fly."""
+        active = self.flights.active
+        if active is not None and craft.craft_id in active.crafts:
+            return active.state.crafts[craft.craft_id]
+        return self.flights.loose[craft.craft_id].state
 
     def status(self) -> Status:
         """As the page gets it; mission_id None: nothing flies."""
@@ -47,9 +59,10 @@ class Display:
         )
 
     def _craft(self, craft: CraftEquipment) -> CraftStatus:
-        active, runner = self.flights.active, self.flights.craft(craft.craft_id)
+        active, runner, state = self.flights.active, self.flights.craft(craft.craft_id), self._state(craft)
         if active is None or runner is None:
-            return CraftStatus(craft.craft_id, None, "ground", "off", None, None, None)
+            phase = "ground" if state is None else state.phase
+            return CraftStatus(craft.craft_id, None, phase, "off", None, None, None, _order(state))
         situation = runner.watch.situation()
         heard = [runner.listening.last(channel.frequency_hz) for channel in channels_of(active.state.search.mission)]
         last = max((sample for sample in heard if sample is not None), key=lambda sample: sample.at_s, default=None)
@@ -61,8 +74,14 @@ class Display:
             craft_id=craft.craft_id,
             mission_id=active.mission_id,
             phase=active.state.crafts[craft.craft_id].phase,
+            order=_order(state),
             receiver=runner.listening.state,
             receiver_power_db=None if last is None else last.power_db,
             receiver_age_s=runner.listening.age_s,
             battery_to_return_percent=needed,
         )
+
+
+def _order(craft: CraftState | None) -> OrderStatus | None:
+    ladder = None if craft is None else craft.ladder
+    return None if ladder is None else OrderStatus(ladder.order, ladder.way, ladder.stage, ladder.because)

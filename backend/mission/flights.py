@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from dataclasses import dataclass, field
+from uuid import UUID
 
 from backend import commands
 from backend.commands import CommandReply, CommandRequest
@@ -16,9 +18,11 @@ from backend.craft.checklist import checklist
 from backend.craft.equipment import CraftEquipment
 from backend.craft.inputs import Abandoned, StartFacts, WorkFailed
 from backend.craft.listening import Listening
+from backend.craft.loose import LooseCommand, LooseCraft
 from backend.craft.runner import CraftRunner
 from backend.craft.safety import resume_vetoes
-from backend.events import Event
+from backend.craft.state import CraftState
+from backend.events import Event, Phase
 from backend.mission.effects import Effect, Reply
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
@@ -27,28 +31,52 @@ from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
 from backend.reasons import Interrupted, Reason
-from backend.reasons.refusals import AnotherMissionFlies, MissionOver
+from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding
+from backend.reasons.safety import AlreadyInAir
 from backend.search.antenna import antenna_fact
 from backend.search.errors import MissionInputError
 from backend.search.inputs import SearchOver
 from backend.search.other_area import task_or_reason
 from backend.search.planning import lay_out_ways
 from backend.search.task import SearchTask, search_task
+from hardware.authority import NOBODY, Who
 
 log = logging.getLogger("crossfix.mission")
+
+
+WHILE_ENDING = (commands.Hold, commands.Return, commands.Land, commands.Abort, commands.AcknowledgeAlert)
+
+
+@dataclass(frozen=True, slots=True)
+class LeftFlying:
+    """A craft of a mission when the server ends. confirmed: it does what its phase says; False: it has not confirmed
+    what it was ordered, and its autopilot's failsafe has to act."""
+
+    craft_id: str
+    phase: Phase
+    who: Who
+    confirmed: bool
 
 
 @dataclass(slots=True)
 class Flights:
     """active: the mission in the air, None when all craft are down. starting: held while one is started, or while
-    something needs that none is."""
+    something needs that none is. loose: every craft, for the time that it flies for no mission."""
 
     equipment: MissionEquipment
     records: Records
     nets: NetsKeeper
     active: MissionRunner | None = None
     starting: asyncio.Lock = field(default_factory=asyncio.Lock)
+    loose: dict[str, LooseCraft] = field(init=False)
+    ending: bool = False
     _tasks: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
+
+    def __post_init__(self) -> None:
+        def loose(craft: CraftEquipment) -> LooseCraft:
+            return LooseCraft(craft, lambda: self.craft(craft.craft_id) is not None)
+
+        self.loose = {craft_id: loose(craft) for craft_id, craft in self.equipment.crafts.items()}
 
     def running(self, mission_id: str) -> MissionRunner | None:
         """The runner of this mission, None when it does not fly."""
@@ -82,6 +110,8 @@ class Flights:
     async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
         """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
         runner = self.running(mission_id)
+        if self.ending and not isinstance(request.command, WHILE_ENDING):
+            return CommandReply(command_id=request.command_id, accepted=False, reason=ServerIsEnding(), seq=0)
         if runner is not None and isinstance(request.command, commands.ChangeArea):
             task = await asyncio.to_thread(task_or_reason, runner.state.search, request.command.search)
             runner = self.running(mission_id)
@@ -109,6 +139,15 @@ class Flights:
             trouble = await self.nets.change(craft.equipment, task, record)
             if trouble is not None:
                 runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
+
+    async def command_craft(self, craft_id: str, command_id: UUID, command: LooseCommand, by: str) -> CommandReply:
+        """To a craft in the air, whether it flies for a mission or not. Raises KeyError for an unknown craft."""
+        loose, runner = self.loose[craft_id], self.active
+        if runner is not None and craft_id in runner.crafts:
+            named = command.model_copy(update={"craft_id": craft_id})
+            return await _in_flight(runner, CommandRequest(command_id=command_id, command=named), by)
+        refused = loose.order(str(command_id), by, command)
+        return CommandReply(command_id=command_id, accepted=refused is None, reason=refused, seq=0)
 
     async def _on_the_ground(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
         state, last_seq = await self.records.load(mission_id)
@@ -144,6 +183,8 @@ class Flights:
             objections: tuple[Reason, ...] = ()
             if self.active is not None:
                 objections = (AnotherMissionFlies(self.active.state.search.mission.name),)
+            elif craft.vehicle.telemetry().in_air:
+                objections = (AlreadyInAir(),)
             checks, task = await checklist(
                 state.search.mission, craft, self.listening(craft.craft_id), state.search.antenna
             )
@@ -197,6 +238,10 @@ class Flights:
             await self._close_interrupted(mission_id, Interrupted("later_mission"))
         if unfinished:
             await self._recover(unfinished[-1])
+        for craft_id, craft in self.equipment.crafts.items():
+            if self.craft(craft_id) is None:
+                craft.vehicle.restore(NOBODY)  # its failsafe may be acting on the silence before this server
+            self._tasks.append(asyncio.create_task(self.loose[craft_id].run()))
 
     async def _recover(self, mission_id: str) -> None:
         state, last_seq = await self.records.load(mission_id)
@@ -209,7 +254,6 @@ class Flights:
             log.error("mission %s: %s", mission_id, error)
             await self._close_interrupted(mission_id, Interrupted("unreadable"))
             return
-        await asyncio.to_thread(lay_out_ways, task.first)
         runner = self.active = MissionRunner(mission_id, state, last_seq, task, self.equipment)
         for craft in state.engaged:
             known: CraftEquipment | None = self.equipment.crafts.get(craft.craft_id)
@@ -219,6 +263,7 @@ class Flights:
         runner.give(ServerCameBack())
         runner.recover()
         self._fly(runner)
+        await asyncio.to_thread(lay_out_ways, task.first)
         log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
 
     async def _close_interrupted(self, mission_id: str, why: Interrupted) -> None:
@@ -228,6 +273,29 @@ class Flights:
             await self.give(mission_id, ToCraft(craft.craft_id, Abandoned(why)))
         await self.give(mission_id, SearchOver(why, "failed"))
         log.error("mission %s is closed as interrupted: %s", mission_id, why.because)
+
+    async def leave(self, patience_s: float) -> list[LeftFlying]:
+        """Hold what flies by itself before this server ends, and say how each craft in the air is left.
+
+        One that does not confirm it in time (seconds of the wall) is handed to its autopilot's failsafe: its link is
+        closed at once, so that nothing of ours keeps that from acting.
+        """
+        self.ending, runner = True, self.active
+        if runner is None:
+            return []
+        runner.leave()
+        until = time.monotonic() + patience_s
+
+        def under_way(craft: CraftState) -> bool:
+            return craft.ladder is not None and craft.ladder.stage != "done"
+
+        while any(map(under_way, runner.state.engaged)) and time.monotonic() < until:  # noqa: ASYNC110 (a few seconds)
+            await asyncio.sleep(0.02)
+        left = [LeftFlying(c.craft_id, c.phase, c.authority.who, not under_way(c)) for c in runner.state.engaged]
+        for craft in left:
+            if not craft.confirmed and craft.craft_id in runner.crafts:
+                await runner.crafts[craft.craft_id].equipment.vehicle.close()
+        return left
 
     async def close(self) -> None:
         """Stops watching; each vehicle goes on with what it was ordered, and its own failsafe acts."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from backend.commands import Abort, AcknowledgeAlert, ChangeArea, ExcludeBearing, ForCraft, Hold, Return, Start
+from backend.commands import Abort, AcknowledgeAlert, ChangeArea, ExcludeBearing, ForCraft, Hold, Land, Return, Start
 from backend.craft import machine as craft_machine
 from backend.craft.effects import CraftEffect, LeaveSearch
 from backend.craft.inputs import CraftInput, CraftOrdered, SearchChanged
@@ -32,7 +32,7 @@ from backend.search import machine as search_machine
 from backend.search.effects import Record, Refuse, SearchEffect, UpdateBelief
 from backend.search.inputs import SearchInput, SearchOrdered, SearchOver
 
-FOR_ALL = (Hold, Return, Abort)
+FOR_ALL = (Hold, Return, Land, Abort)
 """Orders that name no craft are for every one."""
 
 

@@ -145,6 +145,11 @@ class MissionRunner:
             authority = craft.equipment.vehicle.telemetry().authority
             self.give(ToCraft(craft.equipment.craft_id, craft_inputs.Restarted(authority)))
 
+    def leave(self) -> None:
+        """The server is about to end: what flies by itself is held."""
+        for craft_id in self.crafts:
+            self.give(ToCraft(craft_id, craft_inputs.Leaving()))
+
     def _adopt(self) -> None:
         task = self._next_task
         if task is None or task.mission != self._state.search.mission:

@@ -13,7 +13,7 @@ from typing_extensions import TypeAliasType
 
 from backend.reasons.adapter import ByOneAdapter
 from backend.reasons.checks import CheckReason
-from backend.reasons.flight import FlightReason
+from backend.reasons.flight import FlightReason, OrderName, Way
 from backend.reasons.maps import MapReason
 from backend.reasons.refusals import RefusalReason
 from backend.reasons.request import RequestReason
@@ -110,6 +110,38 @@ class OrderedAgainLater:
     english: ClassVar[Words] = Words("{because}", "It is ordered again when the vehicle is heard.")
 
 
+@dataclass(frozen=True, slots=True)
+class NotDone:
+    """The vehicle has not done what was ordered. way: what was tried of it; next_way is tried next."""
+
+    order: OrderName
+    way: Way
+    because: Reason
+    next_way: Way
+    next_in_s: float
+    code: Literal["not_done"] = "not_done"
+    english: ClassVar[Words] = Words(
+        "{order?hold=The hold|return=The return|land=The landing|abort=The abort} is not done: {because} "
+        "{next_way?hold=Holding is tried|return=The return is tried|land=Landing where it is is tried} in {next_in_s}.",
+        "Another order takes its place. The pilot can take over at any time.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Instead:
+    """The vehicle refused what was ordered, and does this."""
+
+    order: OrderName
+    way: Way
+    because: Reason
+    code: Literal["instead"] = "instead"
+    english: ClassVar[Words] = Words(
+        "{order?hold=The hold|return=The return|land=The landing|abort=The abort} could not be done, so the vehicle "
+        "{way?hold=holds|return=returns|land=lands where it is}. {because}",
+        "Look at the vehicle. Another order takes its place.",
+    )
+
+
 CompositeReason = (
     ToldBefore
     | NoUsableBearing
@@ -120,6 +152,8 @@ CompositeReason = (
     | PreflightFailed
     | Interrupted
     | OrderedAgainLater
+    | NotDone
+    | Instead
 )
 
 ReasonUnion = TypeAliasType(

@@ -8,18 +8,23 @@ from typing import ClassVar, Literal
 from planner.reason import Words
 
 StepName = Literal["take_off", "fly", "measure", "plan", "belief", "hold", "return", "land"]
+Way = Literal["hold", "return", "land"]
+"""What a vehicle in the air can always be told."""
+OrderName = Literal["hold", "return", "land", "abort"]
 
 
 @dataclass(frozen=True, slots=True)
 class Ordered:
     """Somebody ordered it. by: who."""
 
-    order: Literal["start", "resume", "hold", "return", "abort", "override", "accept", "veto", "automatic", "exclude"]
+    order: Literal[
+        "start", "resume", "hold", "return", "land", "abort", "override", "accept", "veto", "automatic", "exclude"
+    ]
     by: str
     code: Literal["ordered"] = "ordered"
     english: ClassVar[Words] = Words(
-        "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|abort=Aborted|override=Place chosen"
-        "|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed"
+        "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|land=Landing ordered|abort=Aborted"
+        "|override=Place chosen|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed"
         "|exclude=Bearing excluded} by {by}."
     )
 
@@ -80,6 +85,12 @@ class PayloadLinkLost:
 class BackAfterRestart:
     code: Literal["back_after_restart"] = "back_after_restart"
     english: ClassVar[Words] = Words("The server restarted.", "Look at the vehicle, then resume.")
+
+
+@dataclass(frozen=True, slots=True)
+class ServerEnds:
+    code: Literal["server_ends"] = "server_ends"
+    english: ClassVar[Words] = Words("The server is being ended.", "Start it again, look at the vehicle, then resume.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +205,7 @@ FlightReason = (
     | PlaceUnknown
     | PayloadLinkLost
     | BackAfterRestart
+    | ServerEnds
     | PilotFlies
     | FailsafeFlies
     | FailsafeStopped

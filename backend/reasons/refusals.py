@@ -140,6 +140,14 @@ class MissionFlies:
 
 
 @dataclass(frozen=True, slots=True)
+class ServerIsEnding:
+    code: Literal["server_is_ending"] = "server_is_ending"
+    english: ClassVar[Words] = Words(
+        "The server is being ended: it only holds, returns and lands.", "Start it again first."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class MissionDoesNotFly:
     code: Literal["mission_does_not_fly"] = "mission_does_not_fly"
     english: ClassVar[Words] = Words("The mission is not flying.", "Edit the draft, or draft a new mission.")
@@ -167,4 +175,5 @@ RefusalReason = (
     | NotEditable
     | MissionFlies
     | MissionDoesNotFly
+    | ServerIsEnding
 )

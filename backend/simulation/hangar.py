@@ -61,6 +61,11 @@ class Hangar:
         self._register.write_text(json.dumps(self._key() | ports))
         return started
 
+    async def address_left(self) -> str | None:
+        """URL of the vehicle that an earlier server of these settings left in the air, None when there is none."""
+        left = await self._left_behind()
+        return left[0].url if left is not None and left[1] else None
+
     async def _left_behind(self) -> tuple[SimulatedAutopilot, bool] | None:
         try:
             kept = json.loads(self._register.read_text())

@@ -36,6 +36,7 @@ from backend.store.entries import (
     to_records,
     to_row,
 )
+from backend.store.patience import patience
 from backend.store.reading import StoredFacts, why
 from backend.store.spool import Spool, SpoolFull
 from hardware.readings import Sweep
@@ -106,6 +107,7 @@ class SqlJournal:
         self._written: dict[str, Written] = {}
         self._wake = asyncio.Event()
         self._fault: str | None = None
+        self._answers = True
         self._took_s = 0.0
         self._refused = 0
         self._disk_free_bytes: int | None = None
@@ -229,7 +231,7 @@ class SqlJournal:
         """All in one transaction. Raises DatabaseAway, and what `REFUSED` names."""
         began = time.monotonic()
         try:
-            async with asyncio.timeout(self._timeout_s), self._writer.begin() as connection:
+            async with patience(self._timeout_s), self._writer.begin() as connection:
                 for entry in entries:
                     await entry.write(connection)
         except REFUSED:
@@ -244,7 +246,7 @@ class SqlJournal:
     def _lost(self, error: DatabaseAway) -> None:
         if self._fault is None:
             log.error("database away: %s; events are spooled", error)
-        self._fault = str(error)
+        self._fault, self._answers = str(error), False
         self._wake.set()
 
     async def start_up(self) -> None:
@@ -298,7 +300,7 @@ class SqlJournal:
     async def _probe(self) -> None:
         began = time.monotonic()
         try:
-            async with asyncio.timeout(self._timeout_s), self._engine.connect() as connection:
+            async with patience(self._timeout_s), self._engine.connect() as connection:
                 await connection.execute(text("SELECT 1"))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
             raise DatabaseAway(why(error)) from error
@@ -316,6 +318,7 @@ class SqlJournal:
                 del batch[1:]
                 await self._write_or_keep_aside(batch[0])
             drained += len(batch)
+            self._answers = True  # slow until the rest is stored, but away no longer
             for _ in batch:
                 self._pending.popleft()
         async with self._lock:
@@ -343,9 +346,9 @@ class SqlJournal:
     def report(self) -> DatabaseReport:
         """From what the last attempts showed; asks nobody."""
         waiting = len(self._pending)
-        if self._fault is not None:
+        if self._fault is not None and not self._answers:
             return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
-        if waiting or self._took_s > self._slow_s:
+        if waiting or self._fault is not None or self._took_s > self._slow_s:
             return DatabaseReport("slow", DatabaseSlow(self._took_s), waiting, self._refused)
         if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:
             return DatabaseReport("slow", DiskLow(self._disk_free_bytes), 0, self._refused)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Collection
 from typing import Any
 
@@ -14,6 +13,7 @@ from backend.ports import JournalUnavailable, TrackPoint
 from backend.reasons.storage import DatabaseSilent
 from backend.store.digest import MissionDigest
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
+from backend.store.patience import patience
 from backend.store.tables import events, missions, sweeps, tracks
 from backend.store.upgrade import OF_A_SWEEP, kinds_of_old
 
@@ -73,7 +73,7 @@ class StoredFacts:
 
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
-            async with asyncio.timeout(self._timeout_s), self._engine.connect() as connection:
+            async with patience(self._timeout_s), self._engine.connect() as connection:
                 return list(await connection.execute(query))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
             raise JournalUnavailable(DatabaseSilent(why(error))) from error

@@ -10,17 +10,12 @@ from __future__ import annotations
 
 import fcntl
 import os
-import struct
 import time
-import zlib
 from pathlib import Path
 
 from backend.reasons.storage import ForeignSpool
+from backend.store.spool_layout import HEADER, MAGIC, RECORD, crc_of
 from planner.reason import ReasonedError
-
-MAGIC = b"CFSPOOL1"
-HEADER = struct.Struct("<8sQ")
-RECORD = struct.Struct("<II")
 
 
 class SpoolFull(RuntimeError):
@@ -92,7 +87,7 @@ class Spool:
             self._end += RECORD.size + length
 
     def _crc(self, payload: bytes) -> int:
-        return zlib.crc32(payload, zlib.crc32(self._generation.to_bytes(8, "little")))
+        return crc_of(self._generation, payload)
 
     def entries(self) -> list[bytes]:
         """What is kept, oldest first."""

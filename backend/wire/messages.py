@@ -12,6 +12,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from backend.events import MissionPhase, Phase, Recorded
+from backend.reasons import Reason
+from backend.reasons.flight import OrderName, Way
 from backend.spec import Model
 from hardware.authority import Who
 
@@ -77,8 +79,18 @@ class SweepProgress(Model):
     turned_deg: float
 
 
+class OrderMessage(Model):
+    """The order that a craft carries out: done only once telemetry has shown it. because: why what was tried of it
+    before was not done."""
+
+    order: OrderName
+    way: Way
+    stage: Literal["tried", "waits", "done"]
+    because: Reason | None
+
+
 class CraftStatusMessage(Model):
-    """mission_id None: it flies for none."""
+    """mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same."""
 
     craft_id: str
     mission_id: str | None
@@ -87,10 +99,12 @@ class CraftStatusMessage(Model):
     receiver_power_db: float | None
     receiver_age_s: float | None
     battery_to_return_percent: float | None
+    order: OrderMessage | None = None
 
 
 class StatusMessage(Model):
-    """Once a second: the mission in the air, None when none is, every craft there is, and the server's own health."""
+    """Once a second, and when an order goes on: the mission in the air, None when none is, every craft there is, and
+    the server's own health."""
 
     type: Literal["status"] = "status"
     at_utc: datetime

@@ -36,6 +36,9 @@ class Findings:
     late_failsafes: int = 0
     taken_for_a_pilot: int = 0
     hold_s: dict[str, list[float]] = field(default_factory=lambda: {"forked": [], "whole": []})
+    """From the start of the server until the page can read that the mission holds."""
+    told_s: dict[str, list[float]] = field(default_factory=lambda: {"forked": [], "whole": []})
+    """Until the vehicle was told to."""
 
     def summary(self) -> dict[str, Any]:
         def spread(values: list[float]) -> dict[str, float] | None:
@@ -58,6 +61,7 @@ class Findings:
             "failsafes_right_after_a_restart": self.late_failsafes,
             "taken_for_a_pilot": self.taken_for_a_pilot,
             "start_to_hold_s": {kind: spread(values) for kind, values in self.hold_s.items()},
+            "start_to_vehicle_told_s": {kind: spread(values) for kind, values in self.told_s.items()},
         }
 
     @property
@@ -90,6 +94,10 @@ def figures(found: Findings, database: str, load_before: float) -> list[Figure]:
         else:
             made.append(plain("whole start to HOLD, at most", most, "s", note=note))
         made.append(plain("whole start to HOLD, median", round(statistics.median(whole), 2), "s"))
+    if found.told_s["whole"]:
+        told = found.told_s["whole"]
+        made.append(plain("whole start to the vehicle's hold, median", round(statistics.median(told), 2), "s"))
+        made.append(plain("whole start to the vehicle's hold, at most", round(max(told), 2), "s"))
     return made
 
 

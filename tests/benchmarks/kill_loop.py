@@ -41,6 +41,8 @@ DOWN = "ground"
 """The craft's last phase: the mission has ended and it is down."""
 FLYING = ("taking_off", "planning", "flying", "measuring")
 """The mission in the server's hands: no phase in which one is after a restart."""
+STEERING = (176, 192)
+"""MAV_CMD_DO_SET_MODE, MAV_CMD_DO_REPOSITION: how a vehicle is told to hold."""
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 
 
@@ -171,6 +173,21 @@ async def phase_after_restart(client: httpx.AsyncClient, mission_id: str) -> str
             await asyncio.sleep(0.02)
 
 
+async def vehicle_time(folder: Path) -> float | None:
+    """Seconds since the simulated vehicle was switched on, None before there is one."""
+    if not (folder / "simulated_vehicle.json").exists():
+        return None
+    return (await (await simulated_vehicle(folder)).order("ping"))["time_s"]
+
+
+async def told_after_s(folder: Path, since_s: float | None, speedup: float) -> float | None:
+    """Seconds of the wall from `since_s` until the vehicle was told to hold, None when it was not."""
+    if since_s is None:
+        return None
+    sent = (await (await simulated_vehicle(folder)).order("commands", since_s=since_s))["commands"]
+    return next(((at - since_s) / speedup for at, number in sent if number in STEERING), None)
+
+
 async def all_shown(shown: Console, count: int) -> None:
     """Wait for this number of events; reopen the websocket when a busy server closed it, as the page does."""
     async with asyncio.timeout(60):
@@ -230,6 +247,7 @@ async def loop(
     try:
         while True:
             kind = "whole" if whole and found.kills % whole == whole - 1 else "forked"
+            since_s = await vehicle_time(folder)
             server = await (servers.whole() if kind == "whole" else servers.forked())
             async with console(server.url) as shown:
                 if mission_id:
@@ -238,6 +256,9 @@ async def loop(
                     found.found_in[phase] += 1
                     if phase == "hold":
                         found.hold_s[kind].append(time.monotonic() - server.began)
+                        told = await told_after_s(folder, since_s, speedup)
+                        if told is not None:
+                            found.told_s[kind].append(told)
                     await shown.watch()
                     await compare(shown, before, found)
                 if found.kills >= kills:

@@ -31,7 +31,7 @@ from backend.craft.effects import TimerName
 from backend.craft.state import CraftState
 from backend.events import Link
 from backend.reasons import Interrupted
-from backend.reasons.flight import StepName
+from backend.reasons.flight import StepName, Way
 from backend.search.state import SearchState
 
 AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NOBODY, LANDED_BY_PILOT)
@@ -40,6 +40,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.Hold(),
     commands.Resume(),
     commands.Return(),
+    commands.Land(),
     commands.Abort(),
     commands.Override(place=HOME),
     commands.Accept(),
@@ -48,7 +49,8 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.SetAutomatic(automatic=False),
 )
 LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload", "gps")
-TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing")
+TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing", "order")
+WAYS: tuple[Way, ...] = ("hold", "return", "land")
 STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
 
 
@@ -72,6 +74,7 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.SweepTaken((heard,)),
         inputs.SweepTaken((rejected(attempt, number),)),
         *(inputs.WorkFailed(step, NO_ANSWER, in_air) for step in STEPS for in_air in (True, False, None)),
+        *(inputs.CarriedOut(way) for way in WAYS),
         inputs.WorkVetoed((VETO,)),
         inputs.WorkVetoed((BATTERY_VETO,)),
         *(inputs.AuthorityHeard(authority) for authority in AUTHORITIES),
@@ -85,5 +88,6 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         *(inputs.TimerExpired(name) for name in TIMERS),
         inputs.Broke(BROKE),
         *(inputs.Restarted(authority) for authority in AUTHORITIES),
+        inputs.Leaving(),
         inputs.Abandoned(Interrupted("later_mission")),
     ]

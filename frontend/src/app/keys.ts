@@ -1,11 +1,12 @@
 // Keys: '?' shows the sheet. Flight commands are chords, so that no single stray key flies anything.
+import { landingArmed } from "../commands/landing";
 import { sendUrgent, type Urgent } from "../commands/urgent";
 import { flying } from "../state/flying";
 import { look } from "../state/moment";
 import { overlay, toggle } from "../state/overlay";
 import { change, settings } from "../state/settings";
 
-const CHORDS: Record<string, Urgent> = { KeyA: "abort", KeyH: "hold", KeyR: "return" };
+const CHORDS: Record<string, Urgent> = { KeyA: "abort", KeyH: "hold", KeyR: "return", KeyL: "land" };
 
 const typing = (target: EventTarget | null) =>
   target instanceof HTMLElement && (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName));
@@ -15,7 +16,8 @@ function onKeyDown(event: KeyboardEvent): void {
   if (chord) {
     event.preventDefault();
     const target = flying.peek();
-    if (target) void sendUrgent(target.id, chord);
+    if (target && chord === "land") landingArmed.value = true;
+    else if (target) void sendUrgent(target, chord);
     return;
   }
   if (event.key === "Escape") {

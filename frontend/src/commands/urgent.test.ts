@@ -2,10 +2,13 @@
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { accepted, FakeSource } from "../sources/fakeSource";
 import { localProblem, RequestFailed, unreachable } from "../sources/problem";
+import type { Flown } from "../state/flying";
 import { open } from "../state/open";
 import type { Reason } from "../wire";
 import { problems } from "./send";
 import { sendUrgent, urgent } from "./urgent";
+
+const M: Flown = { id: "m", craftId: "c", phase: "flying" };
 
 let source: FakeSource;
 beforeEach(() => {
@@ -19,24 +22,24 @@ afterEach(async () => {
   problems.value = {};
 });
 
-it("goes out at once, and says for a while that it is done", async () => {
-  void sendUrgent("m", "abort");
+it("goes out at once, and says for a while that it was accepted", async () => {
+  void sendUrgent(M, "abort");
   expect(source.sent).toMatchObject([{ missionId: "m", kind: "abort" }]);
   expect(urgent.value.abort?.stage).toBe("sending");
   await vi.advanceTimersByTimeAsync(100);
-  expect(urgent.value.abort?.stage).toBe("confirmed");
+  expect(urgent.value.abort?.stage).toBe("accepted");
   await vi.advanceTimersByTimeAsync(5_000);
   expect(urgent.value).toEqual({});
 });
 
 it("goes out again under the same id until the server answers", async () => {
   source.answer = () => (source.sent.length < 3 ? Promise.reject(unreachable("no link")) : Promise.resolve(accepted));
-  void sendUrgent("m", "hold");
+  void sendUrgent(M, "hold");
   await vi.advanceTimersByTimeAsync(1_000);
   expect(urgent.value.hold).toEqual({ stage: "retrying", count: 1 });
   expect(problems.value.bar).toBeDefined();
   await vi.advanceTimersByTimeAsync(1_000);
-  expect(urgent.value.hold?.stage).toBe("confirmed");
+  expect(urgent.value.hold?.stage).toBe("accepted");
   expect(problems.value.bar).toBeUndefined();
   expect(new Set(source.sent.map((s) => s.commandId)).size).toBe(1);
   expect(source.sent).toHaveLength(3);
@@ -45,10 +48,10 @@ it("goes out again under the same id until the server answers", async () => {
 it("is not sent again after a refusal, whose reason stands at the bar", async () => {
   const reason: Reason = { code: "pilot_controls" };
   source.answer = () => Promise.resolve({ ...accepted, accepted: false, reason });
-  await sendUrgent("m", "return");
+  await sendUrgent(M, "return");
   expect(problems.value.bar?.reason).toEqual(reason);
   source.answer = () => Promise.reject(new RequestFailed(localProblem("no", "no such mission", 404)));
-  await sendUrgent("m", "return");
+  await sendUrgent(M, "return");
   expect(problems.value.bar?.detail).toBe("no such mission");
   expect(source.sent).toHaveLength(2);
   expect(urgent.value).toEqual({});
@@ -56,10 +59,16 @@ it("is not sent again after a refusal, whose reason stands at the bar", async ()
 
 it("is under way once: a second press waits for the first, another command does not", async () => {
   source.answer = () => new Promise(() => undefined);
-  void sendUrgent("m", "abort");
-  void sendUrgent("m", "abort");
-  void sendUrgent("m", "hold");
+  void sendUrgent(M, "abort");
+  void sendUrgent(M, "abort");
+  void sendUrgent(M, "hold");
   expect(source.sent.map((s) => s.kind)).toEqual(["abort", "hold"]);
   expect(Object.keys(urgent.value)).toEqual(["abort", "hold"]);
   urgent.value = {};
+});
+
+it("reaches a craft that flies for no mission, which has none to abort", async () => {
+  const loose: Flown = { id: null, craftId: "c", phase: "hold" };
+  for (const kind of ["hold", "return", "land", "abort"] as const) void sendUrgent(loose, kind);
+  expect(source.sent.map((s) => `${s.missionId} ${s.kind}`)).toEqual(["craft c hold", "craft c return", "craft c land"]);
 });

@@ -1,14 +1,18 @@
-// Abort, hold and return: sent at once, and again under the same id until the server answers.
+// Abort, hold, return and landing: sent at once, and again under the same id until the server answers.
 import { signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
 import { RequestFailed, refusal } from "../sources/problem";
 import { source } from "../state/connection";
+import type { Flown } from "../state/flying";
 import { asProblem, report } from "./send";
 
-export type Urgent = "abort" | "hold" | "return";
+export type Urgent = "abort" | "hold" | "return" | "land";
+
+/** A craft without a mission has none to abort. */
+type InNoMission = Exclude<Urgent, "abort">;
 
 export interface UrgentState {
-  stage: "sending" | "retrying" | "confirmed";
+  stage: "sending" | "retrying" | "accepted";
   count: number;
 }
 
@@ -26,21 +30,23 @@ function show(kind: Urgent, state: UrgentState | null): void {
   urgent.value = state ? { ...others, [kind]: state } : others;
 }
 
-export async function sendUrgent(missionId: string, kind: Urgent): Promise<void> {
+/** Accepted is not done: what the vehicle makes of it comes with the craft's status. */
+export async function sendUrgent({ id, craftId }: Flown, kind: Urgent): Promise<void> {
   const underWay = urgent.peek()[kind];
-  if (underWay && underWay.stage !== "confirmed") return;
+  if ((underWay && underWay.stage !== "accepted") || (id === null && kind === "abort")) return;
   const commandId = newCommandId();
   report("bar", null);
   for (let count = 0; count < GIVE_UP_AFTER; count++) {
     show(kind, { stage: count === 0 ? "sending" : "retrying", count });
     try {
-      const reply = await source.peek()!.send(missionId, { kind }, commandId);
+      const to = source.peek()!;
+      const reply = await (id !== null ? to.send(id, { kind }, commandId) : to.order(craftId, { kind: kind as InNoMission }, commandId));
       if (!reply.accepted) {
         report("bar", refusal(reply.reason));
         break;
       }
       report("bar", null);
-      show(kind, { stage: "confirmed", count });
+      show(kind, { stage: "accepted", count });
       await pause(SHOWN_MS);
       break;
     } catch (error) {

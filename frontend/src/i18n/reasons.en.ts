@@ -856,7 +856,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   ordered: {
-    text: "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|abort=Aborted|override=Place chosen|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed|exclude=Bearing excluded} by {by}.",
+    text: "{order?start=Started|resume=Resumed|hold=Held|return=Return ordered|land=Landing ordered|abort=Aborted|override=Place chosen|accept=Place accepted|veto=Place refused|automatic=Automatic acceptance armed|exclude=Bearing excluded} by {by}.",
     remedy: "",
   },
   proceeds: {
@@ -882,6 +882,10 @@ export const reasonsEn: ReasonTable = {
   back_after_restart: {
     text: "The server restarted.",
     remedy: "Look at the vehicle, then resume.",
+  },
+  server_ends: {
+    text: "The server is being ended.",
+    remedy: "Start it again, look at the vehicle, then resume.",
   },
   pilot_flies: {
     text: "{perhaps_failsafe?true=The pilot or the autopilot's failsafe has|false=The pilot has} control{mode?=, taken with the sticks|*=: the vehicle is in }{mode}.",
@@ -1105,6 +1109,10 @@ export const reasonsEn: ReasonTable = {
   mission_does_not_fly: {
     text: "The mission is not flying.",
     remedy: "Edit the draft, or draft a new mission.",
+  },
+  server_is_ending: {
+    text: "The server is being ended: it only holds, returns and lands.",
+    remedy: "Start it again first.",
   },
   field_missing: {
     text: "It is missing.",
@@ -1413,5 +1421,13 @@ export const reasonsEn: ReasonTable = {
   ordered_again_later: {
     text: "{because}",
     remedy: "It is ordered again when the vehicle is heard.",
+  },
+  not_done: {
+    text: "{order?hold=The hold|return=The return|land=The landing|abort=The abort} is not done: {because} {next_way?hold=Holding is tried|return=The return is tried|land=Landing where it is is tried} in {next_in_s}.",
+    remedy: "Another order takes its place. The pilot can take over at any time.",
+  },
+  instead: {
+    text: "{order?hold=The hold|return=The return|land=The landing|abort=The abort} could not be done, so the vehicle {way?hold=holds|return=returns|land=lands where it is}. {because}",
+    remedy: "Look at the vehicle. Another order takes its place.",
   },
 };

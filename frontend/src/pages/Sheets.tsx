@@ -129,6 +129,7 @@ const KEYS: readonly [MessageKey, readonly string[]][] = [
   ["keys.abort", ["Alt", "Shift", "A"]],
   ["keys.hold", ["Alt", "Shift", "H"]],
   ["keys.return", ["Alt", "Shift", "R"]],
+  ["keys.land", ["Alt", "Shift", "L"]],
   ["keys.confirm", ["␣"]],
   ["keys.cancel", ["Esc"]],
   ["keys.alerts", ["a"]],

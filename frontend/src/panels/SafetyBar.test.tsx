@@ -4,6 +4,7 @@ import { act } from "preact/test-utils";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { watchKeys } from "../app/keys";
 import { HOLD_MS } from "../commands/SlideToConfirm";
+import { landingArmed } from "../commands/landing";
 import { urgent } from "../commands/urgent";
 import { FakeSource } from "../sources/fakeSource";
 import type { SourceMessage } from "../sources/source";
@@ -36,6 +37,7 @@ const craftStatus = (changes: Partial<CraftStatus>) =>
         receiver_power_db: -90,
         receiver_age_s: 0,
         battery_to_return_percent: 10,
+        order: null,
         ...changes,
       },
     ],
@@ -118,6 +120,47 @@ describe("abort, hold and return", () => {
     for (const [kind] of COMMANDS) expect(part(kind)!.disabled).toBe(true);
     expect(sentByAll()).toEqual([]);
   });
+});
+
+describe("a vehicle in the air without a mission", () => {
+  const loose = craftStatus({ mission_id: null, phase: "hold" });
+
+  it("is shown, and hold and return act on it by button and by key; there is nothing to abort or to resume", () => {
+    show(new FakeSource(null), someTelemetry({ in_air: true }), loose);
+    expect(part("no-mission")).not.toBeNull();
+    expect(part("abort")!.disabled).toBe(true);
+    expect(part("resume")).toBeNull();
+    expect(sentByAll()).toEqual(["hold", "hold", "return", "return"].map((kind) => `craft craft-1 ${kind}`));
+  });
+
+  it("is landed after a slide, which button and key bring up", () => {
+    for (const arm of [() => part("land")!.click(), () => void press("KeyL")]) {
+      show(new FakeSource(null), someTelemetry({ in_air: true }), loose);
+      act(arm);
+      expect(part("land-slider")).not.toBeNull();
+      expect(source.sent).toEqual([]);
+      act(() => {
+        landingArmed.value = false;
+      });
+    }
+  });
+});
+
+it("shows an order as not done until the vehicle confirms it, with the reason why", () => {
+  const order = { order: "abort", way: "return", stage: "waits", because: { code: "no_link" } } as const;
+  const note = () => part("order-note");
+  const becomes = (stage: "tried" | "done") =>
+    act(() => {
+      source.tell(craftStatus({ mission_id: "m", phase: "returning", order: { ...order, stage, because: null } }));
+      vi.advanceTimersByTime(200);
+    });
+  show(new FakeSource(), ...inPhase("returning"), someTelemetry(), craftStatus({ mission_id: "m", phase: "returning", order }));
+  expect(note()?.dataset["stage"]).toBe("waits");
+  expect(note()?.getAttribute("role")).toBe("alert");
+  becomes("tried");
+  expect(note()?.dataset["stage"]).toBe("tried");
+  becomes("done");
+  expect(note()).toBeNull();
 });
 
 it("resumes only what holds or the pilot flies, and only after a slide", () => {

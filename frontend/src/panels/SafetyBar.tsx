@@ -1,13 +1,15 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
 import { useState } from "preact/hooks";
+import { landingArmed } from "../commands/landing";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
-import { send } from "../commands/send";
+import { asProblem, report, send } from "../commands/send";
 import { sendUrgent, type Urgent, urgent } from "../commands/urgent";
-import { type MessageKey, t } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
+import { refusal } from "../sources/problem";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
-import { live } from "../state/connection";
-import { flying } from "../state/flying";
+import { live, source } from "../state/connection";
+import { type Flown, flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { cursor, events } from "../state/moment";
@@ -23,25 +25,64 @@ import { Menu } from "./Menu";
 import { ProblemNote } from "./ProblemNote";
 
 function UrgentButton({ kind }: { kind: Urgent }) {
-  const id = flying.value?.id;
+  const target = flying.value;
+  const able = target !== null && (kind !== "abort" || target.id !== null);
   return (
     <button
       type="button"
       class={`urgent urgent-${kind}`}
       data-testid={kind}
-      disabled={!id}
-      title={id ? t(`bar.${kind}.hint` satisfies MessageKey) : t("bar.nothingFlies")}
-      onClick={() => id && void sendUrgent(id, kind)}
+      disabled={!able}
+      title={t(able ? (`bar.${kind}.hint` satisfies MessageKey) : target ? "bar.noMission" : "bar.nothingFlies")}
+      onClick={() => target && void sendUrgent(target, kind)}
     >
       {t(`bar.${kind}` satisfies MessageKey)}
     </button>
   );
 }
 
+/** Where it is: what is below is not known, so it takes a slide. */
+function Landing() {
+  const target = flying.value;
+  if (!target || target.phase === "manual") return null;
+  if (!landingArmed.value) {
+    return (
+      <button type="button" class="urgent" data-testid="land" title={t("bar.land.hint")} onClick={() => (landingArmed.value = true)}>
+        {t("bar.land")} …
+      </button>
+    );
+  }
+  const disarm = () => (landingArmed.value = false);
+  return (
+    <div class="bar-slide">
+      <SlideToConfirm
+        label={t("bar.land.slide")}
+        testId="land-slider"
+        onConfirm={() => {
+          disarm();
+          void sendUrgent(target, "land");
+        }}
+        onCancel={disarm}
+      />
+    </div>
+  );
+}
+
+async function resume({ id, craftId }: Flown): Promise<void> {
+  if (id !== null) return void (await send("bar", id, { kind: "resume", craft_id: craftId }));
+  report("bar", null);
+  try {
+    const reply = await source.peek()!.order(craftId, { kind: "resume" });
+    if (!reply.accepted) report("bar", refusal(reply.reason));
+  } catch (error) {
+    report("bar", asProblem(error));
+  }
+}
+
 function Resume() {
   const [armed, setArmed] = useState(false);
   const target = flying.value;
-  const canResume = target?.phase === "hold" || target?.phase === "manual";
+  const canResume = (target?.phase === "hold" && target.id !== null) || target?.phase === "manual";
   if (!target || !canResume) return null;
   if (!armed) {
     return (
@@ -57,7 +98,7 @@ function Resume() {
         testId="resume-slider"
         onConfirm={() => {
           setArmed(false);
-          void send("bar", target.id, { kind: "resume", craft_id: target.craftId });
+          void resume(target);
         }}
         onCancel={() => setArmed(false)}
       />
@@ -185,7 +226,8 @@ function Words() {
   const shown = mission.value;
   const reviewed = cursor.value === null ? null : events.value.findLast((e) => e.seq <= cursor.value!);
 
-  const doing = shown.missionId ? stateWords(shown, etaS()) : t(flying.value ? "state.otherFlies" : "state.none");
+  const elsewhere = flying.value?.id === null ? "state.noMission" : flying.value ? "state.otherFlies" : "state.none";
+  const doing = shown.missionId ? stateWords(shown, etaS()) : t(elsewhere);
   const words = reviewed ? `${reviewWords(reviewed.at_utc)}: ${doing}` : doing;
   const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
 
@@ -218,20 +260,43 @@ function Words() {
   );
 }
 
+/** What the vehicle makes of the order that was given last: done only when its telemetry says so. */
+function OrderNote() {
+  const craft = live.value.status?.value.crafts.find(({ craft_id }) => craft_id === flying.value?.craftId);
+  const order = craft?.order ?? null;
+  if (order === null) return null;
+  const command = t(`bar.${order.order}` satisfies MessageKey);
+  const way = t(`bar.${order.way}` satisfies MessageKey);
+  const reason = order.because ? reasonText(order.because) : "";
+  const pressed = urgent.value[order.order] !== undefined;
+  if (order.stage === "done" && order.because === null) return pressed ? <span>{t("bar.order.done", { command })}</span> : null;
+  const key = order.stage === "done" ? "bar.order.instead" : reason ? "bar.order.refused" : "bar.order.tried";
+  return (
+    <span class={reason ? "not-done" : ""} data-testid="order-note" data-stage={order.stage} role={reason ? "alert" : "status"}>
+      {t(key, { command, way, reason })}
+    </span>
+  );
+}
+
 function UrgentNote() {
-  const under = Object.entries(urgent.value) as [Urgent, NonNullable<(typeof urgent.value)[Urgent]>][];
-  const other = flying.value && flying.value.id !== live.value.mission.missionId;
-  if (under.length === 0 && !other) return null;
+  const sent = Object.entries(urgent.value) as [Urgent, NonNullable<(typeof urgent.value)[Urgent]>][];
+  const under = sent.filter(([, state]) => state.stage !== "accepted");
+  const loose = flying.value?.id === null;
+  const flown = flying.value?.id ?? null;
+  const other = flown === live.value.mission.missionId ? null : flown;
+  if (sent.length === 0 && !flying.value) return null;
   return (
     <div class="urgent-note" role="status" data-testid="urgent-note">
       {under.map(([kind, state]) => {
         const command = t(`bar.${kind}` satisfies MessageKey);
-        const key = state.stage === "sending" ? "bar.sending" : state.stage === "retrying" ? "bar.retrying" : "bar.confirmed";
+        const key = state.stage === "sending" ? "bar.sending" : "bar.retrying";
         return <span key={kind}>{t(key, { command, count: state.count })}</span>;
       })}
+      <OrderNote />
+      {loose && <span data-testid="no-mission">{t("bar.noMissionFlies")}</span>}
       {other && (
         <span>
-          {t("bar.otherFlies")} <a href={missionAddress(flying.value!.id)}>{t("bar.otherFlies.open")}</a>
+          {t("bar.otherFlies")} <a href={missionAddress(other)}>{t("bar.otherFlies.open")}</a>
         </span>
       )}
     </div>
@@ -247,6 +312,7 @@ export function SafetyBar() {
           <UrgentButton kind="abort" />
           <UrgentButton kind="hold" />
           <UrgentButton kind="return" />
+          <Landing />
         </div>
         <Resume />
         <Words />

@@ -7,6 +7,8 @@ import type {
   Command,
   CommandReply,
   CommandRequest,
+  CraftCommand,
+  CraftRequest,
   Defaults,
   EventPage,
   ExpectedTime,
@@ -100,6 +102,11 @@ export const exportAddress = (id: string, format: ExportFormat) => `/api${missio
 export const sendCommand = (id: string, command: Command, commandId = newCommandId()): Promise<CommandReply> => {
   const body: CommandRequest = { command_id: commandId, command };
   return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
+};
+
+export const orderCraft = (craftId: string, command: CraftCommand, commandId = newCommandId()): Promise<CommandReply> => {
+  const body: CraftRequest = { command_id: commandId, command };
+  return json<CommandReply>(`/crafts/${encodeURIComponent(craftId)}/commands`, withBody("POST", body));
 };
 
 export const areaOutlook = (id: string, search: SearchArea, signal?: AbortSignal) =>

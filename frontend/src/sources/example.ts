@@ -102,6 +102,7 @@ export class ExampleSource implements Source {
   async track(_missionId: string, craftId: string): Promise<Track> {
     return { mission_id: EXAMPLE_ID, craft_id: craftId, points: this.tracks.get(craftId) ?? [] };
   }
+  order = api.orderCraft;
   /** The recorded mission takes no commands; one that flies meanwhile does. */
   async send(missionId: string, command: Command, commandId?: string): Promise<CommandReply> {
     return missionId === EXAMPLE_ID ? refuse() : api.sendCommand(missionId, command, commandId);

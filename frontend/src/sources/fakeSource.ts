@@ -1,5 +1,5 @@
 // A source for tests: passes on what it is given, keeps what it is sent, and answers as the test chose.
-import type { Command, CommandReply } from "../wire";
+import type { Command, CommandReply, CraftCommand } from "../wire";
 import type { Source, SourceMessage } from "./source";
 
 export const accepted: CommandReply = { command_id: "", accepted: true, reason: null, seq: 1 };
@@ -27,6 +27,10 @@ export class FakeSource implements Source {
   send(missionId: string, command: Command, commandId = ""): Promise<CommandReply> {
     const craft = "craft_id" in command ? { craftId: command.craft_id } : {};
     this.sent.push({ missionId, kind: command.kind, commandId, ...craft });
+    return this.answer();
+  }
+  order(craftId: string, { kind }: CraftCommand, commandId = ""): Promise<CommandReply> {
+    this.sent.push({ missionId: `craft ${craftId}`, kind, commandId });
     return this.answer();
   }
   belief: Source["belief"] = () => Promise.resolve(null);

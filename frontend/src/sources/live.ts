@@ -129,6 +129,7 @@ export class LiveSource implements Source {
   }
 
   send = api.sendCommand;
+  order = api.orderCraft;
   belief = api.belief;
   track = api.track;
   preflight = api.preflight;

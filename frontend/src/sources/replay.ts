@@ -56,9 +56,10 @@ export class ReplaySource implements Source {
     const own = this.exported.tracks.find(({ craft_id }) => craft_id === craftId);
     return own ?? { mission_id: missionId, craft_id: craftId, points: [] };
   }
-  /** The recorded mission takes no commands; one that flies meanwhile does, and abort, hold and return always go out. */
+  order = api.orderCraft;
+  /** The recorded mission takes no commands; one that flies meanwhile does, and the orders of the bar always go out. */
   async send(missionId: string, command: Command, commandId?: string): Promise<CommandReply> {
-    const urgent = command.kind === "abort" || command.kind === "hold" || command.kind === "return";
+    const urgent = ["abort", "hold", "return", "land"].includes(command.kind);
     return urgent || missionId !== this.missionId ? api.sendCommand(missionId, command, commandId) : refuse();
   }
   async preflight(): Promise<PreflightReply> {

@@ -1,5 +1,5 @@
 // Where the picture comes from. Panels see messages and cannot tell a live mission from a recording.
-import type { AreaImport, Command, CommandReply, ExpectedTime, LiveMessage, Place, PreflightReply, Track } from "../wire";
+import type { AreaImport, Command, CommandReply, CraftCommand, ExpectedTime, LiveMessage, Place, PreflightReply, Track } from "../wire";
 import type { BeliefFrame } from "../wire/beliefFrame";
 
 export interface BeliefMessage {
@@ -33,6 +33,8 @@ export interface Source {
   stop(): void;
   /** `commandId` given again means the same command again: it is carried out once. */
   send(missionId: string, command: Command, commandId?: string): Promise<CommandReply>;
+  /** To a craft in the air that flies for no mission. */
+  order(craftId: string, command: CraftCommand, commandId?: string): Promise<CommandReply>;
   /** The belief about an emitter that stood at the event `seq`; null when it is not to be had. */
   belief(missionId: string, emitterId: string, seq: number): Promise<BeliefFrame | null>;
   track(missionId: string, craftId: string): Promise<Track>;

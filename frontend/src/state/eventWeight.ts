@@ -10,6 +10,7 @@ export function isMain(event: MissionEvent): boolean {
     case "alert_acknowledged":
     case "alert_cleared":
     case "belief_updated":
+    case "order_tried":
       return false;
     case "authority_changed":
       return event.by !== null || event.authority.taken_by !== null;
@@ -31,6 +32,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "plan_vetoed":
       return "decision";
     case "alert_raised":
+    case "order_not_done":
     case "link_lost":
     case "safety_vetoed":
     case "command_refused":
@@ -40,6 +42,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "hold_ordered":
     case "resume_ordered":
     case "return_ordered":
+    case "land_ordered":
     case "abort_ordered":
     case "automatic_changed":
     case "area_changed":

@@ -13,6 +13,7 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   hold: "command.hold",
   resume: "command.resume",
   return: "command.return",
+  land: "command.land",
   abort: "command.abort",
   override: "command.override",
   accept: "command.accept",
@@ -27,7 +28,7 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
 const commandName = (command: string): string => (command in COMMANDS ? t(COMMANDS[command as Command["kind"]]) : command);
 
 /** An operator's order says all by itself; the mission tells its reason. */
-function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_ordered">): string {
+function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_ordered" | "land_ordered">): string {
   const words = t(`event.${kind}` satisfies MessageKey, { by: byWords(by) });
   return reason ? `${words}: ${reasonText(reason)}` : words;
 }
@@ -112,10 +113,21 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "belief_updated":
       return beliefWords(event, units);
     case "hold_ordered":
+    case "land_ordered":
     case "return_ordered":
       return orderWords(event);
     case "resume_ordered":
       return t("event.resume_ordered", { by: byWords(event.by) });
+    case "order_tried":
+      return t("event.order_tried", { order: t(`command.${event.order}`), way: t(`command.${event.way}`) });
+    case "order_not_done":
+      return t("event.order_not_done", {
+        order: t(`command.${event.order}`),
+        reason: reasonText(event.reason),
+        way: t(`command.${event.next_way}`),
+      });
+    case "order_done":
+      return t("event.order_done", { order: t(`command.${event.order}`), way: t(`command.${event.way}`) });
     case "abort_ordered":
       return t("event.abort_ordered", { by: byWords(event.by) });
     case "automatic_changed":

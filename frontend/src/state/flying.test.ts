@@ -60,6 +60,13 @@ describe("the mission that abort, hold and return act on", () => {
     expect(ask({ served: status, preferred: "d" })).toEqual({ id: "a", craftId: "d", phase: "hold" });
   });
 
+  it("is a craft in the air without a mission when no mission flies", () => {
+    const loose = { id: null, craftId: "d", phase: "hold" };
+    expect(ask({ served: [served(null, "hold", "d")] })).toEqual(loose);
+    expect(ask({ shown: drafted("a"), served: [served(null, "hold", "d")], inAir: air(true, "d") })).toEqual(loose);
+    expect(ask({ served: [served("b", "flying"), served(null, "hold", "d")] })).toMatchObject({ id: "b" });
+  });
+
   it("is none when nothing of ours can fly", () => {
     expect(ask({})).toBeNull();
     expect(ask({ served: [served(null, "ground")], inAir: air(true) })).toBeNull();

@@ -1,13 +1,13 @@
-// The mission that abort, hold, return and resume act on, for buttons and keys alike.
+// What abort, hold, return, landing and resume act on, for buttons and keys alike.
 import { computed, effect, signal } from "@preact/signals";
 import type { CraftStatus, Phase } from "../wire";
 import { live, source } from "./connection";
 import type { CraftState } from "./craft";
 import { craftShown } from "./heard";
 
-/** A craft and the mission that it flies for. */
+/** A craft in the air and the mission that it flies for; null: for none, and yet it can be held, brought home and landed. */
 export interface Flown {
-  id: string;
+  id: string | null;
   craftId: string;
   phase: Phase;
 }
@@ -24,8 +24,8 @@ interface Picture {
 }
 
 /**
- * The mission shown while a craft flies for it, else any other that has one in the air, over or not; null: nothing of
- * ours flies. A mission's own events are newer than the server's status, but what is not known to be down still counts.
+ * The mission shown while a craft flies for it, else any other that has one in the air, over or not, else a craft in the
+ * air without a mission; null: nothing of ours flies. A mission's own events are newer than the server's status, but what is not known to be down still counts.
  */
 export function missionToCommand({ shown, served, inAir, preferred }: Picture): Flown | null {
   const engaged = [...(shown?.crafts ?? [])].filter(([, craft]) => craft.engaged);
@@ -37,7 +37,10 @@ export function missionToCommand({ shown, served, inAir, preferred }: Picture): 
     return perhapsUp || (!known && phase !== "ground") ? [{ id, craftId, phase: known?.phase ?? phase }] : [];
   });
   const ofShown = [...own, ...others.filter(({ id }) => id === shown?.id)];
-  const [flown] = [ofShown, others].filter((crafts) => crafts.length > 0);
+  const loose = served.flatMap(({ craft_id: craftId, mission_id: id, phase }): Flown[] =>
+    id === null && phase !== "ground" && !own.some((craft) => craft.craftId === craftId) ? [{ id, craftId, phase }] : [],
+  );
+  const [flown] = [ofShown, others, loose].filter((crafts) => crafts.length > 0);
   return flown?.find(({ craftId }) => craftId === preferred) ?? flown?.[0] ?? null;
 }
 

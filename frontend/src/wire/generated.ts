@@ -209,6 +209,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/crafts/{craft_id}/commands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Order Craft
+         * @description Idempotent by `command_id`. A refusal is a reply with accepted = false; seq is 0 without a mission.
+         */
+        post: operations["order_craft"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/recordings": {
         parameters: {
             query?: never;
@@ -721,7 +741,7 @@ export interface components {
             kind: "alert_raised";
             alert_id: string;
             /** @enum {string} */
-            topic: "vehicle" | "receiver" | "console" | "payload" | "gps" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "storage";
+            topic: "vehicle" | "receiver" | "console" | "payload" | "gps" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "order" | "storage";
             /** @enum {string} */
             level: "warning" | "caution" | "advisory";
             reason: components["schemas"]["Reason"];
@@ -1351,7 +1371,7 @@ export interface components {
              */
             code: "columns_unknown";
         };
-        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
+        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Land"] | components["schemas"]["Abort"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
         /** @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. */
         CommandAccepted: {
             /**
@@ -1387,7 +1407,7 @@ export interface components {
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
-            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["AbortInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
+            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["AbortInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
         };
         /** @description attempts: how often it was sent. */
         CommandUnanswered: {
@@ -1479,6 +1499,12 @@ export interface components {
         CoverageRequest: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
+        /** @description To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back. */
+        CraftRequest: {
+            /** Format: uuid */
+            command_id: string;
+            command: components["schemas"]["HoldInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["ResumeInput"];
+        };
         /** @description A craft's own sweep. */
         CraftSource: {
             /**
@@ -1488,7 +1514,7 @@ export interface components {
             kind: "craft";
             craft_id: string;
         };
-        /** @description mission_id None: it flies for none. */
+        /** @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same. */
         CraftStatusMessage: {
             craft_id: string;
             mission_id: string | null;
@@ -1499,6 +1525,7 @@ export interface components {
             receiver_power_db: number | null;
             receiver_age_s: number | null;
             battery_to_return_percent: number | null;
+            order: components["schemas"]["OrderMessage"] | null;
         };
         /** @description crossing_deg: the best crossing angle of two bearing lines at the estimate. */
         CrossingAngleTooSmall: {
@@ -1674,7 +1701,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
@@ -2410,6 +2437,19 @@ export interface components {
              */
             code: "inside_no_fly";
         };
+        /** @description The vehicle refused what was ordered, and does this. */
+        Instead: {
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+            because: components["schemas"]["Reason"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "instead";
+        };
         Interrupted: {
             /** @enum {string} */
             because: "later_mission" | "unreadable";
@@ -2429,6 +2469,35 @@ export interface components {
              * @enum {string}
              */
             code: "kind_left_out";
+        };
+        /** @description Land where the vehicle is: the last resort, what is below is not known. */
+        Land: {
+            craft_id: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "land";
+        };
+        /** @description Land where the vehicle is: the last resort, what is below is not known. */
+        LandInput: {
+            craft_id?: string | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "land";
+        };
+        /** @description Where the vehicle is, not at home. */
+        LandOrdered: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "land_ordered";
+            craft_id: string;
+            by: string | null;
+            reason: components["schemas"]["Reason"] | null;
         };
         /** @description The vehicle came down, and what the mission did then. */
         Landed: {
@@ -3330,6 +3399,22 @@ export interface components {
              */
             code: "not_arrived";
         };
+        /** @description The vehicle has not done what was ordered. way: what was tried of it; next_way is tried next. */
+        NotDone: {
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+            because: components["schemas"]["Reason"];
+            /** @enum {string} */
+            next_way: "hold" | "return" | "land";
+            next_in_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_done";
+        };
         NotEditable: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3522,10 +3607,75 @@ export interface components {
              */
             code: "operator_in_control";
         };
+        /** @description Telemetry has confirmed it. way: what the vehicle does now, where the order itself could not be done another. */
+        OrderDone: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "order_done";
+            craft_id: string;
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+        };
+        /**
+         * @description The order that a craft carries out: done only once telemetry has shown it. because: why what was tried of it
+         *     before was not done.
+         */
+        OrderMessage: {
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+            /** @enum {string} */
+            stage: "tried" | "waits" | "done";
+            because: components["schemas"]["Reason"] | null;
+        };
+        /**
+         * @description What was tried was refused, not heard or not seen. rung: of what is tried next; next_in_s None: when the vehicle
+         *     is heard again.
+         */
+        OrderNotDone: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "order_not_done";
+            craft_id: string;
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+            reason: components["schemas"]["Reason"];
+            rung: number;
+            /** @enum {string} */
+            next_way: "hold" | "return" | "land";
+            next_in_s: number | null;
+        };
+        /**
+         * @description The vehicle is told to. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
+         *     was not done, None of the first try.
+         */
+        OrderTried: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "order_tried";
+            craft_id: string;
+            /** @enum {string} */
+            order: "hold" | "return" | "land" | "abort";
+            /** @enum {string} */
+            way: "hold" | "return" | "land";
+            rung: number;
+            because: components["schemas"]["Reason"] | null;
+        };
         /** @description Somebody ordered it. by: who. */
         Ordered: {
             /** @enum {string} */
-            order: "start" | "resume" | "hold" | "return" | "abort" | "override" | "accept" | "veto" | "automatic" | "exclude";
+            order: "start" | "resume" | "hold" | "return" | "land" | "abort" | "override" | "accept" | "veto" | "automatic" | "exclude";
             by: string;
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -4338,7 +4488,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -4411,7 +4561,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         };
         RecordedElsewhere: {
             recorded_hz: number;
@@ -4864,6 +5014,20 @@ export interface components {
              */
             code: "server_broke";
         };
+        ServerEnds: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "server_ends";
+        };
+        ServerIsEnding: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "server_is_ending";
+        };
         /** @description From here on beliefs are computed anew; a craft that we flew is held until an operator resumes. */
         ServerRestarted: {
             /**
@@ -5014,7 +5178,10 @@ export interface components {
              */
             kind: "start";
         };
-        /** @description Once a second: the mission in the air, None when none is, every craft there is, and the server's own health. */
+        /**
+         * @description Once a second, and when an order goes on: the mission in the air, None when none is, every craft there is, and
+         *     the server's own health.
+         */
         StatusMessage: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -6137,6 +6304,42 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["CheckFact"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    order_craft: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The craft's id */
+                craft_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CraftRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CommandReply"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -43,6 +43,9 @@ export type LiveMessage = Hello | EventMessage | TelemetryMessage | SweepProgres
 
 export type CommandRequest = Schemas["CommandRequest"];
 export type Command = CommandRequest["command"];
+/** To a craft in the air, in a mission or in none. */
+export type CraftRequest = Schemas["CraftRequest"];
+export type CraftCommand = CraftRequest["command"];
 export type CommandReply = Schemas["CommandReply"];
 
 /** reason null: found by the page itself, and said in its own words. */

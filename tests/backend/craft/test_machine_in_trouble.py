@@ -26,7 +26,7 @@ from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.events import AlertRaised, AuthorityChanged, Phase
-from backend.reasons import OrderedAgainLater, ReceiverTrouble
+from backend.reasons import NotDone, OrderedAgainLater, ReceiverTrouble
 from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies, PlaceUnknown
 from backend.reasons.safety import NoLink
 
@@ -249,7 +249,8 @@ def test_a_way_home_ordered_over_a_lost_link_is_ordered_again_when_the_vehicle_i
     assert moves(walk.give(inputs.LinkUp("vehicle", 9.0))) == [effects.ReturnHome()]
     assert not walk.topics
     walk.give(inputs.WorkFailed("return", NO_ANSWER, in_air=True))
-    assert walk.craft.phase == "hold"
+    assert walk.craft.phase == "returning"
+    assert walk.last_alert.reason == NotDone("return", "return", NO_ANSWER, "return", 1.0)
 
 
 def test_an_abort_over_a_lost_link_is_ordered_again_when_the_vehicle_is_heard_unless_it_was_held_since() -> None:
@@ -261,7 +262,7 @@ def test_an_abort_over_a_lost_link_is_ordered_again_when_the_vehicle_is_heard_un
         ]
         for step in steps if lost_first else reversed(steps):
             step(walk)
-        walk.give(inputs.WorkFailed("return", NO_ANSWER, in_air=True))
+        walk.give(inputs.WorkFailed("hold", NO_ANSWER, in_air=True))
         assert moves(walk.give(inputs.LinkUp("vehicle", 9.0))) == [effects.ReturnHome()]
         assert not walk.topics
         walk.give(inputs.LinkDown("vehicle", LINK_LOST))

@@ -16,9 +16,11 @@ from facts import FAILSAFE, LANDED_BY_PILOT, SPEC, WAITING_SPEC
 from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.effects import CraftEffect
+from backend.craft.ladder import Ladder
 from backend.craft.machine import kept_of, transition
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
-from backend.events import MissionEnded, PreflightChecked
+from backend.events import MissionEnded, OrderDone, OrderNotDone, PreflightChecked
+from backend.reasons.flight import OrderName
 from backend.reasons.search import Localized
 from backend.search.effects import Record
 from backend.search.inputs import SearchOver
@@ -68,6 +70,7 @@ def search_after(step: Step) -> SearchState:
 
 def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
     """What of a state matters for what may be sent."""
+    ladder = craft.ladder
     return (
         craft.phase,
         kept_of(craft.authority),
@@ -80,6 +83,7 @@ def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
         craft.automatic,
         craft.chosen is None,
         "vehicle" in craft.links_down,
+        ladder and (ladder.way, ladder.stage),
     )
 
 
@@ -177,8 +181,12 @@ def test_hold_and_return_work_on_every_engaged_craft_unless_a_pilot_flies() -> N
             case commands.Return() if step.craft.phase != "landing":
                 assert moves(step.asked) == [effects.ReturnHome()], step.about
                 assert step.after.phase == "returning", step.about
+            case commands.Land():
+                assert moves(step.asked) == [effects.Land()], step.about
+                assert step.asked[0] == effects.CancelWork(), step.about
+                assert step.after.phase == "landing", step.about
             case commands.Abort() if step.search.stage == "open":
-                assert moves(step.asked) == [effects.ReturnHome(hold_first=True)], step.about
+                assert sent(step.asked) == [effects.HoldVehicle()], step.about
                 assert step.asked[0] == effects.CancelWork(), step.about
                 assert step.after.phase == "returning", step.about
                 assert not step.after.searching, step.about
@@ -189,9 +197,76 @@ def test_hold_and_return_work_on_every_engaged_craft_unless_a_pilot_flies() -> N
 def test_a_held_craft_moves_only_when_an_operator_says_so_or_nobody_is_left_to() -> None:
     for step in steps():
         if step.craft.phase in ("hold", "manual") and moves(step.asked):
-            ordered = isinstance(step.command, commands.Resume | commands.Return | commands.Abort)
+            ordered = isinstance(step.command, commands.Resume | commands.Return | commands.Land | commands.Abort)
             timer = step.given == inputs.TimerExpired("console_return")
-            assert ordered or timer, step.about
+            ladder = step.craft.ladder
+            refused = ladder is not None and ladder.stage == "waits" and step.given == inputs.TimerExpired("order")
+            assert ordered or timer or refused, step.about
+
+
+def under_way(step: Step) -> Ladder | None:
+    """The order that is being carried out, unless somebody else flies."""
+    ladder = step.craft.ladder
+    return ladder if step.craft.engaged and ladder is not None and ladder.stage != "done" else None
+
+
+def test_an_order_that_is_not_done_is_told_and_tried_again_or_waits_for_the_link() -> None:
+    seen = 0
+    for step in steps():
+        ladder = under_way(step)
+        if ladder is None or ladder.stage != "tried":
+            continue
+        if isinstance(step.given, inputs.WorkFailed) and step.given.step == ladder.way:
+            seen += 1
+            assert step.after.ladder is not None, step.about
+            assert step.after.ladder.stage == "waits", step.about
+            assert any(isinstance(e, Record) and isinstance(e.event, OrderNotDone) for e in step.asked), step.about
+            assert [a.topic for a in step.after.open_alerts].count("order") == 1, step.about
+            again = [e for e in step.asked if isinstance(e, effects.StartTimer) and e.name == "order"]
+            assert bool(again) == ("vehicle" not in step.craft.links_down), step.about
+            assert not sent(step.asked), step.about
+    assert seen > 100
+
+
+def test_a_rung_that_waits_is_commanded_when_its_time_has_come_and_at_no_other() -> None:
+    command = {"hold": effects.HoldVehicle(), "return": effects.ReturnHome(), "land": effects.Land()}
+    for step in steps():
+        if step.given != inputs.TimerExpired("order"):
+            continue
+        ladder = under_way(step)
+        expected = [command[ladder.way]] if ladder is not None and ladder.stage == "waits" else []
+        assert sent(step.asked) == expected, step.about
+
+
+def test_an_order_counts_as_done_only_once_the_vehicle_shows_it() -> None:
+    for step in steps():
+        for effect in step.asked:
+            if isinstance(effect, Record) and isinstance(effect.event, OrderDone):
+                assert under_way(step) is not None, step.about
+                assert step.given == inputs.CarriedOut(effect.event.way), step.about
+                assert [a.topic for a in step.after.open_alerts].count("order") <= 1
+
+
+def test_a_newer_order_takes_the_place_of_the_one_under_way() -> None:
+    kinds: dict[type[commands.CraftCommand], OrderName] = {
+        commands.Hold: "hold", commands.Return: "return", commands.Land: "land", commands.Abort: "abort",
+    }  # fmt: skip
+    for step in steps():
+        order = kinds.get(type(step.command)) if step.carried_out and step.command is not None else None
+        if order is not None and not step.craft.taken_over:
+            assert step.after.ladder == Ladder(order), step.about
+            assert effects.CancelTimer("order") in step.asked, step.about
+
+
+def test_whoever_takes_the_vehicle_ends_every_order_of_ours() -> None:
+    for step in steps():
+        heard = step.given.authority if isinstance(step.given, inputs.AuthorityHeard) else None
+        taken = heard is not None and (pilot_has(heard) or heard.who == "failsafe")
+        if taken and step.craft.engaged and kept_of(heard) != kept_of(step.craft.authority):
+            assert step.after.ladder is None, step.about
+            assert effects.CancelTimer("order") in step.asked, step.about
+        if step.after.taken_over or step.after.authority.who == "failsafe":
+            assert step.after.ladder is None, step.about
 
 
 def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:

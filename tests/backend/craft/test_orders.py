@@ -186,7 +186,8 @@ def test_another_search_area_makes_what_was_planned_void() -> None:
 def test_an_aborted_craft_still_answers_hold_and_return_until_it_is_down_and_goes_out_no_more() -> None:
     walk = CraftWalk().to("measuring")
     asked = walk.order(commands.Abort())
-    assert asked[:2] == (effects.CancelWork(), effects.ReturnHome(hold_first=True))
+    assert asked[0] == effects.CancelWork()
+    assert sent(asked) == [effects.HoldVehicle()]
     assert (walk.craft.phase, walk.search.outcome) == ("returning", "aborted")
     assert effects.HoldVehicle() in walk.order(commands.Hold())
     assert refusal(walk.order(commands.Resume())) == refusals.MissionOver()
@@ -196,7 +197,8 @@ def test_an_aborted_craft_still_answers_hold_and_return_until_it_is_down_and_goe
     assert effects.HoldVehicle() in walk.order(commands.Hold())
     walk.order(commands.Return())
     walk.give(inputs.Landed())
-    for order in (commands.Hold(), commands.Return(), commands.Abort(), commands.Resume(), commands.Start()):
+    everything = (commands.Hold(), commands.Return(), commands.Land(), commands.Abort(), commands.Resume())
+    for order in (*everything, commands.Start()):
         assert refusal(walk.order(order)) == refusals.MissionOver()
 
 
@@ -217,7 +219,7 @@ def test_a_craft_whose_return_ended_the_search_can_still_be_held() -> None:
 
 
 def test_before_the_start_orders_are_refused() -> None:
-    for order in (commands.Hold(), commands.Return(), commands.Abort(), commands.Resume()):
+    for order in (commands.Hold(), commands.Return(), commands.Land(), commands.Abort(), commands.Resume()):
         assert refusal(CraftWalk(SPEC).order(order)) == refusals.NotStarted()
 
 

@@ -75,7 +75,7 @@ async def test_a_hold_cancels_what_runs_and_its_result_is_never_given(rig: Rig) 
     rig.vehicle.stuck = False
     await rig.until(lambda: rig.vehicle.names == ["goto", "hold"])
     await asyncio.sleep(0.1)
-    assert rig.given == []
+    assert rig.given == [inputs.CarriedOut("hold")]
 
 
 async def test_work_that_is_replaced_before_it_began_is_never_begun(rig: Rig) -> None:
@@ -101,12 +101,14 @@ async def test_safety_is_asked_again_right_before_the_flight(rig: Rig) -> None:
     assert rig.vehicle.names == []
 
 
-async def test_an_abort_holds_before_it_returns(rig: Rig) -> None:
+async def test_what_the_vehicle_was_told_is_carried_out_once_telemetry_shows_it(rig: Rig) -> None:
     rig.flies()
-    rig.runner.carry_out(effects.ReturnHome(hold_first=True))
-    await rig.until(lambda: "return_home" in rig.vehicle.names)
-    assert rig.vehicle.names == ["hold", "return_home"]
-    assert rig.given == []
+    told = {"hold": effects.HoldVehicle(), "return": effects.ReturnHome(), "land": effects.Land()}
+    for way, effect in told.items():
+        rig.runner.carry_out(effect)
+        await rig.until(lambda way=way: rig.given == [inputs.CarriedOut(way)])
+        rig.given.clear()
+    assert rig.vehicle.names == ["hold", "return_home", "land"]
 
 
 async def test_what_fails_is_given_with_its_reason_and_whether_the_vehicle_flies(rig: Rig) -> None:
@@ -131,7 +133,7 @@ async def test_a_fault_of_our_own_in_a_step_is_given_as_such(rig: Rig) -> None:
 
 
 async def test_a_vehicle_whose_failsafe_brings_it_home_or_that_stands_is_not_ordered_home(rig: Rig) -> None:
-    for effect in (effects.ReturnHome(), effects.ReturnHome(hold_first=True), effects.Land()):
+    for effect in (effects.ReturnHome(), effects.Land()):
         rig.runner.carry_out(effect)
         await asyncio.sleep(0.02)
     rig.flies()

@@ -80,7 +80,7 @@ def test_the_search_ends_when_the_last_craft_is_down() -> None:
 def test_an_abort_of_one_craft_leaves_the_other_searching_and_of_both_ends_the_search() -> None:
     walk = two_craft().fly(OTHER_CRAFT)
     asked = walk.command(commands.Abort(craft_id=FIRST_CRAFT))
-    assert sent(asked, FIRST_CRAFT) == [effects.ReturnHome(hold_first=True)]
+    assert sent(asked, FIRST_CRAFT) == [effects.HoldVehicle()]
     assert sent(asked, OTHER_CRAFT) == []
     assert walk.search.stage == "open"
     assert phases(walk) == {FIRST_CRAFT: "returning", OTHER_CRAFT: "flying"}
@@ -96,7 +96,8 @@ def test_an_abort_of_one_craft_leaves_the_other_searching_and_of_both_ends_the_s
     [
         (commands.Hold(), effects.HoldVehicle()),
         (commands.Return(), effects.ReturnHome()),
-        (commands.Abort(), effects.ReturnHome(hold_first=True)),
+        (commands.Land(), effects.Land()),
+        (commands.Abort(), effects.HoldVehicle()),
     ],
 )
 def test_hold_return_and_abort_without_a_name_are_for_every_craft(command: commands.ForCraft, wanted: object) -> None:

@@ -77,9 +77,11 @@ def check_rules(before: MissionState, given_: Input, after: MissionState, asked:
         restarted = isinstance(given_, ToCraft) and isinstance(given_.given, inputs.Restarted)
         assert not moved or restarted, "a command went out while the pilot had control"
     if craft.phase in ("hold", "manual") and any(isinstance(e, MOVES) for e in moved):
-        ordered = isinstance(command, commands.Resume | commands.Return | commands.Abort)
-        timer = isinstance(given_, ToCraft) and given_.given == inputs.TimerExpired("console_return")
-        assert ordered or timer, f"{given_} moved a held vehicle"
+        ordered = isinstance(command, commands.Resume | commands.Return | commands.Land | commands.Abort)
+        expired = given_.given if isinstance(given_, ToCraft) else None
+        refused = craft.ladder is not None and expired == inputs.TimerExpired("order")
+        timer = expired == inputs.TimerExpired("console_return")
+        assert ordered or timer or refused, f"{given_} moved a held vehicle"
     if before.search.outcome is not None:
         assert after.search.outcome == before.search.outcome
         assert after.phase == before.phase

@@ -5,7 +5,7 @@ const LOOK = "Nach dem Fluggerät sehen und fortsetzen oder die Rückkehr befehl
 
 export const flight = {
   ordered: {
-    text: "{order?start=Gestartet|resume=Fortgesetzt|hold=Angehalten|return=Rückkehr befohlen|abort=Abgebrochen|override=Ort gewählt|accept=Ort angenommen|veto=Ort abgelehnt|automatic=Selbstannahme scharf geschaltet|exclude=Peilung weggelassen} durch {by}.",
+    text: "{order?start=Gestartet|resume=Fortgesetzt|hold=Angehalten|return=Rückkehr befohlen|land=Landung befohlen|abort=Abgebrochen|override=Ort gewählt|accept=Ort angenommen|veto=Ort abgelehnt|automatic=Selbstannahme scharf geschaltet|exclude=Peilung weggelassen} durch {by}.",
     remedy: "",
   },
   proceeds: {
@@ -29,6 +29,7 @@ export const flight = {
     remedy: "Seinen Strom und sein Netz prüfen.",
   },
   back_after_restart: { text: "Der Server ist neu gestartet.", remedy: "Nach dem Fluggerät sehen, dann fortsetzen." },
+  server_ends: { text: "Der Server wird beendet.", remedy: "Ihn wieder starten, nach dem Fluggerät sehen, dann fortsetzen." },
   pilot_flies: {
     text: "{perhaps_failsafe?true=Der Pilot oder der Ausfallschutz des Autopiloten|false=Der Pilot} steuert{mode?=, mit den Steuerknüppeln übernommen|*=: Das Fluggerät ist in }{mode}.",
     remedy: "Fortsetzen, wenn der Pilot die Steuerung zurückgegeben hat.",
@@ -90,6 +91,14 @@ export const flight = {
   interrupted: {
     text: "Unterbrochen: {because?later_mission=In der Luft ist eine später gestartete Mission|unreadable=Sie ist nicht mehr lesbar}.",
     remedy: "",
+  },
+  not_done: {
+    text: "{order?hold=Das Halten|return=Die Rückkehr|land=Die Landung|abort=Der Abbruch} ist nicht geschehen: {because} {next_way?hold=Das Halten|return=Die Rückkehr|land=Das Landen an Ort und Stelle} wird in {next_in_s} versucht.",
+    remedy: "Ein anderer Befehl tritt an seine Stelle. Der Pilot kann jederzeit übernehmen.",
+  },
+  instead: {
+    text: "{order?hold=Das Halten|return=Die Rückkehr|land=Die Landung|abort=Der Abbruch} war nicht möglich, darum {way?hold=hält das Fluggerät|return=kehrt das Fluggerät zurück|land=landet das Fluggerät, wo es ist}. {because}",
+    remedy: "Nach dem Fluggerät sehen. Ein anderer Befehl tritt an seine Stelle.",
   },
   ordered_again_later: {
     text: "{because}",

@@ -88,6 +88,10 @@ export const safety = {
     remedy: "Während sie hält, ihr Suchgebiet ändern, oder eine neue Mission entwerfen.",
   },
   mission_flies: { text: "Eine Mission fliegt.", remedy: "Die Antenne prüfen, wenn das Fluggerät am Boden ist." },
+  server_is_ending: {
+    text: "Der Server wird beendet: Er hält nur noch, kehrt zurück und landet.",
+    remedy: "Ihn zuerst wieder starten.",
+  },
   mission_does_not_fly: {
     text: "Die Mission fliegt nicht.",
     remedy: "Den Entwurf bearbeiten oder eine neue Mission entwerfen.",

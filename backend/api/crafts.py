@@ -1,0 +1,25 @@
+"""A vehicle in the air is told to hold, to return or to land, whether it flies for a mission or not."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+
+from backend.api.dependencies import PrincipalDep, ServicesDep
+from backend.api.problems import PROBLEM_RESPONSES, not_found
+from backend.commands import CommandReply, CraftRequest
+
+CraftId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,40}$", description="The craft's id")]
+router = APIRouter(prefix="/api/crafts", tags=["crafts"], responses=PROBLEM_RESPONSES)
+
+
+@router.post("/{craft_id}/commands")
+async def order_craft(
+    craft_id: CraftId, request: CraftRequest, services: ServicesDep, principal: PrincipalDep
+) -> CommandReply:
+    """Idempotent by `command_id`. A refusal is a reply with accepted = false; seq is 0 without a mission."""
+    flights = services.missions.flights
+    if craft_id not in flights.loose:
+        raise not_found("craft", craft_id)
+    return await flights.command_craft(craft_id, request.command_id, request.command, principal.name)

@@ -1,0 +1,150 @@
+"""The first second of a server: the vehicle that the server before left in flight is held, before anything else loads.
+
+Reads no more of the journal than whether a craft was in flight and who flew it. Where that cannot be told so quickly
+(another database, facts still in the spool, rows of before), the mission's own recovery does it, some seconds later;
+it follows in any case and records what happened.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import fcntl
+import json
+import logging
+import sqlite3
+from contextlib import closing, suppress
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from backend.settings import Settings
+from backend.simulation.hangar import Hangar
+from backend.store.spool_layout import holds_entries
+from hardware.authority import NOBODY, Authority
+from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.clock import ScaledClock
+from hardware.ports import HardwareError
+
+log = logging.getLogger("crossfix")
+
+ANSWERS_S = 5.0
+FORM = 2
+"""Of the rows that are read here; see backend.events."""
+
+
+@dataclass(frozen=True, slots=True)
+class FirstHold:
+    """The vehicle that was found, connected on url; authority: who flew it as the journal says. clock: its.
+
+    holding: the hold that is under way, None where somebody else has the vehicle.
+    """
+
+    url: str
+    vehicle: MavsdkVehicle
+    authority: Authority
+    clock: ScaledClock
+    holding: asyncio.Task[None] | None
+
+
+@dataclass(frozen=True, slots=True)
+class LeftInFlight:
+    """Who flew the craft, and at_s: when the mission's last fact was recorded (UTC epoch seconds)."""
+
+    authority: Authority
+    at_s: float
+
+
+async def hold_what_flies(settings: Settings) -> FirstHold | None:
+    """None when nothing was left in flight, or it cannot be told or reached so quickly. Never raises.
+
+    A vehicle that a pilot or its failsafe has is connected to, and nothing is sent.
+    """
+    try:
+        return await _hold_what_flies(settings)
+    except Exception:
+        log.exception("the first look at what flies failed")
+        return None
+
+
+async def _hold_what_flies(settings: Settings) -> FirstHold | None:
+    left = left_in_flight(settings)
+    if left is None:
+        return None
+    url = settings.vehicle_url or await Hangar(settings).address_left()
+    if url is None:
+        return None
+    clock = ScaledClock(factor=settings.time_factor)
+    if left.at_s > clock.now():  # a sped-up clock must not run behind what it has recorded
+        clock = ScaledClock(left.at_s, settings.time_factor)
+    vehicle = MavsdkVehicle(url, clock)
+    try:
+        await vehicle.connect(ANSWERS_S)
+    except HardwareError as error:
+        log.warning("%s", error)
+        return None
+    vehicle.restore(left.authority)
+    ours = vehicle.telemetry().authority.taken_by is None
+    return FirstHold(url, vehicle, left.authority, clock, asyncio.create_task(_hold(vehicle)) if ours else None)
+
+
+async def _hold(vehicle: MavsdkVehicle) -> None:
+    """The mission's recovery orders it again, and tells what came of it."""
+    try:
+        await vehicle.hold()
+    except HardwareError as error:
+        log.warning("the first hold: %s", error)
+
+
+def left_in_flight(settings: Settings) -> LeftInFlight | None:
+    """From the SQLite file itself, read-only."""
+    path = _database(settings)
+    if path is None or not path.exists() or _another_server(path) or holds_entries(settings.spool_path):
+        return None
+    try:
+        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True, timeout=0.3)) as connection:
+            return _in_flight(connection)
+    except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+        log.info("what flies is not known from the first look: %s", error)
+        return None
+
+
+def _another_server(database: Path) -> bool:
+    """One that runs and flies: this one will not start, and must not stop its vehicle."""
+    with suppress(FileNotFoundError), Path(f"{database}.server").open() as lock:
+        try:
+            fcntl.flock(lock.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
+
+
+def _database(settings: Settings) -> Path | None:
+    prefix = "sqlite+aiosqlite:///"
+    url = settings.async_database_url
+    return Path(url.removeprefix(prefix)) if url.startswith(prefix) else None
+
+
+def _in_flight(connection: sqlite3.Connection) -> LeftInFlight | None:
+    going_on = "started_at_us IS NOT NULL AND (ended_at_us IS NULL OR flying)"
+    rows = connection.execute(
+        f"SELECT mission_id, crafts FROM missions WHERE {going_on} ORDER BY started_at_us DESC LIMIT 1"
+    ).fetchall()
+    if not rows or not json.loads(rows[0][1]):
+        return None
+    mission_id = rows[0][0]
+    at_us, form = connection.execute(
+        "SELECT max(at_us), min(form) FROM events WHERE mission_id = ?", [mission_id]
+    ).fetchone()
+    if form != FORM:
+        return None
+    found = connection.execute(
+        "SELECT body FROM events WHERE mission_id = ? AND kind = 'authority_changed' ORDER BY seq DESC LIMIT 1",
+        [mission_id],
+    ).fetchone()
+    authority = NOBODY if found is None else _authority(json.loads(found[0])["authority"])
+    return LeftInFlight(authority, at_us / 1e6)
+
+
+def _authority(body: dict[str, Any]) -> Authority:
+    known = {field.name: body[field.name] for field in fields(Authority) if field.name in body}
+    return Authority(**{name: tuple(value) if isinstance(value, list) else value for name, value in known.items()})

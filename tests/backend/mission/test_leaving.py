@@ -1,0 +1,89 @@
+"""A server that ends leaves nothing flying by itself, and a vehicle in the air without a mission starts none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from uuid import uuid4
+
+import pytest
+from equipment import spec
+from flights import flying, order
+from stage import Stage
+
+from backend import commands
+from backend.events import FIRST_CRAFT, HoldOrdered
+from backend.reasons.flight import ServerEnds
+from backend.reasons.refusals import AnotherMissionFlies, ServerIsEnding
+from backend.reasons.safety import AlreadyInAir
+from hardware.ports import VehicleError
+from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold
+
+
+async def test_what_flies_by_itself_is_held_and_confirmed_before_the_server_ends(stage: Stage) -> None:
+    mission_id = await flying(stage)
+    (left,) = await stage.room.flights.leave(5.0)
+    assert (left.craft_id, left.phase, left.who, left.confirmed) == (FIRST_CRAFT, "hold", "ours", True)
+    assert stage.vehicle.names[-1] == "hold"
+    await stage.until(mission_id, "order_done")
+    assert stage.journal.of_kind(mission_id, HoldOrdered)[-1].reason == ServerEnds()
+
+
+@pytest.mark.parametrize("before", [commands.Hold(), commands.Return()])
+async def test_what_is_held_or_comes_home_is_left_so(stage: Stage, before: commands.ForCraft) -> None:
+    mission_id = await flying(stage)
+    await order(stage, mission_id, before)
+    await stage.until(mission_id, "order_done")
+    sent = list(stage.vehicle.names)
+    (left,) = await stage.room.flights.leave(5.0)
+    assert left.confirmed
+    assert stage.vehicle.names == sent
+
+
+async def test_a_vehicle_that_refuses_every_order_is_left_to_its_failsafe(stage: Stage) -> None:
+    await flying(stage)
+    closed: list[bool] = []
+
+    async def refuse() -> None:
+        raise VehicleError(DoesNotHold(AutopilotRefused("hold", "denied")))
+
+    async def close() -> None:
+        closed.append(True)
+
+    stage.vehicle.hold = stage.vehicle.return_home = stage.vehicle.land = refuse  # type: ignore[method-assign]
+    stage.vehicle.close = close  # type: ignore[method-assign]
+    (left,) = await stage.room.flights.leave(0.3)
+    assert not left.confirmed
+    assert closed == [True]
+
+
+async def test_while_the_server_ends_nothing_goes_on(stage: Stage) -> None:
+    mission_id = await flying(stage)
+    await stage.room.flights.leave(5.0)
+    refused = await order(stage, mission_id, commands.Resume())
+    assert (refused.accepted, refused.reason) == (False, ServerIsEnding())
+    assert (await order(stage, mission_id, commands.Return())).accepted
+
+
+async def test_no_mission_starts_with_a_vehicle_in_the_air(stage: Stage) -> None:
+    stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, altitude_relative_m=40.0)
+    mission_id = await stage.room.drafts.create(spec(), "anna")
+    refused = await order(stage, mission_id, commands.Start())
+    assert (refused.accepted, refused.reason) == (False, AlreadyInAir())
+
+
+async def test_one_door_reaches_a_craft_with_a_mission_and_without(stage: Stage) -> None:
+    flights = stage.room.flights
+    mission_id = await flying(stage)
+    held = await flights.command_craft(FIRST_CRAFT, uuid4(), commands.Hold(), "anna")
+    assert held.accepted
+    await stage.until_phase(mission_id, "hold")
+    other = await stage.room.drafts.create(spec(), "anna")
+    refused = await order(stage, other, commands.Start())
+    assert isinstance(refused.reason, AnotherMissionFlies)
+
+
+async def test_the_same_door_reaches_a_craft_in_no_mission(stage: Stage) -> None:
+    stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, altitude_relative_m=40.0)
+    landed = await stage.room.flights.command_craft(FIRST_CRAFT, uuid4(), commands.Land(), "anna")
+    assert landed.accepted
+    await stage.until_true(lambda: stage.vehicle.names == ["land"])

@@ -1,0 +1,102 @@
+"""What the first second of a server knows of what was left in flight, from the file of the journal alone."""
+
+from __future__ import annotations
+
+import sqlite3
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from facts import FAILSAFE, HOME, OURS, PILOT, SPEC
+
+from backend.events import AuthorityChanged, Event, MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
+from backend.first_hold import FORM, left_in_flight
+from backend.reasons.flight import Ordered
+from backend.settings import Settings
+from backend.store.opening import open_journal
+from backend.store.spool import Spool
+from hardware.authority import NOBODY, Authority
+
+STARTED = MissionStarted(craft_id="craft-1", by="anna", home=HOME, home_amsl_m=100.0, software="test")
+ORDERED = Ordered("start", "anna")
+
+
+def goes(after: str) -> PhaseChanged:
+    return PhaseChanged(craft_id="craft-1", before="ground", after=after, reason=ORDERED)  # type: ignore[arg-type]
+
+
+ABORTED = MissionEnded(outcome="aborted", reason=ORDERED, mission_time_s=1.0)
+
+
+async def stored(settings: Settings, *facts: Event, mission_id: str = "m") -> None:
+    async with open_journal(settings, time.time) as journal:
+        await journal.append(mission_id, [MissionDrafted(spec=SPEC), *facts])
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(data_dir=tmp_path)
+
+
+@pytest.mark.parametrize("authority", [OURS, PILOT, FAILSAFE])
+async def test_a_mission_in_flight_is_found_with_who_flew_it(settings: Settings, authority: Authority) -> None:
+    await stored(settings, STARTED, goes("flying"), AuthorityChanged(craft_id="craft-1", authority=authority))
+    left = left_in_flight(settings)
+    assert left is not None
+    assert left.authority == authority
+
+
+async def test_of_a_mission_that_nobody_flew_yet_that_is_known(settings: Settings) -> None:
+    await stored(settings, STARTED, goes("taking_off"))
+    left = left_in_flight(settings)
+    assert left is not None
+    assert left.authority == NOBODY
+
+
+@pytest.mark.parametrize(
+    ("facts", "found"),
+    [
+        ((), False),
+        ((STARTED, goes("flying")), True),
+        ((STARTED, goes("returning"), ABORTED), True),
+        ((STARTED, goes("flying"), goes("ground"), ABORTED), False),
+    ],
+)
+async def test_it_is_in_flight_until_its_craft_is_down(settings: Settings, facts: Sequence[Event], found: bool) -> None:
+    await stored(settings, *facts)
+    assert (left_in_flight(settings) is not None) == found
+
+
+async def test_where_it_cannot_be_told_so_quickly_nothing_is_said(settings: Settings, tmp_path: Path) -> None:
+    await stored(settings, STARTED, goes("flying"))
+    assert left_in_flight(settings.model_copy(update={"database_url": "postgresql://host/name"})) is None
+    assert left_in_flight(settings.model_copy(update={"data_dir": tmp_path / "elsewhere"})) is None
+    connection = sqlite3.connect(tmp_path / "crossfix.sqlite")
+    with connection:
+        connection.execute("UPDATE events SET form = ? WHERE seq = 1", [FORM - 1])
+    assert left_in_flight(settings) is None
+    connection.close()
+
+
+async def test_facts_that_wait_in_the_spool_may_say_otherwise(settings: Settings) -> None:
+    await stored(settings, STARTED, goes("flying"))
+    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
+    spool.append(b"anything")
+    assert left_in_flight(settings) is None
+    spool.clear()
+    assert left_in_flight(settings) is not None
+    spool.close()
+
+
+async def test_the_vehicle_of_a_server_that_runs_is_left_alone(settings: Settings) -> None:
+    await stored(settings, STARTED, goes("flying"))
+    async with open_journal(settings, time.time):
+        assert left_in_flight(settings) is None
+    assert left_in_flight(settings) is not None
+
+
+def test_its_rows_are_of_the_form_that_is_written_now() -> None:
+    from backend import events
+
+    assert events.FORM == FORM
