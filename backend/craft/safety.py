@@ -22,6 +22,8 @@ from hardware.readings import Place, Telemetry
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
+ALTITUDE_TOLERANCE_M = 0.5
+"""Of an altitude that went to AMSL and back."""
 LANDING_S = 60.0
 NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
 """Battery a second in the air until it has been measured: twenty minutes from full to empty."""
@@ -31,12 +33,14 @@ NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
 class Limits:
     """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
 
-    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m.
+    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m;
+    altitude_relative_m: the one to take off to.
     """
 
     frame: LocalFrame
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
+    altitude_relative_m: float
     minimum_altitude_relative_m: float
     maximum_altitude_relative_m: float
     home_amsl_m: float
@@ -83,6 +87,7 @@ def limits_of(task: SearchTask) -> Limits:
         frame=task.frame,
         fence=task.fence,
         no_fly=task.no_fly,
+        altitude_relative_m=flight.altitude_relative_m,
         minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
         maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
         home_amsl_m=task.home_amsl_m,
@@ -149,6 +154,7 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     found += battery_vetoes(limits, situation, limits.measurement_time_s)
     if telemetry.in_air:
         found.append(safety.AlreadyInAir())
+    found += _altitude_vetoes(limits, limits.altitude_relative_m)
     if telemetry.position is not None:
         found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "vehicle_stands")
     return tuple(found)
@@ -169,11 +175,7 @@ def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
 
 def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tuple[Reason, ...]:
     """May anything fly at `place` at all, wherever the vehicle is?"""
-    found: list[Reason] = []
-    relative = altitude_amsl_m - limits.home_amsl_m
-    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
-    if not low - 0.5 <= relative <= high + 0.5:
-        found.append(safety.AltitudeOutside(relative, low, high))
+    found = _altitude_vetoes(limits, altitude_amsl_m - limits.home_amsl_m)
     at = limits.frame.to_enu(place)
     if math.hypot(*at) > FAR_M:
         return (*found, safety.TooFarFromHome(math.hypot(*at), FAR_M))
@@ -202,6 +204,13 @@ def place_vetoes(
         flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
         found += battery_vetoes(limits, situation, flight_s, place)
     return tuple(found)
+
+
+def _altitude_vetoes(limits: Limits, relative_m: float) -> list[Reason]:
+    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
+    if low - ALTITUDE_TOLERANCE_M <= relative_m <= high + ALTITUDE_TOLERANCE_M:
+        return []
+    return [safety.AltitudeOutside(relative_m, low, high)]
 
 
 def _area_vetoes(limits: Limits, at: tuple[float, float], what: What) -> list[Reason]:

@@ -35,6 +35,7 @@ LIMITS = Limits(
     frame=FRAME,
     fence=box(-50, -50, 400, 200),
     no_fly=(box(100, 0, 150, 100),),
+    altitude_relative_m=40.0,
     minimum_altitude_relative_m=10.0,
     maximum_altitude_relative_m=120.0,
     home_amsl_m=100.0,
@@ -176,6 +177,20 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
     assert (outside.what, outside.beyond_m) == ("vehicle_stands", pytest.approx(30.0, abs=0.1))
     drifted = situation(in_air=False, east=-50.0 - 0.5 * EDGE_TOLERANCE_M)
     assert start_vetoes(LIMITS, drifted) == ()
+
+
+@given(altitude=st.floats(2, 500), low=st.floats(0, 500), high=st.floats(2, 1000))
+def test_nothing_takes_off_to_or_flies_at_an_altitude_outside_the_band(
+    altitude: float, low: float, high: float
+) -> None:
+    limits = replace(
+        LIMITS, altitude_relative_m=altitude, minimum_altitude_relative_m=low, maximum_altitude_relative_m=high
+    )
+    outside = not low - 0.5 <= altitude <= high + 0.5
+    start = kinds(start_vetoes(limits, situation(in_air=False)))
+    place = kinds(place_vetoes(limits, situation(), FRAME.to_geo(50, 100), limits.home_amsl_m + altitude))
+    assert (safety.AltitudeOutside in start) == outside
+    assert (safety.AltitudeOutside in place) == outside
 
 
 def test_a_vehicle_that_a_pilot_landed_and_disarmed_may_start_again_an_armed_one_may_not() -> None:
