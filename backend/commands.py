@@ -39,7 +39,7 @@ class Return(CraftCommand):
 
 
 class Abort(CraftCommand):
-    """End the automatic mission at once: the vehicle holds, then returns home by its autopilot."""
+    """End the automatic mission at once: the vehicle holds, then returns home."""
 
     kind: Literal["abort"] = "abort"
 

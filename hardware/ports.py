@@ -19,6 +19,7 @@ from hardware.readings import (
     Place,
     PowerSample,
     PreflightCheck,
+    ReturnAltitude,
     Sweep,
     Telemetry,
 )
@@ -89,6 +90,10 @@ class Vehicle(Protocol):
 
     async def preflight(self) -> list[PreflightCheck]:
         """Checks of link, GPS, heading, battery, fence and failsafe parameters."""
+        ...
+
+    async def return_altitude(self) -> ReturnAltitude:
+        """Of the autopilot's own return: it is not ours to choose, and must lie below the mission's ceiling."""
         ...
 
     async def take_off(self, altitude_relative_m: float) -> None: ...

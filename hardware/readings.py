@@ -103,6 +103,17 @@ class PreflightCheck:
 
 
 @dataclass(frozen=True, slots=True)
+class ReturnAltitude:
+    """What the autopilot climbs to for its own return, unless it is higher already (0: it stays as high as it is).
+
+    parameter: where that is set. altitude_relative_m None: it could not be read.
+    """
+
+    parameter: str
+    altitude_relative_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Pulses:
     """What a pulsed tag sends: pulses of `width_s` every `period_s`, each straying by up to `jitter_s`."""
 

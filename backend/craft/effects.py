@@ -52,7 +52,7 @@ class HoldVehicle:
 
 @dataclass(frozen=True, slots=True)
 class ReturnHome:
-    """The autopilot's own return. `hold_first`: brake before it (abort)."""
+    """Around what may not be flown over, then land at home (fly_home.py). `hold_first`: brake before it (abort)."""
 
     hold_first: bool = False
 

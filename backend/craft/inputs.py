@@ -135,6 +135,13 @@ class BatteryReported:
 
 
 @dataclass(frozen=True, slots=True)
+class AutopilotReturns:
+    """The autopilot's own return was ordered: ours cannot be flown."""
+
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
 class HomeReached:
     """The returning vehicle is above its home."""
 
@@ -186,6 +193,7 @@ CraftInput = (
     | LinkUp
     | BatteryLow
     | BatteryReported
+    | AutopilotReturns
     | HomeReached
     | Landed
     | TimerExpired

@@ -15,6 +15,7 @@ from backend.craft.inputs import (
     Abandoned,
     Arrived,
     AuthorityHeard,
+    AutopilotReturns,
     BatteryLow,
     BatteryReported,
     Broke,
@@ -62,6 +63,7 @@ from backend.events import (
     TookOff,
 )
 from backend.reasons import (
+    AutopilotFliesHome,
     NotLocalized,
     NoUsableBearing,
     OrderedAgainLater,
@@ -125,6 +127,9 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _link_up(step, given)
         case BatteryLow() | BatteryReported() | HomeReached() | Landed():
             _vehicle(step, given)
+        case AutopilotReturns(because=because):
+            if craft.phase in HOMEWARD and not craft.taken_over:
+                alert(step, "safety", "caution", AutopilotFliesHome(because))
         case TimerExpired():
             _timer(step, given)
         case Restarted(authority=authority):

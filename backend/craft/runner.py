@@ -15,6 +15,7 @@ from typing import Literal, assert_never
 from backend.commands import ForCraft, Override, Resume
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
+from backend.craft.fly_home import fly_home
 from backend.craft.listening import Listening, channels_of
 from backend.craft.measuring import Measured
 from backend.craft.safety import Limits, battery_vetoes, limits_of, resume_vetoes
@@ -161,10 +162,10 @@ class CraftRunner:
     def _comes_by_itself(self) -> bool:
         return self.equipment.vehicle.telemetry().authority.who == "failsafe"
 
-    async def _return_home(self, hold_first: bool) -> None:
+    async def _return_home(self, hold_first: bool) -> inputs.AutopilotReturns | None:
         vehicle = self.equipment.vehicle
         if self.down or self._comes_by_itself:
-            return
+            return None
         if hold_first:
             try:
                 await vehicle.hold()
@@ -172,7 +173,7 @@ class CraftRunner:
                 raise
             except HardwareError as error:
                 log.warning("%s: no hold before the return: %s", self.equipment.craft_id, error)
-        await vehicle.return_home()
+        return await fly_home(self.work)
 
     # Work: one a slot, the newest wins; the result of a cancelled one is never given
 

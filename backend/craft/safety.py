@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from shapely import LineString, Point
+from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
 
+from backend.craft.way_home import way_home
 from backend.reasons import Reason, safety
 from backend.reasons.safety import What
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
 from backend.search.task import SearchTask
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
+from planner.types import Problem
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
@@ -34,12 +36,13 @@ class Limits:
     """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
 
     fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m;
-    altitude_relative_m: the one to take off to.
+    altitude_relative_m: the one to take off to. problem: the planner's, whose ways keep clear of what may not be flown.
     """
 
     frame: LocalFrame
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
+    problem: Problem
     altitude_relative_m: float
     minimum_altitude_relative_m: float
     maximum_altitude_relative_m: float
@@ -87,6 +90,7 @@ def limits_of(task: SearchTask) -> Limits:
         frame=task.frame,
         fence=task.fence,
         no_fly=task.no_fly,
+        problem=task.first.problem,
         altitude_relative_m=flight.altitude_relative_m,
         minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
         maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
@@ -164,7 +168,10 @@ def staying_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     """May a vehicle in the air go on within these limits from where it is, and come home?"""
     found = _area_vetoes(limits, (0.0, 0.0), "home")
     if situation.telemetry.position is not None:
-        found += _area_vetoes(limits, limits.frame.to_enu(situation.telemetry.position), "vehicle")
+        at = limits.frame.to_enu(situation.telemetry.position)
+        found += _area_vetoes(limits, at, "vehicle")
+        if not found and way_home(limits.problem, at) is None:
+            found.append(safety.NoWayHome(math.hypot(*at)))
     return tuple(found)
 
 
@@ -203,6 +210,34 @@ def place_vetoes(
             found += _path_vetoes(limits, path)
         flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
         found += battery_vetoes(limits, situation, flight_s, place)
+    return tuple(found)
+
+
+def return_vetoes(
+    limits: Limits, situation: Situation, way: Sequence[tuple[float, float]], altitude_amsl_m: float
+) -> tuple[Reason, ...]:
+    """May the vehicle fly home along `way` (m ENU, home last)? Battery is no reason against it.
+
+    A vehicle that is where it may not be may leave: its first leg is held against the other zones only.
+    """
+    found = [*vehicle_vetoes(situation), *_altitude_vetoes(limits, altitude_amsl_m - limits.home_amsl_m)]
+    position = situation.telemetry.position
+    if found or position is None or not way:
+        return tuple(found)
+    here = limits.frame.to_enu(position)
+    outside = limits.fence.distance(Point(here)) > EDGE_TOLERANCE_M
+    inside = [zone.contains(Point(here)) for zone in limits.no_fly]
+    if not (outside or any(inside)):
+        return tuple(_path_vetoes(limits, LineString([here, *way])))
+    leaving = LineString([here, way[0]])
+    out = replace(
+        limits,
+        fence=unary_union([limits.fence, leaving.buffer(EDGE_TOLERANCE_M)]) if outside else limits.fence,
+        no_fly=tuple(zone for zone, within in zip(limits.no_fly, inside, strict=True) if not within),
+    )
+    found += _path_vetoes(out, leaving)
+    if len(way) > 1:
+        found += _path_vetoes(limits, LineString(way))
     return tuple(found)
 
 

@@ -110,6 +110,18 @@ class OrderedAgainLater:
     english: ClassVar[Words] = Words("{because}", "It is ordered again when the vehicle is heard.")
 
 
+@dataclass(frozen=True, slots=True)
+class AutopilotFliesHome:
+    """By its own return, ordered by us: it knows neither the mission's no-fly areas nor its altitude band."""
+
+    because: Reason
+    code: Literal["autopilot_flies_home"] = "autopilot_flies_home"
+    english: ClassVar[Words] = Words(
+        "The autopilot flies home by its own way, which knows no no-fly zones: {because}",
+        "Watch it; hold stops it.",
+    )
+
+
 CompositeReason = (
     ToldBefore
     | NoUsableBearing
@@ -120,6 +132,7 @@ CompositeReason = (
     | PreflightFailed
     | Interrupted
     | OrderedAgainLater
+    | AutopilotFliesHome
 )
 
 ReasonUnion = TypeAliasType(

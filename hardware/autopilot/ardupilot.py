@@ -55,6 +55,7 @@ ARDUPILOT = Dialect(
     reposition_modes=frozenset({GUIDED}),
     reposition_sets_speed=False,
     turn_methods=("condition_yaw", "condition_yaw", "condition_yaw_absolute"),
+    return_altitudes=(("RTL_ALT_M", 1.0), ("RTL_ALT", 0.01)),
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",

@@ -58,6 +58,7 @@ class Dialect:
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
     turn_methods: ways to turn a full circle, in the order in which to try them.
+    return_altitudes: the parameter that the autopilot's own return climbs to and its unit in metres, newest name first.
     """
 
     name: Literal["px4", "ardupilot"]
@@ -78,6 +79,7 @@ class Dialect:
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
     failsafes: tuple[FailsafeRule, ...]
+    return_altitudes: tuple[tuple[str, float], ...]
 
     def mode_name(self, custom_mode: int) -> str:
         return self.mode_names.get(custom_mode, f"mode {custom_mode}")

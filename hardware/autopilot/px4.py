@@ -62,6 +62,7 @@ PX4 = Dialect(
     reposition_modes=frozenset({HOLD}),
     reposition_sets_speed=True,
     turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
+    return_altitudes=(("RTL_RETURN_ALT", 1.0),),
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",

@@ -80,6 +80,7 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         *(inputs.LinkUp(link, 3.0) for link in LINKS),
         inputs.BatteryLow(BATTERY_VETO),
         inputs.BatteryReported(),
+        inputs.AutopilotReturns(VETO),
         inputs.HomeReached(),
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in TIMERS),

@@ -757,6 +757,15 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=}.",
   },
+  return_altitude_checked: {
+    text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).",
+    remedy:
+      "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}, or raise that.",
+  },
+  return_altitude_unread: {
+    text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
+    remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",
@@ -1196,6 +1205,10 @@ export const reasonsEn: ReasonTable = {
     text: "The way there crosses a no-fly zone.",
     remedy: "Fly by way of a place beside the zone.",
   },
+  no_way_home: {
+    text: "From where the vehicle is no way around the no-fly zones and inside the fence leads home, {distance_m} away.",
+    remedy: "Draw the fence and the no-fly zones so that there is one.",
+  },
   area_empty: {
     text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} is empty.",
     remedy: "Draw at least three corners.",
@@ -1343,5 +1356,9 @@ export const reasonsEn: ReasonTable = {
   ordered_again_later: {
     text: "{because}",
     remedy: "It is ordered again when the vehicle is heard.",
+  },
+  autopilot_flies_home: {
+    text: "The autopilot flies home by its own way, which knows no no-fly zones: {because}",
+    remedy: "Watch it; hold stops it.",
   },
 };

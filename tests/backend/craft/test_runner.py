@@ -104,7 +104,7 @@ async def test_safety_is_asked_again_right_before_the_flight(rig: Rig) -> None:
 async def test_an_abort_holds_before_it_returns(rig: Rig) -> None:
     rig.flies()
     rig.runner.carry_out(effects.ReturnHome(hold_first=True))
-    await rig.until(lambda: rig.vehicle.names == ["hold", "return_home"])
+    await rig.until(lambda: rig.vehicle.names == ["hold", "land"])
 
 
 async def test_what_fails_is_given_with_its_reason_and_whether_the_vehicle_flies(rig: Rig) -> None:

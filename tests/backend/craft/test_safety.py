@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
+from airspace import airspace
 from facts import FAILSAFE, GIVEN_BACK, PILOT
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,6 +18,7 @@ from backend.craft.safety import (
     battery_to_return_percent,
     place_vetoes,
     resume_vetoes,
+    return_vetoes,
     standing_vetoes,
     start_vetoes,
     staying_vetoes,
@@ -31,10 +33,12 @@ from planner.reason import remedy_of
 
 HOME = Place(50.0, 7.0)
 FRAME = LocalFrame(HOME)
+FENCE, ZONE = box(-50, -50, 400, 200), box(100, 0, 150, 100)
 LIMITS = Limits(
     frame=FRAME,
-    fence=box(-50, -50, 400, 200),
-    no_fly=(box(100, 0, 150, 100),),
+    fence=FENCE,
+    no_fly=(ZONE,),
+    problem=airspace(FENCE, ZONE),
     altitude_relative_m=40.0,
     minimum_altitude_relative_m=10.0,
     maximum_altitude_relative_m=120.0,
@@ -214,6 +218,41 @@ def test_a_vehicle_in_the_air_stays_only_within_limits_that_hold_its_home_too() 
     assert (home.what, vehicle.what) == ("home", "vehicle")
     zone = replace(LIMITS, no_fly=(box(-9, -9, 9, 9),))
     assert staying_vetoes(zone, situation(east=60.0, north=50.0)) == (safety.InsideNoFly("home"),)
+
+
+def test_an_area_that_leaves_no_way_home_is_not_gone_into() -> None:
+    wall = box(100, -60, 150, 210)
+    walled = replace(LIMITS, no_fly=(wall,), problem=airspace(FENCE, wall))
+    assert kinds(staying_vetoes(walled, situation(east=300.0))) == [safety.NoWayHome]
+    assert staying_vetoes(walled, situation(east=50.0)) == ()
+
+
+def test_a_way_home_may_leave_the_zone_it_begins_in_and_enter_no_other() -> None:
+    inside = situation(east=105.0, north=50.0)
+    assert return_vetoes(LIMITS, inside, [(96.0, 50.0), (0.0, 0.0)], 140.0) == ()
+    assert kinds(return_vetoes(LIMITS, inside, [(160.0, 50.0), (0.0, 0.0)], 140.0)) == [safety.WayCrossesNoFly]
+    assert kinds(return_vetoes(LIMITS, situation(east=200.0, north=9.0), [(0.0, 9.0)], 140.0)) == [
+        safety.WayCrossesNoFly
+    ]
+    another = replace(LIMITS, no_fly=(ZONE, box(80, 0, 100, 100)))
+    assert kinds(return_vetoes(another, inside, [(70.0, 50.0), (0.0, 0.0)], 140.0)) == [safety.WayCrossesNoFly]
+
+
+def test_a_way_home_begins_outside_the_fence_and_stays_inside_it_then() -> None:
+    outside = situation(east=430.0, north=150.0)
+    assert return_vetoes(LIMITS, outside, [(399.0, 150.0), (153.0, 103.0), (0.0, 105.0), (0.0, 0.0)], 140.0) == ()
+    assert kinds(return_vetoes(LIMITS, outside, [(399.0, 150.0), (200.0, 220.0), (0.0, 105.0)], 140.0)) == [
+        safety.WayLeavesFence
+    ]
+
+
+def test_a_way_home_lies_in_the_band_and_asks_for_no_battery() -> None:
+    here = situation(east=50.0, battery_percent=1.0)
+    assert return_vetoes(LIMITS, here, [(0.0, 0.0)], 140.0) == ()
+    assert kinds(return_vetoes(LIMITS, here, [(0.0, 0.0)], 100.0 + 121.0)) == [safety.AltitudeOutside]
+    assert kinds(return_vetoes(LIMITS, situation(east=50.0, authority=PILOT), [(0.0, 0.0)], 140.0)) == [
+        safety.PilotControls
+    ]
 
 
 def test_a_place_may_be_judged_without_a_vehicle() -> None:

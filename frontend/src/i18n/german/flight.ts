@@ -87,6 +87,10 @@ export const flight = {
     text: "Unterbrochen: {because?later_mission=In der Luft ist eine später gestartete Mission|unreadable=Sie ist nicht mehr lesbar}.",
     remedy: "",
   },
+  autopilot_flies_home: {
+    text: "Der Autopilot fliegt auf seinem eigenen Weg zurück, der keine Flugverbotsgebiete kennt: {because}",
+    remedy: "Hinsehen; Anhalten stoppt ihn.",
+  },
   ordered_again_later: {
     text: "{because}",
     remedy: "Es wird noch einmal befohlen, wenn das Fluggerät wieder zu hören ist.",
