@@ -22,6 +22,7 @@ from hardware.readings import Place
 
 log = logging.getLogger("crossfix.craft")
 
+AT_HOME_M = 2.0
 CLIMB_FIRST_M = 3.0
 """A vehicle that is further than this from the altitude it returns at goes there first, on the spot."""
 
@@ -57,12 +58,12 @@ async def _our_way(work: Work) -> Reason | None:
     if position is None:
         return safety.NoPosition()
     at = work.task.frame.to_enu(position)
+    amsl = now.telemetry.altitude_amsl_m
     if math.hypot(*at) < ABOVE_HOME_M:
-        return None
+        return await _over_home(work, at, amsl)
     way = await asyncio.to_thread(way_home, work.limits.problem, at)
     if way is None:
         return safety.NoWayHome(math.hypot(*at))
-    amsl = now.telemetry.altitude_amsl_m
     if amsl is not None and abs(work.task.altitude_at(position) - amsl) > CLIMB_FIRST_M:
         because = await _leg(work, position, way)
         if because is not None:
@@ -75,9 +76,17 @@ async def _our_way(work: Work) -> Reason | None:
     return None
 
 
-async def _leg(work: Work, to: Place, way: tuple[Point2, ...]) -> Reason | None:
-    """One leg, and what safety has against it or against the rest of the way."""
-    altitude = work.task.altitude_at(to)
+async def _over_home(work: Work, at: Point2, amsl: float | None) -> Reason | None:
+    """The last metres, as high as it is; a vehicle that is lower than the band lands where it is."""
+    low = work.limits.home_amsl_m + work.limits.minimum_altitude_relative_m
+    if math.hypot(*at) < AT_HOME_M or amsl is None or amsl < low:
+        return None
+    return await _leg(work, work.task.home, ((0.0, 0.0),), amsl)
+
+
+async def _leg(work: Work, to: Place, way: tuple[Point2, ...], amsl: float | None = None) -> Reason | None:
+    """One leg, and what safety has against it or against the rest of the way. amsl None: the task's altitude there."""
+    altitude = work.task.altitude_at(to) if amsl is None else amsl
     vetoes = return_vetoes(work.limits, await recent(work.situation), way, altitude)
     if vetoes:
         return vetoes[0]

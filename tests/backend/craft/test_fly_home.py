@@ -122,6 +122,16 @@ async def test_above_home_it_only_lands(returning: list[Returning]) -> None:
     assert craft.vehicle.names == ["land"]
 
 
+@pytest.mark.parametrize(("height", "flown"), [(40.0, ["goto", "land"]), (5.0, ["land"])])
+async def test_beside_home_it_goes_there_unless_it_is_too_low_to_go_anywhere(
+    returning: list[Returning], height: float, flown: list[str]
+) -> None:
+    craft = start(returning, spec(), FRAME.to_geo(4.0, 3.0))
+    craft.vehicle.state = replace(craft.vehicle.state, altitude_relative_m=height, altitude_amsl_m=100.0 + height)
+    await craft.flown("land")
+    assert craft.vehicle.names == flown
+
+
 async def told(craft: Returning) -> object:
     await craft.flown("return_home")
     await craft.stage.until_true(lambda: bool(craft.given))
