@@ -121,6 +121,9 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
 	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
 
+battery-home: setup-dev ## a thousand simulated returns in wind: what was promised of the battery, and what they took
+	$(BIN)/python -m tests.benchmarks.battery_home --flights 1000 --out $(MEASUREMENTS)
+
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue frontend/src/i18n/reasons.en.ts

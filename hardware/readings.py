@@ -46,6 +46,9 @@ class Telemetry:
     velocity_north_m_s: float | None = None
     velocity_east_m_s: float | None = None
     velocity_down_m_s: float | None = None
+    push_north_m_s2: float | None = None
+    push_east_m_s2: float | None = None
+    """The horizontal part of the thrust per mass: by how much the vehicle leans, and where to."""
     battery_percent: float | None = None
     battery_at_s: float | None = None
     gps_fix: GpsFixName | None = None

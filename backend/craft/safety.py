@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
 
-from backend.craft.way_home import way_home
+from backend.craft.endurance import Endurance, landing_s, unknown
+from backend.craft.way_home import legs_home, way_home
 from backend.reasons import Reason, safety
 from backend.reasons.safety import What
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
@@ -26,9 +28,6 @@ POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
 ALTITUDE_TOLERANCE_M = 0.5
 """Of an altitude that went to AMSL and back."""
-LANDING_S = 60.0
-NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
-"""Battery a second in the air until it has been measured: twenty minutes from full to empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +54,14 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """The vehicle as last heard, and how fast its battery drains (percent a second of flight).
+    """The vehicle as last heard, and what flying takes of its battery.
 
     heard_since_s: when it was heard again after its link had been lost.
     """
 
     telemetry: Telemetry
     now_s: float
-    drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
+    endurance: Endurance = field(default_factory=unknown)
     heard_since_s: float = -math.inf
 
     @property
@@ -78,10 +77,15 @@ class Situation:
         return 0.0 if heard is None or battery is None else heard - max(battery, self.heard_since_s)
 
 
-def battery_to_return_percent(limits: Limits, position: Place, drain_percent_s: float) -> float:
-    """Charge that the flight home from `position` and the landing take, reserve not included."""
-    east, north = limits.frame.to_enu(position)
-    return drain_percent_s * (math.hypot(east, north) / limits.speed_m_s + LANDING_S)
+def battery_to_return_percent(
+    limits: Limits, position: Place, endurance: Endurance, altitude_relative_m: float | None = None
+) -> float:
+    """Charge that the way home from `position` takes, around what may not be flown over, and the landing. The reserve
+    is not included. altitude_relative_m: of the vehicle there, None: the mission's."""
+    legs = legs_home(limits.problem, limits.frame.to_enu(position))
+    height = limits.altitude_relative_m if altitude_relative_m is None else altitude_relative_m
+    climb = limits.altitude_relative_m - height if legs else 0.0
+    return endurance.way_percent(legs, limits.speed_m_s, landing_s(height + max(climb, 0.0)), climb)
 
 
 def limits_of(task: SearchTask) -> Limits:
@@ -129,13 +133,19 @@ def resume_vetoes(telemetry: Telemetry) -> tuple[Reason, ...]:
 
 
 def battery_vetoes(
-    limits: Limits, situation: Situation, flight_s: float = 0.0, end: Place | None = None
+    limits: Limits,
+    situation: Situation,
+    hover_s: float = 0.0,
+    legs: Sequence[tuple[float, float]] = (),
+    end: Place | None = None,
 ) -> tuple[Reason, ...]:
-    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?
+    """Would the battery still reach home with the reserve after these legs (east, north m) to `end`, and after so much
+    hovering?
 
     A charge that is not known is no charge, unless the mission says that the vehicle has no battery telemetry.
     """
     telemetry = situation.telemetry
+    altitude = telemetry.altitude_relative_m if end is None else None
     end = end or telemetry.position
     if telemetry.battery_percent is None:
         return (safety.BatteryUnknown(),) if limits.battery_telemetry else ()
@@ -143,8 +153,10 @@ def battery_vetoes(
         return ()
     if situation.battery_unreported_s > BATTERY_STALE_S:
         return (safety.BatterySilent(),)
-    left = telemetry.battery_percent - situation.drain_percent_s * flight_s
-    needed = battery_to_return_percent(limits, end, situation.drain_percent_s)
+    endurance = situation.endurance
+    takes = endurance.way_percent(legs, limits.speed_m_s, hover_s) if legs or hover_s else 0.0
+    left = telemetry.battery_percent - takes
+    needed = battery_to_return_percent(limits, end, endurance, altitude)
     if left - needed >= limits.reserve_percent:
         return ()
     return (safety.BatteryShort(telemetry.battery_percent, left, needed, limits.reserve_percent),)
@@ -208,8 +220,8 @@ def place_vetoes(
         path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
         if not found:
             found += _path_vetoes(limits, path)
-        flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
-        found += battery_vetoes(limits, situation, flight_s, place)
+        legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path.coords)]
+        found += battery_vetoes(limits, situation, limits.measurement_time_s, legs, place)
     return tuple(found)
 
 

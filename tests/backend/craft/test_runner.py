@@ -152,7 +152,7 @@ async def test_a_timer_expires_once_and_a_cancelled_one_never(rig: Rig) -> None:
 
 async def test_what_safety_has_against_an_order_is_found_before_it_is_given(rig: Rig) -> None:
     rig.flies()
-    far: Place = FRAME.to_geo(900.0, 0.0)
+    far: Place = FRAME.to_geo(300.0, 0.0)
     (fence,) = rig.runner.objections(commands.Override(place=far))
     assert isinstance(fence, OutsideFence)
     assert rig.runner.objections(commands.Override(place=NEAR)) == ()

@@ -14,9 +14,8 @@ from backend.craft import inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.machine import transition
-from backend.craft.safety import NOMINAL_DRAIN_PERCENT_S, limits_of, vehicle_vetoes
+from backend.craft.safety import limits_of, vehicle_vetoes
 from backend.craft.state import CraftState
-from backend.craft.watch.drain import Drain
 from backend.craft.watch.watch import Watch
 from backend.events import FIRST_CRAFT
 from backend.reasons.flight import NoConsole, VehicleLinkLost
@@ -302,26 +301,3 @@ def test_home_and_ground_are_noticed_when_they_are_reached(scene: Scene) -> None
 def test_the_track_is_thinned_to_two_points_a_second(scene: Scene) -> None:
     scene.tick(50)
     assert 17 <= len(scene.watch.track.points) <= 20
-
-
-def test_drain_is_nominal_until_enough_was_used_to_tell() -> None:
-    drain = Drain()
-    flying = replace(Stage().vehicle.state, in_air=True)
-    for second in range(0, 600, 10):
-        drain.update(replace(flying, battery_percent=90.0 - 0.1 * second), float(second))
-        if second < 60:
-            assert drain.percent_s == NOMINAL_DRAIN_PERCENT_S
-    assert drain.percent_s == pytest.approx(0.1)
-
-
-def test_drain_counts_neither_the_time_on_the_ground_nor_a_silent_link() -> None:
-    drain = Drain()
-    flying = replace(Stage().vehicle.state, in_air=True)
-    drain.update(replace(flying, battery_percent=90.0, battery_at_s=0.0), 0.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 100.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 300.0)
-    assert drain.percent_s == pytest.approx(0.1)
-    drain.update(replace(flying, in_air=False, battery_percent=80.0, battery_at_s=1_000.0), 1_000.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=2_000.0), 2_000.0)
-    drain.update(replace(flying, battery_percent=60.0, battery_at_s=2_100.0), 2_100.0)
-    assert drain.percent_s == pytest.approx(0.2)
