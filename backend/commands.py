@@ -44,6 +44,12 @@ class Abort(CraftCommand):
     kind: Literal["abort"] = "abort"
 
 
+class KeepHolding(CraftCommand):
+    """Stop the countdown of a low battery in hold, once a flight."""
+
+    kind: Literal["keep_holding"] = "keep_holding"
+
+
 class Override(CraftCommand):
     """Fly to this place next instead of the planner's choice."""
 
@@ -83,7 +89,7 @@ class AcknowledgeAlert(Model):
     alert_id: str
 
 
-ForCraft = Start | Hold | Resume | Return | Abort | Override | Accept | Veto | SetAutomatic
+ForCraft = Start | Hold | Resume | Return | Abort | KeepHolding | Override | Accept | Veto | SetAutomatic
 ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
 Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
 

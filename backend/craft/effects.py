@@ -10,7 +10,7 @@ from backend.reasons import Reason
 from backend.search.effects import Record, Refuse
 from backend.spec import Place
 
-TimerName = Literal["console_hold", "console_return", "landing"]
+TimerName = Literal["console_hold", "console_return", "landing", "battery_return"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from backend.craft import orders
+from backend.craft import low_battery, orders
 from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, HoldVehicle, Land, ReturnHome, StartTimer
 from backend.craft.inputs import (
     Abandoned,
@@ -36,6 +36,7 @@ from backend.craft.inputs import (
     WorkFailed,
     WorkVetoed,
 )
+from backend.craft.low_battery import LANDING_PATIENCE_S
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, pilot_has
 from backend.craft.step import (
     CraftStep,
@@ -77,7 +78,6 @@ from backend.search.effects import Refuse
 from backend.search.state import SearchState
 from hardware.authority import Authority
 
-LANDING_PATIENCE_S = 120.0
 UNSURE_PLACE_M = 5.0
 """A vehicle that hovers stays within this; what it reports beyond is an alert."""
 
@@ -306,13 +306,10 @@ def _heard_again(step: CraftStep) -> None:
 def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
     phase = step.craft.phase
     match given:
-        case BatteryLow(because=because) if phase in AUTOMATIC or phase in ("hold", "manual"):
-            alert(step, "battery", "warning", because)
-            if phase in AUTOMATIC:
-                step.record(ReturnOrdered(craft_id=step.craft.craft_id, by=None, reason=because))
-                go_home(step, because)
+        case BatteryLow():
+            low_battery.low(step, given)
         case BatteryReported():
-            clear_alerts(step, "battery")
+            low_battery.suffices(step)
         case HomeReached() if phase == "returning":
             step.go("landing", flight.Proceeds("way_home"))
             step.do(StartTimer("landing", LANDING_PATIENCE_S))
@@ -356,6 +353,8 @@ def _timer(step: CraftStep, given: TimerExpired) -> None:
             go_home(step, reason)
         case "landing" if phase == "landing":
             bring_down(step, Land())
+        case "battery_return":
+            low_battery.counted_down(step)
         case _:
             return
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from backend.commands import Abort, Accept, Hold, Override, Resume, Return, SetAutomatic, Start, Veto
+from backend.commands import Abort, Accept, Hold, KeepHolding, Override, Resume, Return, SetAutomatic, Start, Veto
 from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, ReturnHome, TakeControl
 from backend.craft.inputs import CraftOrdered
+from backend.craft.low_battery import keep_holding
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.craft.step import (
     CraftStep,
@@ -50,6 +51,8 @@ def carry_out(step: CraftStep, given: CraftOrdered) -> None:
             _return(step, given)
         case Abort():
             _abort(step, given)
+        case KeepHolding():
+            keep_holding(step, given.by)
         case Override():
             _override(step, given, command)
         case Accept():

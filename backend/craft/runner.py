@@ -219,7 +219,7 @@ class CraftRunner:
 
     async def _expire(self, name: effects.TimerName, seconds: float) -> None:
         """Consoles and the people before them live in the wall's time, however fast a simulation runs."""
-        if name == "landing":
+        if name in ("landing", "battery_return"):
             await self.equipment.clock.sleep(seconds)
         else:
             await asyncio.sleep(seconds)

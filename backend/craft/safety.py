@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Literal
 
 from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
@@ -26,8 +27,16 @@ from planner.types import Problem
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
+LAST_SHARE = 0.5
+"""Of the reserve: a charge that leaves less is the last to return with."""
+LAND_SPARE_PERCENT = 5.0
+"""A charge that is no further above what the landing here takes is for landing here."""
 ALTITUDE_TOLERANCE_M = 0.5
 """Of an altitude that went to AMSL and back."""
+
+
+BatteryStage = Literal["return", "last", "land"]
+"""It should return; it must return now; it must land where it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,6 +169,20 @@ def battery_vetoes(
     if left - needed >= limits.reserve_percent:
         return ()
     return (safety.BatteryShort(telemetry.battery_percent, left, needed, limits.reserve_percent),)
+
+
+def battery_stage(limits: Limits, situation: Situation) -> BatteryStage:
+    """How low a battery is that no longer leaves the reserve. One whose charge is not known: it should return."""
+    telemetry, endurance = situation.telemetry, situation.endurance
+    charge, position, height = telemetry.battery_percent, telemetry.position, telemetry.altitude_relative_m
+    if charge is None or position is None:
+        return "return"
+    height = limits.altitude_relative_m if height is None else height
+    down = endurance.way_percent((), limits.speed_m_s, landing_s(height))
+    if charge < down + LAND_SPARE_PERCENT and legs_home(limits.problem, limits.frame.to_enu(position)):
+        return "land"
+    spare = charge - battery_to_return_percent(limits, position, endurance, height)
+    return "last" if spare < LAST_SHARE * limits.reserve_percent else "return"
 
 
 def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:

@@ -142,6 +142,7 @@ def cancel_timers(step: CraftStep) -> None:
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("landing"))
+    step.do(CancelTimer("battery_return"))
 
 
 def alert(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:

@@ -39,6 +39,8 @@ from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
 from backend.events.craft import (
     FIRST_CRAFT,
     AuthorityChanged,
+    BatteryCountdownStarted,
+    BatteryCountdownStopped,
     FlightStarted,
     MissionStarted,
     Phase,
@@ -81,6 +83,8 @@ __all__ = [
     "AreaChanged",
     "AuthorityChanged",
     "AutomaticChanged",
+    "BatteryCountdownStarted",
+    "BatteryCountdownStopped",
     "BearingExcluded",
     "BearingMeasured",
     "BearingSource",
@@ -152,6 +156,8 @@ Event = Annotated[
     | ResumeOrdered
     | ReturnOrdered
     | AbortOrdered
+    | BatteryCountdownStarted
+    | BatteryCountdownStopped
     | AutomaticChanged
     | AuthorityChanged
     | CommandAccepted

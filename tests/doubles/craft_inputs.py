@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 from craft_walk import ordered
 from facts import (
     BATTERY_VETO,
@@ -28,6 +30,7 @@ from facts import (
 from backend import commands
 from backend.craft import inputs
 from backend.craft.effects import TimerName
+from backend.craft.safety import BatteryStage
 from backend.craft.state import CraftState
 from backend.events import Link
 from backend.reasons import Interrupted
@@ -41,6 +44,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.Resume(),
     commands.Return(),
     commands.Abort(),
+    commands.KeepHolding(),
     commands.Override(place=HOME),
     commands.Accept(),
     commands.Veto(),
@@ -48,7 +52,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.SetAutomatic(automatic=False),
 )
 LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload")
-TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing")
+TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing", "battery_return")
 STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
 
 
@@ -78,7 +82,7 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.FailsafeEnded("HOLD"),
         *(inputs.LinkDown(link, LINK_LOST) for link in LINKS),
         *(inputs.LinkUp(link, 3.0) for link in LINKS),
-        inputs.BatteryLow(BATTERY_VETO),
+        *(inputs.BatteryLow(BATTERY_VETO, stage) for stage in get_args(BatteryStage)),
         inputs.BatteryReported(),
         inputs.AutopilotReturns(VETO),
         inputs.HomeReached(),

@@ -977,6 +977,10 @@ export const reasonsEn: ReasonTable = {
     text: "The mission is not held.",
     remedy: "",
   },
+  no_countdown: {
+    text: "Nothing counts down: the countdown is over, or was stopped before.",
+    remedy: "",
+  },
   landing_already: {
     text: "The vehicle is landing at home already.",
     remedy: "Hold stops the landing.",

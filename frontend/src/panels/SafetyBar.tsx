@@ -6,7 +6,7 @@ import { sendUrgent, type Urgent, urgent } from "../commands/urgent";
 import { type MessageKey, t } from "../i18n";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
-import { live } from "../state/connection";
+import { live, serverNowMs } from "../state/connection";
 import { flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
@@ -145,7 +145,11 @@ function Indicators() {
         age={batteryAge}
         state={freshness(batteryAge)}
         alert={battery === null ? null : battery < (needed ?? 0) ? "warning" : battery < reserve + (needed ?? 0) ? "caution" : null}
-        more={needed === null ? "" : t("bar.battery.toReturn", { percent: Math.round(needed) })}
+        more={
+          needed === null || battery === null
+            ? ""
+            : t("bar.battery.toReturn", { percent: Math.ceil(needed), left: Math.floor(battery - needed) })
+        }
       />
       <Indicator
         label={t("bar.receiver")}
@@ -248,6 +252,22 @@ function UrgentNote() {
   );
 }
 
+/** A low battery in hold: somebody may stop the return, once. Only of the flight as it is now. */
+function Countdown() {
+  const { returnsAt, missionId } = mission.value;
+  const id = flying.value?.id;
+  if (returnsAt === null || cursor.value !== null || !id || id !== missionId) return null;
+  const seconds = Math.max(0, Math.ceil((Date.parse(returnsAt) - serverNowMs.value) / 1000));
+  return (
+    <div class="urgent-note countdown" role="alert" data-testid="countdown">
+      <span>{t("bar.countdown", { seconds })}</span>{" "}
+      <button type="button" data-testid="keep-holding" onClick={() => void send("bar", id, { kind: "keep_holding" })}>
+        {t("bar.keepHolding")}
+      </button>
+    </div>
+  );
+}
+
 export function SafetyBar() {
   return (
     <header class="safety" data-tour="1">
@@ -265,6 +285,7 @@ export function SafetyBar() {
         <Menu />
       </div>
       <div class="bar-notes">
+        <Countdown />
         <UrgentNote />
         <ProblemNote desk="bar" />
       </div>

@@ -14,6 +14,7 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   resume: "command.resume",
   return: "command.return",
   abort: "command.abort",
+  keep_holding: "command.keep_holding",
   override: "command.override",
   accept: "command.accept",
   veto: "command.veto",
@@ -123,6 +124,10 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.resume_ordered", { by: byWords(event.by) });
     case "abort_ordered":
       return t("event.abort_ordered", { by: byWords(event.by) });
+    case "battery_countdown_started":
+      return t("event.battery_countdown_started", { time: formatDuration(event.seconds), reason: reasonText(event.reason) });
+    case "battery_countdown_stopped":
+      return t("event.battery_countdown_stopped", { by: byWords(event.by) });
     case "automatic_changed":
       return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: byWords(event.by) });
     case "authority_changed":

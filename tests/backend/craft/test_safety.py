@@ -16,6 +16,7 @@ from backend.craft.endurance import LEG_S, landing_s
 from backend.craft.safety import (
     Limits,
     Situation,
+    battery_stage,
     battery_to_return_percent,
     place_vetoes,
     resume_vetoes,
@@ -279,3 +280,15 @@ def test_every_veto_says_how_to_mend_it() -> None:
     assert len(vetoes) >= 4
     for veto in vetoes:
         assert remedy_of(veto)
+
+
+@pytest.mark.parametrize(("charge", "stage"), [(90.0, "return"), (33.0, "return"), (18.0, "last"), (9.0, "land")])
+def test_a_battery_is_the_lower_the_less_it_leaves(charge: float, stage: str) -> None:
+    """Hovering over a place from which the way home takes 6.4 %, and the landing here 4.8 %."""
+    seen = Situation(telemetry(0.0, 100.0, battery_percent=charge, altitude_relative_m=40.0), 1000.0, still_air(0.07))
+    assert battery_stage(LIMITS, seen) == stage
+
+
+def test_above_home_a_battery_is_never_so_low_that_it_lands_elsewhere() -> None:
+    seen = Situation(telemetry(0.0, 2.0, battery_percent=3.0, altitude_relative_m=40.0), 1000.0, still_air(0.07))
+    assert battery_stage(LIMITS, seen) == "last"

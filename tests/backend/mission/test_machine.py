@@ -92,8 +92,11 @@ def check_rules(before: MissionState, given_: Input, after: MissionState, asked:
         assert not moved or restarted, "a command went out while the pilot had control"
     if craft.phase in ("hold", "manual") and any(isinstance(e, MOVES) for e in moved):
         ordered = isinstance(command, commands.Resume | commands.Return | commands.Abort)
-        timer = isinstance(given_, ToCraft) and given_.given == inputs.TimerExpired("console_return")
-        assert ordered or timer, f"{given_} moved a held vehicle"
+        told = given_.given if isinstance(given_, ToCraft) else None
+        timer = told == inputs.TimerExpired("console_return")
+        counted = told == inputs.TimerExpired("battery_return") and craft.counting_down
+        lower = isinstance(told, inputs.BatteryLow) and told.stage != "return"
+        assert ordered or timer or counted or lower, f"{given_} moved a held vehicle"
     if before.search.outcome is not None:
         assert after.search.outcome == before.search.outcome
         assert after.phase == before.phase

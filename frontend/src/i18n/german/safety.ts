@@ -61,6 +61,7 @@ export const safety = {
   already_started: { text: "Die Mission hat schon begonnen.", remedy: "Für den nächsten Flug eine neue entwerfen." },
   mission_over: { text: "Die Mission ist zu Ende.", remedy: "Eine neue entwerfen." },
   not_held: { text: "Die Mission ist nicht angehalten.", remedy: "" },
+  no_countdown: { text: "Es wird nicht zurückgezählt: Es ist vorbei oder wurde schon gestoppt.", remedy: "" },
   landing_already: { text: "Das Fluggerät landet schon am Startplatz.", remedy: "Halten unterbricht die Landung." },
   on_the_way_home: {
     text: "Das Fluggerät ist auf dem Heimweg.",

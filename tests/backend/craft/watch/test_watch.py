@@ -146,6 +146,27 @@ def test_a_charge_at_the_limit_is_noticed_once(scene: Scene) -> None:
     assert found == [inputs.BatteryLow]
 
 
+def stages(found: list[inputs.CraftInput]) -> list[str]:
+    return [given.stage for given in found if isinstance(given, inputs.BatteryLow)]
+
+
+def test_a_battery_counts_as_lower_once_it_has_been_that_low_for_a_while(scene: Scene) -> None:
+    scene.be(craft_in("hold").craft)
+    scene.see(position=FRAME.to_geo(0.0, 80.0), battery_percent=5.0)
+    assert stages(scene.tick(20)) == ["return"]
+    assert stages(scene.tick(10)) == ["land"]
+
+
+def test_no_single_reading_makes_a_vehicle_land(scene: Scene) -> None:
+    scene.be(craft_in("hold").craft)
+    scene.see(position=FRAME.to_geo(0.0, 80.0))
+    found: list[inputs.CraftInput] = []
+    for charge in (90.0, 0.0, 90.0, 0.0, 88.0, None, 0.0, 88.0):
+        scene.see(battery_percent=charge)
+        found += scene.tick(5)
+    assert set(stages(found)) == {"return"}
+
+
 def test_a_low_battery_is_noticed_again_when_the_mission_flies_on_or_is_held_on_its_way_home(scene: Scene) -> None:
     scene.see(battery_percent=26.0)
     for phase, times in (("hold", 1), ("waiting", 1), ("returning", 1), ("hold", 1), ("manual", 0)):
