@@ -44,10 +44,14 @@ def suffices(step: CraftStep) -> None:
 
 
 def counted_down(step: CraftStep) -> None:
-    """Nobody stopped it. One that was, or whose hold is over, no longer counts."""
+    """Nobody stopped it. One that was, or whose hold is over, no longer counts; a failsafe brings it home by itself."""
     craft = step.craft
     raised = [raised.reason for raised in craft.open_alerts if raised.topic == "battery"]
-    if craft.phase == "hold" and craft.counting_down and raised and not step.comes_by_itself:
+    if not craft.counting_down:
+        return
+    if step.comes_by_itself or not raised:
+        _stop(step, None)
+    else:
         _return(step, raised[0])
 
 

@@ -79,6 +79,7 @@ def test_what_the_failsafe_brings_home_is_left_alone() -> None:
     walk = counting()
     walk.give(inputs.AuthorityHeard(FAILSAFE))
     assert moves(walk.give(EXPIRED)) == []
+    assert not walk.craft.counting_down
     assert moves(walk.give(LAST)) == []
 
 
