@@ -16,8 +16,8 @@ from planner.types import PlannerError, Problem
 
 ABOVE_HOME_M = 6.0
 """A vehicle nearer to home than this is above it and only has to land."""
-KEPT = 64
-"""Lengths of ways that are kept: of a hovering vehicle the same one is asked several times a second."""
+NEAR_M, KEPT = 4.0, 64
+"""Lengths of ways are kept, for places so near to each other: they are asked for several times a second."""
 
 Point2 = tuple[float, float]
 
@@ -32,7 +32,7 @@ def way_home(problem: Problem, at: Point2) -> tuple[Point2, ...] | None:
 
 
 def legs_home(problem: Problem, at: Point2) -> tuple[Point2, ...]:
-    """(east, north) m of each leg home from within a metre of `at`, none above home.
+    """(east, north) m of each leg home from within NEAR_M of `at`, none above home.
 
     Straight where there is no way: so the autopilot returns.
     """
@@ -40,7 +40,7 @@ def legs_home(problem: Problem, at: Point2) -> tuple[Point2, ...]:
         return ()
     if straight_suffices(problem):
         return ((-at[0], -at[1]),)
-    return _legs(_Ways(problem), (round(at[0]), round(at[1])))
+    return _legs(_Ways(problem), (NEAR_M * round(at[0] / NEAR_M), NEAR_M * round(at[1] / NEAR_M)))
 
 
 class _Ways:
@@ -59,6 +59,6 @@ class _Ways:
 
 
 @lru_cache(KEPT)
-def _legs(ways: _Ways, at: tuple[int, int]) -> tuple[Point2, ...]:
+def _legs(ways: _Ways, at: Point2) -> tuple[Point2, ...]:
     points = [at, *(way_home(ways.problem, at) or ((0.0, 0.0),))]
     return tuple((b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points))

