@@ -126,6 +126,9 @@ takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simul
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour ardupilot --times 200 --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.heading_time --out $(MEASUREMENTS)
 
+battery-home: setup-dev ## a thousand simulated returns in wind: what was promised of the battery, and what they took
+	$(BIN)/python -m tests.benchmarks.battery_home --flights 1000 --out $(MEASUREMENTS)
+
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue frontend/src/i18n/reasons.en.ts

@@ -51,9 +51,15 @@ class Land(CraftCommand):
 
 
 class Abort(CraftCommand):
-    """End the automatic mission at once: the vehicle holds, then returns home by its autopilot."""
+    """End the automatic mission at once: the vehicle holds, then returns home."""
 
     kind: Literal["abort"] = "abort"
+
+
+class KeepHolding(CraftCommand):
+    """Stop the countdown of a low battery in hold, once a flight."""
+
+    kind: Literal["keep_holding"] = "keep_holding"
 
 
 class Override(CraftCommand):
@@ -105,7 +111,7 @@ class AcknowledgeAlert(Model):
     alert_id: str
 
 
-ForCraft = Start | Hold | Resume | Return | Land | Abort | Override | Accept | Veto | SetAutomatic
+ForCraft = Start | Hold | Resume | Return | Land | Abort | KeepHolding | Override | Accept | Veto | SetAutomatic
 ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
 Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
 

@@ -20,6 +20,7 @@ from hardware.readings import (
     Place,
     PowerSample,
     PreflightCheck,
+    ReturnAltitude,
     Sweep,
     Telemetry,
 )
@@ -112,6 +113,10 @@ class Vehicle(Protocol):
     async def put_nets_back(self, before: Nets, ours: Sequence[Nets]) -> bool:
         """The owner's, wherever it still holds what we set or were about to. False: somebody has changed something
         since, and that stays as they have it. Raises VehicleError."""
+        ...
+
+    async def return_altitude(self) -> ReturnAltitude:
+        """Of the autopilot's own return: it is not ours to choose, and must lie below the mission's ceiling."""
         ...
 
     async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:

@@ -50,6 +50,9 @@ class Telemetry:
     velocity_north_m_s: float | None = None
     velocity_east_m_s: float | None = None
     velocity_down_m_s: float | None = None
+    push_north_m_s2: float | None = None
+    push_east_m_s2: float | None = None
+    """The horizontal part of the thrust per mass: by how much the vehicle leans, and where to."""
     battery_percent: float | None = None
     battery_at_s: float | None = None
     gps_fix: GpsFixName | None = None
@@ -107,6 +110,17 @@ class PreflightCheck:
     ok: bool
     reason: Reason
     blocking: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnAltitude:
+    """What the autopilot climbs to for its own return, unless it is higher already (0: it stays as high as it is).
+
+    parameter: where that is set. altitude_relative_m None: it could not be read.
+    """
+
+    parameter: str
+    altitude_relative_m: float | None
 
 
 @dataclass(frozen=True, slots=True)

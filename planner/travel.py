@@ -104,6 +104,19 @@ def travel_path(problem: Problem, start: FloatArray, end: FloatArray) -> FloatAr
     return np.array([*way, *graph.nodes[chain[::-1]], end])
 
 
+def way_back(problem: Problem, start: FloatArray, home: FloatArray, beside: float) -> FloatArray:
+    """(n, 2) m: as `travel_path`, to a home that may itself lie where nothing is flown: in the margin of a no-fly area,
+    on the fence. The way then ends by the nearest place where it may. PlannerError when there is no way, or none that
+    nears home to `beside` m: then a no-fly area encloses it.
+    """
+    home = np.asarray(home, dtype=float)
+    gate = _freed(problem, visibility_graph(problem), home)
+    if np.hypot(*(gate - home)) > beside:
+        raise _no_way(np.asarray(start, dtype=float), home)
+    way = travel_path(problem, start, gate)
+    return way if (gate == home).all() else np.vstack([way, home])
+
+
 def straight_suffices(problem: Problem) -> bool:
     """Whether every straight flight between allowed places is allowed: no no-fly area, a convex flight area or none."""
     if problem.no_fly:

@@ -8,6 +8,7 @@ from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
+from backend.craft.return_altitude import return_altitude_check
 from backend.craft.safety import Situation, limits_of, start_vetoes
 from backend.events import CheckFact
 from backend.reasons import Reason, carried, checks
@@ -55,6 +56,8 @@ async def checklist(
 
     await recent(situation)
     found = [check_fact(check) for check in await equipment.vehicle.preflight()]
+    returns = await return_altitude_check(mission.flight, equipment.vehicle)
+    found += [] if returns is None else [returns]
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
     found.append(sound)
     if task is not None:

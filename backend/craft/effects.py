@@ -10,7 +10,7 @@ from backend.reasons import Reason
 from backend.search.effects import Record, Refuse
 from backend.spec import Place
 
-TimerName = Literal["console_hold", "console_return", "landing", "order"]
+TimerName = Literal["console_hold", "console_return", "landing", "order", "battery_return"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class HoldVehicle:
 
 @dataclass(frozen=True, slots=True)
 class ReturnHome:
-    """The autopilot's own return."""
+    """Around what may not be flown over, then land at home (fly_home.py)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,7 +74,7 @@ class Hands:
             case effects.HoldVehicle():
                 self.run("command", "hold", self._hold)
             case effects.ReturnHome():
-                self.run("command", "return", self._return_home)
+                self.run("command", "return", self._autopilots_return)
             case effects.Land():
                 self.run("command", "land", self._land)
             case effects.TakeControl():
@@ -89,20 +89,22 @@ class Hands:
         await self._vehicle.hold()
         return inputs.CarriedOut("hold")
 
-    async def _return_home(self) -> inputs.CarriedOut | None:
-        if self.down or self._comes_by_itself:
+    async def _autopilots_return(self) -> inputs.CarriedOut | None:
+        """All there is for a craft without a mission: nobody knows what it may fly over."""
+        if self.down or self.comes_by_itself:
             return None
         await self._vehicle.return_home()
         return inputs.CarriedOut("return")
 
     async def _land(self) -> inputs.CarriedOut | None:
-        if self.down or self._comes_by_itself:
+        if self.down or self.comes_by_itself:
             return None
         await self._vehicle.land()
         return inputs.CarriedOut("land")
 
     @property
-    def _comes_by_itself(self) -> bool:
+    def comes_by_itself(self) -> bool:
+        """The autopilot's failsafe brings the vehicle home or down."""
         return self._vehicle.telemetry().authority.who == "failsafe"
 
     def cancel_work(self) -> None:
@@ -154,7 +156,7 @@ class Hands:
 
     async def _expire(self, name: effects.TimerName, seconds: float) -> None:
         """Consoles and the people before them live in the wall's time, however fast a simulation runs."""
-        if name in ("landing", "order"):
+        if name in ("landing", "order", "battery_return"):
             await self._clock.sleep(seconds)
         else:
             await asyncio.sleep(seconds)

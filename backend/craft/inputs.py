@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from backend.commands import ForCraft
 from backend.craft.effects import TimerName
+from backend.craft.safety import BatteryStage
 from backend.events import AntennaFact, BearingMeasured, CheckFact, Link, PlanChosen, SweepRejected
 from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
@@ -137,14 +138,22 @@ class LinkUp:
 
 @dataclass(frozen=True, slots=True)
 class BatteryLow:
-    """The battery just suffices for the way home and the reserve, or its charge is not known."""
+    """The battery just suffices for the way home and the reserve, or its charge is not known. stage: how low it is."""
 
     because: Reason
+    stage: BatteryStage = "return"
 
 
 @dataclass(frozen=True, slots=True)
 class BatteryReported:
     """The charge is known again, and suffices."""
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotReturns:
+    """The autopilot's own return was ordered: ours cannot be flown."""
+
+    because: Reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +216,7 @@ CraftInput = (
     | LinkUp
     | BatteryLow
     | BatteryReported
+    | AutopilotReturns
     | HomeReached
     | Landed
     | TimerExpired

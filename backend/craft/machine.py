@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from backend.craft import orders
+from backend.craft import low_battery, orders
 from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, StartTimer
 from backend.craft.inputs import (
     Abandoned,
     Arrived,
     AuthorityHeard,
+    AutopilotReturns,
     BatteryLow,
     BatteryReported,
     Broke,
@@ -37,6 +38,7 @@ from backend.craft.inputs import (
     WorkFailed,
     WorkVetoed,
 )
+from backend.craft.low_battery import LANDING_PATIENCE_S
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, ours_to_order, pilot_has
 from backend.craft.step import (
     CraftStep,
@@ -68,6 +70,7 @@ from backend.events import (
     TookOff,
 )
 from backend.reasons import (
+    AutopilotFliesHome,
     NotLocalized,
     NoUsableBearing,
     Reason,
@@ -80,7 +83,6 @@ from backend.search.effects import Refuse
 from backend.search.state import SearchState
 from hardware.authority import Authority
 
-LANDING_PATIENCE_S = 120.0
 UNSURE_PLACE_M = 5.0
 """A vehicle that hovers stays within this; what it reports beyond is an alert."""
 
@@ -132,6 +134,10 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _link_up(step, given)
         case BatteryLow() | BatteryReported() | HomeReached() | Landed():
             _vehicle(step, given)
+        case AutopilotReturns(because=because):
+            if craft.phase in HOMEWARD and not craft.taken_over:
+                alert(step, "safety", "caution", AutopilotFliesHome(because))
+                carried_out(step, "return")
         case TimerExpired():
             _timer(step, given)
         case Restarted(authority=authority):
@@ -220,7 +226,7 @@ def _failed(step: CraftStep, given: WorkFailed) -> None:
     if not craft.engaged or craft.taken_over:
         return
     ladder = craft.ladder
-    if ladder is not None and ladder.stage == "tried" and ladder.way == given.step:
+    if ladder is not None and ladder.stage != "waits" and ladder.way == given.step:  # a way home may fail on its way
         not_done(step, ladder, given.because)
         return
     alert(step, "failure", "warning", given.because)
@@ -324,13 +330,10 @@ def _heard_again(step: CraftStep) -> None:
 def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached | Landed) -> None:
     phase = step.craft.phase
     match given:
-        case BatteryLow(because=because) if phase in AUTOMATIC or phase in ("hold", "manual"):
-            alert(step, "battery", "warning", because)
-            if phase in AUTOMATIC:
-                step.record(ReturnOrdered(craft_id=step.craft.craft_id, by=None, reason=because))
-                go_home(step, because)
+        case BatteryLow():
+            low_battery.low(step, given)
         case BatteryReported():
-            clear_alerts(step, "battery")
+            low_battery.suffices(step)
         case HomeReached() if phase == "returning":
             step.go("landing", flight.Proceeds("way_home"))
             step.do(StartTimer("landing", LANDING_PATIENCE_S))
@@ -379,6 +382,8 @@ def _timer(step: CraftStep, given: TimerExpired) -> None:
         case "order" if step.craft.ladder is not None and step.craft.ladder.stage == "waits":
             step.do(CancelWork())
             try_rung(step, step.craft.ladder)
+        case "battery_return":
+            low_battery.counted_down(step)
         case _:
             return
 

@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from backend.commands import Abort, Accept, Hold, Land, Override, Resume, Return, SetAutomatic, Start, Veto
+from backend.commands import (
+    Abort,
+    Accept,
+    Hold,
+    KeepHolding,
+    Land,
+    Override,
+    Resume,
+    Return,
+    SetAutomatic,
+    Start,
+    Veto,
+)
 from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, TakeControl
 from backend.craft.inputs import CraftOrdered
+from backend.craft.low_battery import keep_holding
 from backend.craft.state import AUTOMATIC, HOMEWARD
 from backend.craft.step import (
     CraftStep,
@@ -54,6 +67,8 @@ def carry_out(step: CraftStep, given: CraftOrdered) -> None:
             _land(step, given)
         case Abort():
             _abort(step, given)
+        case KeepHolding():
+            keep_holding(step, given.by)
         case Override():
             _override(step, given, command)
         case Accept():

@@ -11,7 +11,7 @@ from backend.reasons.checks import ConnectingBroke, NoVehicleYet
 from hardware.authority import NOBODY, Authority
 from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, Vehicle, VehicleUnreachable
-from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, Telemetry
+from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, ReturnAltitude, Telemetry
 from hardware.reasons.vehicle_news import ParameterSet
 from planner.reason import Reason
 
@@ -125,6 +125,9 @@ class ReconnectingVehicle:
         if self._vehicle is None:
             return [PreflightCheck("vehicle_link", False, self._why)]
         return await self._vehicle.preflight()
+
+    async def return_altitude(self) -> ReturnAltitude:
+        return await self._present().return_altitude()
 
     async def mend_failsafes(self) -> list[ParameterSet]:
         """Only on the operator's explicit wish. Nothing for a vehicle that has no such parameters."""

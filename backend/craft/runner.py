@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from typing import Literal
@@ -15,6 +16,7 @@ from typing import Literal
 from backend.commands import ForCraft, Override, Resume
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
+from backend.craft.fly_home import fly_home
 from backend.craft.hands import Hands
 from backend.craft.listening import Listening, channels_of
 from backend.craft.measuring import Measured
@@ -27,11 +29,15 @@ from backend.reasons import Reason
 from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
+from hardware.readings import Telemetry
 
 log = logging.getLogger("crossfix.craft")
 
 TRACK_SAVED_S = 2.5
 KEEP_ON_S = 1.0
+UNDER_WAY_LOOK_S = 0.2
+MOVES_M_S = 1.0
+"""Faster than this a vehicle does not hover."""
 
 
 class CraftRunner:
@@ -117,10 +123,27 @@ class CraftRunner:
                 self._hands.run("command", "measure", partial(self.work.measure, effect))
             case effects.PlanNext():
                 self._hands.run("planning", "plan", partial(self.work.plan, effect))
+            case effects.ReturnHome():
+                self._hands.run("command", "return", self._return_home)
             case effects.Record() | effects.Refuse() | effects.LeaveSearch():
                 pass
             case _:
                 self._hands.carry_out(effect)
+
+    async def _return_home(self) -> inputs.CarriedOut | inputs.AutopilotReturns | None:
+        """Around what may not be flown over. That it is done is told as soon as the vehicle is seen to move."""
+        if self._hands.down or self._hands.comes_by_itself:
+            return None
+        watching = asyncio.create_task(self._tell_under_way())
+        try:
+            return await fly_home(self.work) or inputs.CarriedOut("return")
+        finally:
+            watching.cancel()
+
+    async def _tell_under_way(self) -> None:
+        while not _moves(self.equipment.vehicle.telemetry()):
+            await self.equipment.clock.sleep(UNDER_WAY_LOOK_S)
+        self._give(inputs.CarriedOut("return"))
 
     # What goes on beside the work
 
@@ -151,3 +174,9 @@ class CraftRunner:
         points = self.watch.track.take()
         if points:
             self._keep_track(points)
+
+
+def _moves(telemetry: Telemetry) -> bool:
+    """Horizontally or vertically."""
+    north, east, down = telemetry.velocity_north_m_s, telemetry.velocity_east_m_s, telemetry.velocity_down_m_s
+    return math.hypot(north or 0.0, east or 0.0, down or 0.0) > MOVES_M_S

@@ -8,35 +8,50 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Literal
 
-from shapely import LineString, Point
+from shapely import LineString, Point, unary_union
 from shapely.geometry.base import BaseGeometry
 
+from backend.craft.endurance import Endurance, landing_s, unknown
+from backend.craft.way_home import legs_home, way_home
 from backend.reasons import Reason, safety
 from backend.reasons.safety import What
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
 from backend.search.task import SearchTask
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
+from planner.types import Problem
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
-LANDING_S = 60.0
-NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
-"""Battery a second in the air until it has been measured: twenty minutes from full to empty."""
+LAST_SHARE = 0.5
+"""Of the reserve: a charge that leaves less is the last to return with."""
+LAND_SPARE_PERCENT = 5.0
+"""A charge that is no further above what the landing here takes is for landing here."""
+ALTITUDE_TOLERANCE_M = 0.5
+"""Of an altitude that went to AMSL and back."""
+
+
+BatteryStage = Literal["return", "last", "land"]
+"""It should return; it must return now; it must land where it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
 
-    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m.
+    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m;
+    altitude_relative_m: the one to take off to. problem: the planner's, whose ways keep clear of what may not be flown.
     """
 
     frame: LocalFrame
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
+    problem: Problem
+    altitude_relative_m: float
     minimum_altitude_relative_m: float
     maximum_altitude_relative_m: float
     home_amsl_m: float
@@ -48,14 +63,14 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """The vehicle as last heard, and how fast its battery drains (percent a second of flight).
+    """The vehicle as last heard, and what flying takes of its battery.
 
     heard_since_s: when it was heard again after its link had been lost.
     """
 
     telemetry: Telemetry
     now_s: float
-    drain_percent_s: float = NOMINAL_DRAIN_PERCENT_S
+    endurance: Endurance = field(default_factory=unknown)
     heard_since_s: float = -math.inf
 
     @property
@@ -71,10 +86,15 @@ class Situation:
         return 0.0 if heard is None or battery is None else heard - max(battery, self.heard_since_s)
 
 
-def battery_to_return_percent(limits: Limits, position: Place, drain_percent_s: float) -> float:
-    """Charge that the flight home from `position` and the landing take, reserve not included."""
-    east, north = limits.frame.to_enu(position)
-    return drain_percent_s * (math.hypot(east, north) / limits.speed_m_s + LANDING_S)
+def battery_to_return_percent(
+    limits: Limits, position: Place, endurance: Endurance, altitude_relative_m: float | None = None
+) -> float:
+    """Charge that the way home from `position` takes, around what may not be flown over, and the landing. The reserve
+    is not included. altitude_relative_m: of the vehicle there, None: the mission's."""
+    legs = legs_home(limits.problem, limits.frame.to_enu(position))
+    height = limits.altitude_relative_m if altitude_relative_m is None else altitude_relative_m
+    climb = limits.altitude_relative_m - height if legs else 0.0
+    return endurance.way_percent(legs, limits.speed_m_s, landing_s(height + max(climb, 0.0)), climb)
 
 
 def limits_of(task: SearchTask) -> Limits:
@@ -84,6 +104,8 @@ def limits_of(task: SearchTask) -> Limits:
         frame=task.frame,
         fence=task.fence,
         no_fly=task.no_fly,
+        problem=task.first.problem,
+        altitude_relative_m=flight.altitude_relative_m,
         minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
         maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
         home_amsl_m=task.home_amsl_m,
@@ -121,13 +143,19 @@ def resume_vetoes(telemetry: Telemetry) -> tuple[Reason, ...]:
 
 
 def battery_vetoes(
-    limits: Limits, situation: Situation, flight_s: float = 0.0, end: Place | None = None
+    limits: Limits,
+    situation: Situation,
+    hover_s: float = 0.0,
+    legs: Sequence[tuple[float, float]] = (),
+    end: Place | None = None,
 ) -> tuple[Reason, ...]:
-    """Would the battery still reach home with the reserve after `flight_s` more seconds that end at `end`?
+    """Would the battery still reach home with the reserve after these legs (east, north m) to `end`, and after so much
+    hovering?
 
     A charge that is not known is no charge, unless the mission says that the vehicle has no battery telemetry.
     """
     telemetry = situation.telemetry
+    altitude = telemetry.altitude_relative_m if end is None else None
     end = end or telemetry.position
     if telemetry.battery_percent is None:
         return (safety.BatteryUnknown(),) if limits.battery_telemetry else ()
@@ -135,11 +163,27 @@ def battery_vetoes(
         return ()
     if situation.battery_unreported_s > BATTERY_STALE_S:
         return (safety.BatterySilent(),)
-    left = telemetry.battery_percent - situation.drain_percent_s * flight_s
-    needed = battery_to_return_percent(limits, end, situation.drain_percent_s)
+    endurance = situation.endurance
+    takes = endurance.way_percent(legs, limits.speed_m_s, hover_s) if legs or hover_s else 0.0
+    left = telemetry.battery_percent - takes
+    needed = battery_to_return_percent(limits, end, endurance, altitude)
     if left - needed >= limits.reserve_percent:
         return ()
     return (safety.BatteryShort(telemetry.battery_percent, left, needed, limits.reserve_percent),)
+
+
+def battery_stage(limits: Limits, situation: Situation) -> BatteryStage:
+    """How low a battery is that no longer leaves the reserve. One whose charge is not known: it should return."""
+    telemetry, endurance = situation.telemetry, situation.endurance
+    charge, position, height = telemetry.battery_percent, telemetry.position, telemetry.altitude_relative_m
+    if charge is None or position is None:
+        return "return"
+    height = limits.altitude_relative_m if height is None else height
+    down = endurance.way_percent((), limits.speed_m_s, landing_s(height))
+    if charge < down + LAND_SPARE_PERCENT and legs_home(limits.problem, limits.frame.to_enu(position)):
+        return "land"
+    spare = charge - battery_to_return_percent(limits, position, endurance, height)
+    return "last" if spare < LAST_SHARE * limits.reserve_percent else "return"
 
 
 def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
@@ -150,6 +194,7 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     found += battery_vetoes(limits, situation, limits.measurement_time_s)
     if telemetry.in_air:
         found.append(safety.AlreadyInAir())
+    found += _altitude_vetoes(limits, limits.altitude_relative_m)
     if telemetry.position is not None:
         found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "vehicle_stands")
     return tuple(found)
@@ -159,7 +204,10 @@ def staying_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     """May a vehicle in the air go on within these limits from where it is, and come home?"""
     found = _area_vetoes(limits, (0.0, 0.0), "home")
     if situation.telemetry.position is not None:
-        found += _area_vetoes(limits, limits.frame.to_enu(situation.telemetry.position), "vehicle")
+        at = limits.frame.to_enu(situation.telemetry.position)
+        found += _area_vetoes(limits, at, "vehicle")
+        if not found and way_home(limits.problem, at) is None:
+            found.append(safety.NoWayHome(math.hypot(*at)))
     return tuple(found)
 
 
@@ -170,11 +218,7 @@ def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
 
 def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tuple[Reason, ...]:
     """May anything fly at `place` at all, wherever the vehicle is?"""
-    found: list[Reason] = []
-    relative = altitude_amsl_m - limits.home_amsl_m
-    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
-    if not low - 0.5 <= relative <= high + 0.5:
-        found.append(safety.AltitudeOutside(relative, low, high))
+    found = _altitude_vetoes(limits, altitude_amsl_m - limits.home_amsl_m)
     at = limits.frame.to_enu(place)
     if math.hypot(*at) > FAR_M:
         return (*found, safety.TooFarFromHome(math.hypot(*at), FAR_M))
@@ -200,9 +244,44 @@ def place_vetoes(
         path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
         if not found:
             found += _path_vetoes(limits, path)
-        flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
-        found += battery_vetoes(limits, situation, flight_s, place)
+        legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path.coords)]
+        found += battery_vetoes(limits, situation, limits.measurement_time_s, legs, place)
     return tuple(found)
+
+
+def return_vetoes(
+    limits: Limits, situation: Situation, way: Sequence[tuple[float, float]], altitude_amsl_m: float
+) -> tuple[Reason, ...]:
+    """May the vehicle fly home along `way` (m ENU, home last)? Battery is no reason against it.
+
+    A vehicle that is where it may not be may leave: its first leg is held against the other zones only.
+    """
+    found = [*vehicle_vetoes(situation), *_altitude_vetoes(limits, altitude_amsl_m - limits.home_amsl_m)]
+    position = situation.telemetry.position
+    if found or position is None or not way:
+        return tuple(found)
+    here = limits.frame.to_enu(position)
+    outside = limits.fence.distance(Point(here)) > EDGE_TOLERANCE_M
+    inside = [zone.contains(Point(here)) for zone in limits.no_fly]
+    if not (outside or any(inside)):
+        return tuple(_path_vetoes(limits, LineString([here, *way])))
+    leaving = LineString([here, way[0]])
+    out = replace(
+        limits,
+        fence=unary_union([limits.fence, leaving.buffer(EDGE_TOLERANCE_M)]) if outside else limits.fence,
+        no_fly=tuple(zone for zone, within in zip(limits.no_fly, inside, strict=True) if not within),
+    )
+    found += _path_vetoes(out, leaving)
+    if len(way) > 1:
+        found += _path_vetoes(limits, LineString(way))
+    return tuple(found)
+
+
+def _altitude_vetoes(limits: Limits, relative_m: float) -> list[Reason]:
+    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
+    if low - ALTITUDE_TOLERANCE_M <= relative_m <= high + ALTITUDE_TOLERANCE_M:
+        return []
+    return [safety.AltitudeOutside(relative_m, low, high)]
 
 
 def _area_vetoes(limits: Limits, at: tuple[float, float], what: What) -> list[Reason]:

@@ -12,6 +12,8 @@ from backend.events import (
     AreaChanged,
     AuthorityChanged,
     AutomaticChanged,
+    BatteryCountdownStarted,
+    BatteryCountdownStopped,
     BearingExcluded,
     BearingMeasured,
     CraftSource,
@@ -51,7 +53,8 @@ class CraftState:
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
     or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
     from the specification. return_reason: why it is on its way home. ladder: of the hold, return or landing that was
-    ordered last; None once something else has come of it.
+    ordered last; None once something else has come of it. counting_down: it returns soon because its battery runs low;
+    countdown_stopped: somebody has stopped that, which they may once a flight.
     """
 
     craft_id: str
@@ -69,6 +72,8 @@ class CraftState:
     avoid: tuple[Place, ...] = ()
     return_reason: Reason | None = None
     ladder: Ladder | None = None
+    counting_down: bool = False
+    countdown_stopped: bool = False
     authority: Authority = NOBODY
     links_down: frozenset[Link] = frozenset()
     open_alerts: tuple[OpenAlert, ...] = ()
@@ -119,9 +124,15 @@ def evolve(state: CraftState, event: Event) -> CraftState:
                 ladder=state.ladder if ordered else None,
                 engaged=state.engaged and up,
                 searching=state.searching and up,
+                counting_down=False,
+                countdown_stopped=state.countdown_stopped and up,
             )
         case TookOff():
             return replace(state, took_off=True)
+        case BatteryCountdownStarted():
+            return replace(state, counting_down=True)
+        case BatteryCountdownStopped(by=by):
+            return replace(state, counting_down=False, countdown_stopped=state.countdown_stopped or by is not None)
         case AutomaticChanged(automatic=automatic):
             return replace(state, automatic=automatic)
         case AbortOrdered():
@@ -139,7 +150,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case LinkRestored(link=link):
             return replace(state, links_down=state.links_down - {link})
         case ServerRestarted():
-            return replace(state, links_down=frozenset(), ladder=None)
+            return replace(state, links_down=frozenset(), ladder=None, counting_down=False)
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=str()):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)

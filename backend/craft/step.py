@@ -155,6 +155,7 @@ def cancel_timers(step: CraftStep) -> None:
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("landing"))
+    step.do(CancelTimer("battery_return"))
     step.do(CancelTimer("order"))
 
 

@@ -39,6 +39,8 @@ from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
 from backend.events.craft import (
     FIRST_CRAFT,
     AuthorityChanged,
+    BatteryCountdownStarted,
+    BatteryCountdownStopped,
     FlightStarted,
     MissionStarted,
     Phase,
@@ -86,6 +88,8 @@ __all__ = [
     "AreaChanged",
     "AuthorityChanged",
     "AutomaticChanged",
+    "BatteryCountdownStarted",
+    "BatteryCountdownStopped",
     "BearingExcluded",
     "BearingMeasured",
     "BearingSource",
@@ -169,6 +173,8 @@ Event = Annotated[
     | OrderTried
     | OrderNotDone
     | OrderDone
+    | BatteryCountdownStarted
+    | BatteryCountdownStopped
     | AutomaticChanged
     | AuthorityChanged
     | CommandAccepted

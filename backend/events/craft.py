@@ -89,6 +89,23 @@ class SweepStarted(Fact):
     attempt: int
 
 
+class BatteryCountdownStarted(Fact):
+    """The craft holds and its battery runs low: it returns after so many seconds, unless somebody stops that (once)."""
+
+    kind: Literal["battery_countdown_started"] = "battery_countdown_started"
+    craft_id: Id
+    seconds: float
+    reason: Reason
+
+
+class BatteryCountdownStopped(Fact):
+    """by None: the battery suffices again."""
+
+    kind: Literal["battery_countdown_stopped"] = "battery_countdown_stopped"
+    craft_id: Id
+    by: str | None
+
+
 class AuthorityChanged(Fact):
     """Who flies the craft from now on. by: the operator whose deed it was, None when the vehicle showed it."""
 

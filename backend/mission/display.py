@@ -69,7 +69,9 @@ class Display:
         position = situation.telemetry.position
         needed = None
         if position is not None:
-            needed = battery_to_return_percent(runner.limits, position, situation.drain_percent_s)
+            needed = battery_to_return_percent(
+                runner.limits, position, situation.endurance, situation.telemetry.altitude_relative_m
+            )
         return CraftStatus(
             craft_id=craft.craft_id,
             mission_id=active.mission_id,

@@ -15,6 +15,7 @@ from backend.mission.flights import Flights
 from backend.mission.records import Records
 from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable
 from backend.search.area import centre_of
+from backend.search.band import check_band
 from backend.search.errors import MissionConflict
 from backend.search.importing import Upload, import_facts, imported_before
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
@@ -108,6 +109,7 @@ class Drafts:
 
 
 def _check_spec(spec: MissionSpec) -> None:
-    """Raises MissionInputError when the areas make no sense, wherever the vehicle is: a mission may be planned far from
-    it, or hold recordings only. Preflight refuses to fly it there."""
+    """Raises MissionInputError when the altitude lies outside its band, or when the areas make no sense, wherever the
+    vehicle is: a mission may be planned far from it, or hold recordings only. Preflight refuses to fly it there."""
+    check_band(spec.flight)
     search_task(spec, centre_of(spec.area), 0.0)

@@ -142,6 +142,18 @@ class Instead:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class AutopilotFliesHome:
+    """By its own return, ordered by us: it knows neither the mission's no-fly areas nor its altitude band."""
+
+    because: Reason
+    code: Literal["autopilot_flies_home"] = "autopilot_flies_home"
+    english: ClassVar[Words] = Words(
+        "The autopilot flies home by its own way, which knows no no-fly zones: {because}",
+        "Watch it; hold stops it.",
+    )
+
+
 CompositeReason = (
     ToldBefore
     | NoUsableBearing
@@ -154,6 +166,7 @@ CompositeReason = (
     | OrderedAgainLater
     | NotDone
     | Instead
+    | AutopilotFliesHome
 )
 
 ReasonUnion = TypeAliasType(

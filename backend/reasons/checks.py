@@ -73,6 +73,43 @@ class ConnectingBroke:
     english: ClassVar[Words] = Words("Connecting to {address} failed inside Crossfix and is tried again.")
 
 
+_RETURN = (
+    "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnAltitudeChecked:
+    """Relative to home. altitude_relative_m: what the autopilot's own return climbs to, 0 when it does not climb."""
+
+    parameter: str
+    altitude_relative_m: float
+    ceiling_relative_m: float
+    code: Literal["return_altitude_checked"] = "return_altitude_checked"
+    english: ClassVar[Words] = Words(
+        "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).", _RETURN + ", or raise that."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnAltitudeUnread:
+    parameter: str
+    ceiling_relative_m: float
+    code: Literal["return_altitude_unread"] = "return_altitude_unread"
+    english: ClassVar[Words] = Words(
+        "How high the autopilot's own return climbs ({parameter}) could not be read.", _RETURN + "."
+    )
+
+
 CheckReason = (
-    RoomToFly | StartAllowed | ReceiverDelivers | NoSamples | TagUnheard | PatternInUse | NoVehicleYet | ConnectingBroke
+    ReturnAltitudeChecked
+    | ReturnAltitudeUnread
+    | RoomToFly
+    | StartAllowed
+    | ReceiverDelivers
+    | NoSamples
+    | TagUnheard
+    | PatternInUse
+    | NoVehicleYet
+    | ConnectingBroke
 )

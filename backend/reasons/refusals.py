@@ -33,6 +33,12 @@ class NotHeld:
 
 
 @dataclass(frozen=True, slots=True)
+class NoCountdown:
+    code: Literal["no_countdown"] = "no_countdown"
+    english: ClassVar[Words] = Words("Nothing counts down: the countdown is over, or was stopped before.")
+
+
+@dataclass(frozen=True, slots=True)
 class LandingAlready:
     code: Literal["landing_already"] = "landing_already"
     english: ClassVar[Words] = Words("The vehicle is landing at home already.", "Hold stops the landing.")
@@ -158,6 +164,7 @@ RefusalReason = (
     | AlreadyStarted
     | MissionOver
     | NotHeld
+    | NoCountdown
     | LandingAlready
     | OnTheWayHome
     | OnTheGround

@@ -164,6 +164,18 @@ class WayCrossesNoFly:
     english: ClassVar[Words] = Words("The way there crosses a no-fly zone.", "Fly by way of a place beside the zone.")
 
 
+@dataclass(frozen=True, slots=True)
+class NoWayHome:
+    """distance_m: to home, as the crow flies."""
+
+    distance_m: float
+    code: Literal["no_way_home"] = "no_way_home"
+    english: ClassVar[Words] = Words(
+        "From where the vehicle is no way around the no-fly zones and inside the fence leads home, {distance_m} away.",
+        "Draw the fence and the no-fly zones so that there is one.",
+    )
+
+
 BATTERY = (BatteryUnknown, BatterySilent, BatteryShort)
 """Vetoes for which the answer is to go home."""
 
@@ -185,4 +197,5 @@ SafetyReason = (
     | NearNoFly
     | WayLeavesFence
     | WayCrossesNoFly
+    | NoWayHome
 )

@@ -87,6 +87,7 @@ ARDUPILOT = Dialect(
         for_mission=_fence_for_mission,
         most_corners=70,
     ),
+    return_altitudes=(("RTL_ALT_M", 1.0), ("RTL_ALT", 0.01)),
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",

@@ -91,6 +91,7 @@ class Dialect:
     turn_methods: ways to turn a full circle, in the order in which to try them.
     prearm_has_present_bit: SYS_STATUS says by a bit of its own whether it reports the checks before arming; else their
     health bit alone counts.
+    return_altitudes: the parameter that the autopilot's own return climbs to and its unit in metres, newest name first.
     """
 
     name: Literal["px4", "ardupilot"]
@@ -114,6 +115,7 @@ class Dialect:
     prearm_has_present_bit: bool
     nets: NetRules
     failsafes: tuple[FailsafeRule, ...]
+    return_altitudes: tuple[tuple[str, float], ...]
 
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""

@@ -92,6 +92,7 @@ PX4 = Dialect(
         for_mission=_fence_for_mission,
         most_corners=60,
     ),
+    return_altitudes=(("RTL_RETURN_ALT", 1.0),),
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",

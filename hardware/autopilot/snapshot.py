@@ -27,6 +27,7 @@ _FIXES: tuple[GpsFixName, ...] = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK f
 _ON_GROUND, _UNDEFINED = 1, 0  # MAV_LANDED_STATE
 _UNKNOWN_COUNT = 255
 """GPS_RAW_INT: so many satellites are "not known"."""
+_GRAVITY, _STEEPEST = 9.81, 1.2
 
 NAMES = (
     "HEARTBEAT",
@@ -70,6 +71,8 @@ class Snapshot:
     heading_deg: float | None = None
     heading_at_s: float | None = None
     attitude_heard_at_s: float | None = None
+    push_ne_m_s2: tuple[float, float] | None = None
+    """(north, east) what of the thrust is horizontal, per mass, of a vehicle that holds its height."""
     battery_percent: float | None = None
     battery_at_s: float | None = None
     fix_type: int | None = None
@@ -164,6 +167,7 @@ class Snapshot:
         at = self._boot_clock.to_utc(fields["time_boot_ms"] / 1e3, heard_at_s)
         self.heading_deg, self.heading_at_s = math.degrees(yaw) % 360.0 % 360.0, at
         self.attitude_heard_at_s = heard_at_s
+        self.push_ne_m_s2 = _push(fields.get("roll"), fields.get("pitch"), yaw)
         history = self._headings
         if not history or at > history[-1].at_s:
             place = self.position if self.trust.lost_since_s is None else None
@@ -222,6 +226,7 @@ class Snapshot:
     ) -> Telemetry:
         """now_s: UTC epoch seconds of the reading. Whoever holds the snapshot knows link, mode and authority."""
         north, east, down = self.velocity_ned or (None, None, None)
+        push_north, push_east = self.push_ne_m_s2 or (None, None)
         return Telemetry(
             connected=connected,
             at_s=now_s,
@@ -234,6 +239,8 @@ class Snapshot:
             velocity_north_m_s=north,
             velocity_east_m_s=east,
             velocity_down_m_s=down,
+            push_north_m_s2=push_north,
+            push_east_m_s2=push_east,
             battery_percent=self.battery_percent,
             battery_at_s=self.battery_at_s,
             gps_fix=None if self.fix_type is None else _FIXES[min(self.fix_type, len(_FIXES) - 1)],
@@ -248,3 +255,14 @@ class Snapshot:
             authority=authority,
             autopilot=autopilot,
         )
+
+
+def _push(roll: float | None, pitch: float | None, yaw: float) -> tuple[float, float] | None:
+    """From the attitude in radians; None for one that no multicopter holds its height with."""
+    if roll is None or pitch is None or not (abs(roll) < _STEEPEST and abs(pitch) < _STEEPEST):
+        return None
+    forward, right = -_GRAVITY * math.tan(pitch), _GRAVITY * math.tan(roll) / math.cos(pitch)
+    return (
+        forward * math.cos(yaw) - right * math.sin(yaw),
+        forward * math.sin(yaw) + right * math.cos(yaw),
+    )

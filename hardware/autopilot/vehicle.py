@@ -19,7 +19,7 @@ from hardware.autopilot.take_off import take_off
 from hardware.autopilot.turn import turn_around
 from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, VehicleError
-from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, Telemetry
+from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, ReturnAltitude, Telemetry
 from hardware.reasons.vehicle import (
     NotInTheAir,
     ParameterNotSet,
@@ -71,6 +71,15 @@ class MavsdkVehicle:
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
         charge_known = heard.battery_percent is not None
         return checks + [failsafe_check(rule, name, value, charge_known) for rule, name, value in found]
+
+    async def return_altitude(self) -> ReturnAltitude:
+        """Of the autopilot's own return."""
+        names = self._monitor.dialect.return_altitudes
+        for name, metres in names:
+            value = await self._monitor.link.parameter(name)
+            if value is not None:
+                return ReturnAltitude(name, value * metres)
+        return ReturnAltitude(names[0][0], None)
 
     async def _failsafe(self, rule: FailsafeRule) -> tuple[str, float | None]:
         """(the name this version has, its value or None)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 from craft_walk import ordered
 from facts import (
     BATTERY_VETO,
@@ -28,6 +30,7 @@ from facts import (
 from backend import commands
 from backend.craft import inputs
 from backend.craft.effects import TimerName
+from backend.craft.safety import BatteryStage
 from backend.craft.state import CraftState
 from backend.events import Link
 from backend.reasons import Interrupted
@@ -42,6 +45,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.Return(),
     commands.Land(),
     commands.Abort(),
+    commands.KeepHolding(),
     commands.Override(place=HOME),
     commands.Accept(),
     commands.Veto(),
@@ -49,7 +53,7 @@ ORDERS: tuple[commands.ForCraft, ...] = (
     commands.SetAutomatic(automatic=False),
 )
 LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload", "gps")
-TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing", "order")
+TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing", "order", "battery_return")
 WAYS: tuple[Way, ...] = ("hold", "return", "land")
 STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
 
@@ -81,8 +85,9 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.FailsafeEnded("HOLD"),
         *(inputs.LinkDown(link, LINK_LOST) for link in LINKS),
         *(inputs.LinkUp(link, 3.0) for link in LINKS),
-        inputs.BatteryLow(BATTERY_VETO),
+        *(inputs.BatteryLow(BATTERY_VETO, stage) for stage in get_args(BatteryStage)),
         inputs.BatteryReported(),
+        inputs.AutopilotReturns(VETO),
         inputs.HomeReached(),
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in TIMERS),

@@ -25,6 +25,7 @@ from hardware.readings import (
     Place,
     PowerSample,
     PreflightCheck,
+    ReturnAltitude,
     Sweep,
     Telemetry,
 )
@@ -100,6 +101,7 @@ class FlatVehicle:
         self.heard = True
         self.silence_unnoticed = False
         self.charge_reported = True
+        self.returns_at = ReturnAltitude("RTL_RETURN_ALT", 30.0)
         self.stuck = False
         self.reachable = True
         self.headings_heard: list[HeadingSample] = []
@@ -139,6 +141,9 @@ class FlatVehicle:
     async def preflight(self) -> list[PreflightCheck]:
         silent = VehicleSilent("take_off", 9.0)
         return [PreflightCheck("vehicle_link", self.heard, LinkChecked("px4") if self.heard else silent)]
+
+    async def return_altitude(self) -> ReturnAltitude:
+        return self.returns_at
 
     def _order(self, name: str, manoeuvre: ManoeuvreName) -> None:
         authority = self.control.authority

@@ -69,7 +69,7 @@ async def test_hold_override_and_abort_are_obeyed_in_flight(operator: Console) -
     assert operator.of("plan_chosen")[-1]["event"]["source"] == "operator"
     assert (await operator.order("abort"))["accepted"]
     assert (await operator.until_event("mission_ended"))["outcome"] == "aborted"
-    await operator.until(lambda: operator.messages["telemetry"][-1]["mode"] == "RETURN")
+    await operator.until(lambda: operator.messages["telemetry"][-1]["mode"] == "LAND")
     await operator.until(lambda: operator.messages["telemetry"][-1]["in_air"] is False, wall_s=60)
 
 

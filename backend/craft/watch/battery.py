@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from backend.craft import inputs
-from backend.craft.safety import BATTERY_STALE_S, Limits, Situation, battery_vetoes
+from backend.craft.safety import BATTERY_STALE_S, BatteryStage, Limits, Situation, battery_stage, battery_vetoes
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
 from backend.events import Phase
 
@@ -13,13 +13,19 @@ RECOVERED_PERCENT = 2.0
 """A low battery counts as recovered with this much to spare: a charge at the limit raises one alert."""
 
 
+DEPTH: dict[BatteryStage, int] = {"return": 0, "last": 1, "land": 2}
+DEEPER_FOR_S = 5.0
+
+
 @dataclass(slots=True)
 class BatteryWatch:
-    """Alerts once a cause, and again when the cause or who flies changes."""
+    """Alerts once a cause, and again when the cause, who flies, or the depth changes."""
 
-    _alerted: tuple[str, str] = ("", "")
-    """The code of the veto, and who flew then: a change of either raises an alert again."""
+    _alerted: tuple[str, ...] = ()
+    """The code of the veto, who flew then, and how low it was: a change of any raises an alert again."""
     _unheard_since_s: float | None = None
+    _stage: BatteryStage = "return"
+    _deeper_since_s: float | None = None
 
     def look(self, situation: Situation, state: CraftState, limits: Limits) -> list[inputs.CraftInput]:
         """A battery that no longer suffices in the air, and its recovery, each once."""
@@ -35,16 +41,29 @@ class BatteryWatch:
             if situation.now_s - max(self._unheard_since_s, situation.heard_since_s) < BATTERY_STALE_S:
                 return []
         if vetoes:
-            alerted = (vetoes[0].code, flown_by(state.phase))
+            stage = self._settled(battery_stage(limits, situation), situation.now_s)
+            alerted = (vetoes[0].code, flown_by(state.phase), stage)
             if alerted != self._alerted:
                 self._alerted = alerted
-                return [inputs.BatteryLow(vetoes[0])]
-        elif self._alerted != ("", "") or any(alert.topic == "battery" for alert in state.open_alerts):
+                return [inputs.BatteryLow(vetoes[0], stage)]
+        elif self._alerted or any(alert.topic == "battery" for alert in state.open_alerts):
             spare = replace(limits, reserve_percent=limits.reserve_percent + RECOVERED_PERCENT)
             if not battery_vetoes(spare, situation):
-                self._alerted = ("", "")
+                self._alerted = ()
                 return [inputs.BatteryReported()]
+        if not vetoes:
+            self._stage, self._deeper_since_s = "return", None
         return []
+
+    def _settled(self, stage: BatteryStage, now_s: float) -> BatteryStage:
+        """A deeper stage counts once it has lasted: no single reading makes a vehicle land."""
+        if DEPTH[stage] <= DEPTH[self._stage]:
+            self._stage, self._deeper_since_s = stage, None
+        elif self._deeper_since_s is None:
+            self._deeper_since_s = now_s
+        elif now_s - self._deeper_since_s >= DEEPER_FOR_S:
+            self._stage, self._deeper_since_s = stage, None
+        return self._stage
 
 
 def flown_by(phase: Phase) -> str:

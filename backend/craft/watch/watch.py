@@ -14,7 +14,7 @@ from backend.craft.safety import Limits, Situation
 from backend.craft.state import CraftState
 from backend.craft.watch.authority import AuthorityWatch
 from backend.craft.watch.battery import BatteryWatch
-from backend.craft.watch.drain import Drain
+from backend.craft.watch.consumption import Consumption
 from backend.craft.watch.links import LinkWatch
 from backend.craft.watch.track import Track
 from backend.craft.watch.way_down import WayDown
@@ -33,7 +33,7 @@ class Watch:
     listening: Listening
     state: Callable[[], CraftState]
     give: Callable[[inputs.CraftInput], object]
-    drain: Drain = field(default_factory=Drain)
+    consumption: Consumption = field(default_factory=Consumption)
     track: Track = field(default_factory=Track)
     _links: LinkWatch = field(default_factory=LinkWatch)
     _battery: BatteryWatch = field(default_factory=BatteryWatch)
@@ -47,7 +47,7 @@ class Watch:
     def situation(self) -> Situation:
         """The vehicle as heard now, with what its battery drains; no tick needed."""
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
-        return Situation(telemetry, now, self.drain.percent_s, self._links.vehicle_since_s)
+        return Situation(telemetry, now, self.consumption.endurance, self._links.vehicle_since_s)
 
     async def run(self) -> None:
         """Until cancelled, every TICK_S of the mission's clock."""
@@ -60,7 +60,7 @@ class Watch:
         telemetry, now = self.equipment.vehicle.telemetry(), self.equipment.clock.now()
         self.listening.wait(min(max(now - self._ticked_at, 0.0), LONGEST_TICK_S))
         self._ticked_at = now
-        self.drain.update(telemetry, now)
+        self.consumption.update(telemetry)
         self.look_at_authority()
         consoles = self.equipment.publisher.watchers() if self.equipment.watch_consoles else None
         self._give_all(self._links.look(telemetry, now, self.listening.trouble, consoles))

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from backend.craft import inputs
 from backend.craft.safety import Limits
 from backend.craft.state import HOMEWARD, CraftState
+from backend.craft.way_home import ABOVE_HOME_M
 from hardware.readings import Telemetry
 
-HOME_RADIUS_M = 6.0
 LANDED_FOR_S = 1.0
 
 
@@ -39,4 +39,4 @@ class WayDown:
 
 def _above_home(telemetry: Telemetry, limits: Limits) -> bool:
     position = telemetry.position
-    return position is not None and math.hypot(*limits.frame.to_enu(position)) < HOME_RADIUS_M
+    return position is not None and math.hypot(*limits.frame.to_enu(position)) < ABOVE_HOME_M

@@ -5,6 +5,7 @@ import type { RequestFailed } from "../sources/problem";
 import { settings } from "../state/settings";
 import { formatPlace, parsePlace } from "../units/coordinates";
 import type { Place } from "../wire";
+import { bandMessage } from "./band";
 import { change, draft, type } from "./draft";
 import { type ChoiceField, type Field, type NumberField, shownUnit, shownValue, typedNumber } from "./fields";
 import { get } from "./path";
@@ -24,6 +25,10 @@ export function Message({ id, text }: { id: string; text: string | null }) {
   ) : null;
 }
 
+/** What the server said of the field, else what can be said before it is asked. */
+const wrong = (path: string, failed: RequestFailed | null): string | null =>
+  failed?.fieldMessage(path) ?? (path === "flight.altitude_relative_m" ? bandMessage(draft.value!.spec) : null);
+
 const unitWords = (unit: string) => (unit === "times" || unit === "places" || unit === "bearings" ? t(`unit.${unit}`) : unit);
 
 function NumberInput({ field, failed }: Properties<NumberField>) {
@@ -32,7 +37,7 @@ function NumberInput({ field, failed }: Properties<NumberField>) {
   const raw = now.text[field.path];
   const stored = get(now.spec, field.path);
   const id = idOf(field.path);
-  const message = raw !== undefined ? t("edit.notNumber") : (failed?.fieldMessage(field.path) ?? null);
+  const message = raw !== undefined ? t("edit.notNumber") : wrong(field.path, failed);
   return (
     <div class="field">
       <label for={id}>{t(field.label)}</label>

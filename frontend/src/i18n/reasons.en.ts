@@ -823,6 +823,15 @@ export const reasonsEn: ReasonTable = {
     text: "The autopilot's fence cannot be judged: {parameter} could not be read.",
     remedy: "Check the link and try again.",
   },
+  return_altitude_checked: {
+    text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).",
+    remedy:
+      "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}, or raise that.",
+  },
+  return_altitude_unread: {
+    text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
+    remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",
@@ -1040,6 +1049,10 @@ export const reasonsEn: ReasonTable = {
   },
   not_held: {
     text: "The mission is not held.",
+    remedy: "",
+  },
+  no_countdown: {
+    text: "Nothing counts down: the countdown is over, or was stopped before.",
     remedy: "",
   },
   landing_already: {
@@ -1274,6 +1287,10 @@ export const reasonsEn: ReasonTable = {
     text: "The way there crosses a no-fly zone.",
     remedy: "Fly by way of a place beside the zone.",
   },
+  no_way_home: {
+    text: "From where the vehicle is no way around the no-fly zones and inside the fence leads home, {distance_m} away.",
+    remedy: "Draw the fence and the no-fly zones so that there is one.",
+  },
   area_empty: {
     text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} is empty.",
     remedy: "Draw at least three corners.",
@@ -1429,5 +1446,9 @@ export const reasonsEn: ReasonTable = {
   instead: {
     text: "{order?hold=The hold|return=The return|land=The landing|abort=The abort} could not be done, so the vehicle {way?hold=holds|return=returns|land=lands where it is}. {because}",
     remedy: "Look at the vehicle. Another order takes its place.",
+  },
+  autopilot_flies_home: {
+    text: "The autopilot flies home by its own way, which knows no no-fly zones: {because}",
+    remedy: "Watch it; hold stops it.",
   },
 };

@@ -186,6 +186,11 @@ const later = (ms: number) =>
     moveClock();
   });
 
+it("says what the way home needs and what it would leave, as the server says now", () => {
+  show(new FakeSource(), someTelemetry({ battery_percent: 40 }), craftStatus({ battery_to_return_percent: 12.2 }));
+  expect(part("battery")!.textContent).toContain("home needs 13 %, leaves 27 %");
+});
+
 it("shows values with their age, and none when they are too old", () => {
   show(new FakeSource(), someTelemetry({ battery_percent: 63 }));
   expect(part("battery")!.textContent).toContain("63 %");
@@ -194,6 +199,19 @@ it("shows values with their age, and none when they are too old", () => {
   later(30_000);
   expect(part("battery")!.dataset.state).toBe("gone");
   expect(part("battery")!.textContent).not.toContain("63");
+});
+
+it("counts down to the return of a low battery in hold, which one tap stops", () => {
+  const reason = { code: "battery_silent" } as const;
+  const counting: MissionEvent = { kind: "battery_countdown_started", craft_id: "craft-1", seconds: 30, reason };
+  const flies = someStatus({ mission_id: "m1", phase: "hold" });
+  show(new FakeSource(), ...happens(drafted, phase("hold"), counting), flies);
+  expect(part("countdown")!.textContent).toMatch(/\d+ s/);
+  act(() => part("keep-holding")!.click());
+  expect(source.sent.map(({ kind }) => kind)).toContain("keep_holding");
+  const over: MissionEvent = { kind: "battery_countdown_stopped", craft_id: "craft-1", by: "Ada" };
+  show(new FakeSource(), ...happens(drafted, phase("hold"), counting, over), flies);
+  expect(part("countdown")).toBeNull();
 });
 
 it("warns below the charge that the way home needs", () => {

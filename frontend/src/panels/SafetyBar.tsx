@@ -8,7 +8,7 @@ import { type MessageKey, reasonText, t } from "../i18n";
 import { refusal } from "../sources/problem";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
-import { live, source } from "../state/connection";
+import { live, serverNowMs, source } from "../state/connection";
 import { type Flown, flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
@@ -186,7 +186,11 @@ function Indicators() {
         age={batteryAge}
         state={freshness(batteryAge)}
         alert={battery === null ? null : battery < (needed ?? 0) ? "warning" : battery < reserve + (needed ?? 0) ? "caution" : null}
-        more={needed === null ? "" : t("bar.battery.toReturn", { percent: Math.round(needed) })}
+        more={
+          needed === null || battery === null
+            ? ""
+            : t("bar.battery.toReturn", { percent: Math.ceil(needed), left: Math.floor(battery - needed) })
+        }
       />
       <Indicator
         label={t("bar.receiver")}
@@ -303,6 +307,22 @@ function UrgentNote() {
   );
 }
 
+/** A low battery in hold: somebody may stop the return, once. Only of the flight as it is now. */
+function Countdown() {
+  const { returnsAt, missionId } = mission.value;
+  const id = flying.value?.id;
+  if (returnsAt === null || cursor.value !== null || !id || id !== missionId) return null;
+  const seconds = Math.max(0, Math.ceil((Date.parse(returnsAt) - serverNowMs.value) / 1000));
+  return (
+    <div class="urgent-note countdown" role="alert" data-testid="countdown">
+      <span>{t("bar.countdown", { seconds })}</span>{" "}
+      <button type="button" data-testid="keep-holding" onClick={() => void send("bar", id, { kind: "keep_holding" })}>
+        {t("bar.keepHolding")}
+      </button>
+    </div>
+  );
+}
+
 export function SafetyBar() {
   return (
     <header class="safety" data-tour="1">
@@ -321,6 +341,7 @@ export function SafetyBar() {
         <Menu />
       </div>
       <div class="bar-notes">
+        <Countdown />
         <UrgentNote />
         <ProblemNote desk="bar" />
       </div>

@@ -4,7 +4,7 @@ import type { LonLat } from "../wire/beliefFrame";
 import { polygonsOf } from "./areas";
 import { distanceM } from "./geometry";
 
-/** As the server counts before a flight has shown it: twenty minutes from full to empty; a minute to land. */
+/** Before a flight has shown it: twenty minutes from full to empty; a minute to land. */
 const NOMINAL_DRAIN_PERCENT_S = 100 / 1200;
 const LANDING_S = 60;
 

@@ -22,6 +22,8 @@ export interface CraftState {
   placeNumber: number | null;
   attempt: number;
   automatic: boolean;
+  /** It returns then because its battery runs low, unless somebody stops that. */
+  returnsAt: string | null;
   authority: Authority;
   authoritySince: string | null;
   lost: Readonly<Partial<Record<LinkName, Lost>>>;
@@ -56,6 +58,7 @@ export const emptyCraft = (craftId: string, automatic: boolean): CraftState => (
   placeNumber: null,
   attempt: 1,
   automatic,
+  returnsAt: null,
   authority: NOBODY,
   authoritySince: null,
   lost: {},
@@ -90,7 +93,12 @@ export function foldCraft(state: CraftState, event: MissionEvent, seq: number, a
         phase: event.after,
         phaseReason: event.reason,
         phaseSince: at,
+        returnsAt: null,
       };
+    case "battery_countdown_started":
+      return { ...state, returnsAt: new Date(Date.parse(at) + event.seconds * 1000).toISOString() };
+    case "battery_countdown_stopped":
+      return { ...state, returnsAt: null };
     case "plan_chosen":
       return { ...state, plan: { fact: event, seq, at }, pausedMs: 0, placeNumber: event.place_number, attempt: 1 };
     case "plan_vetoed":
@@ -110,7 +118,7 @@ export function foldCraft(state: CraftState, event: MissionEvent, seq: number, a
       return { ...state, lost };
     }
     case "server_restarted":
-      return { ...state, lost: {} };
+      return { ...state, lost: {}, returnsAt: null };
     default:
       return state;
   }

@@ -45,6 +45,8 @@ export function toneOf(event: MissionEvent): EventTone {
     case "land_ordered":
     case "abort_ordered":
     case "automatic_changed":
+    case "battery_countdown_started":
+    case "battery_countdown_stopped":
     case "area_changed":
     case "mission_started":
     case "mission_ended":

@@ -15,6 +15,7 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   return: "command.return",
   land: "command.land",
   abort: "command.abort",
+  keep_holding: "command.keep_holding",
   override: "command.override",
   accept: "command.accept",
   veto: "command.veto",
@@ -130,6 +131,10 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.order_done", { order: t(`command.${event.order}`), way: t(`command.${event.way}`) });
     case "abort_ordered":
       return t("event.abort_ordered", { by: byWords(event.by) });
+    case "battery_countdown_started":
+      return t("event.battery_countdown_started", { time: formatDuration(event.seconds), reason: reasonText(event.reason) });
+    case "battery_countdown_stopped":
+      return t("event.battery_countdown_stopped", { by: byWords(event.by) });
     case "automatic_changed":
       return t(event.automatic ? "event.automatic_on" : "event.automatic_off", { by: byWords(event.by) });
     case "authority_changed":

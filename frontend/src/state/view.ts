@@ -29,6 +29,7 @@ export interface MissionView extends Omit<MissionState, "emitters" | "crafts" | 
   belief: EmitterState["belief"];
   beliefs: readonly BeliefPoint[];
   automatic: boolean;
+  returnsAt: CraftState["returnsAt"];
   authority: CraftState["authority"];
   pilot: Pilot | null;
   lost: Readonly<Partial<Record<LinkName, Lost>>>;

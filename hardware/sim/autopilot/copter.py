@@ -24,6 +24,9 @@ class Airframe:
     capacity: float = 89.0
     velocity_time: float = 0.4  # s, time constant of the velocity controller
     gust_response: float = 0.3  # m/s^2 of push from one m/s of gust
+    airspeed: float = 14.0  # m/s, as fast as it leans for
+    rotor_drag: float = 0.12  # m/s^2 per m/s of airspeed
+    body_drag: float = 0.012  # m/s^2 per (m/s)^2
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +70,18 @@ class Copter:
         self.yaw_rate = 0.0
         self.energy = airframe.capacity
         self.power = airframe.idle_power
+        self.push_north = self.push_east = 0.0
+        """m/s^2, what of the thrust is horizontal: it speeds the body up and overcomes the drag."""
         self._rng = rng
         self._gust_north = self._gust_east = 0.0
-        blows_to = math.radians(wind.from_deg + 180.0)
-        self._wind_north, self._wind_east = wind.speed * math.cos(blows_to), wind.speed * math.sin(blows_to)
+        self._wind_north = self._wind_east = 0.0
+        self.turn_wind(wind.from_deg)
+
+    def turn_wind(self, from_deg: float) -> None:
+        """It blows from elsewhere now, as fast as before."""
+        blows_to = math.radians(from_deg + 180.0)
+        self._wind_north = self.wind.speed * math.cos(blows_to)
+        self._wind_east = self.wind.speed * math.sin(blows_to)
 
     @property
     def on_ground(self) -> bool:
@@ -85,14 +96,19 @@ class Copter:
     def step(self, dt: float, demand: Demand | None, error: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         """Advance by dt seconds. demand None: motors off. error: what the navigation errs by (estimate - truth, m)."""
         if demand is None:
+            self.push_north = self.push_east = 0.0
             self._fall(dt)
             self._drain(dt, self.airframe.idle_power)
             return
         self._blow(dt)
         self._yaw(dt, demand)
+        before_n, before_e = self.v_north, self.v_east
         self._translate(dt, demand, error)
         air_n, air_e = self.v_north - self._wind_north, self.v_east - self._wind_east
         airspeed = math.sqrt(air_n * air_n + air_e * air_e)
+        drag = self.airframe.rotor_drag + self.airframe.body_drag * airspeed
+        self.push_north = (self.v_north - before_n) / dt + drag * air_n if self.up > 0.0 else 0.0
+        self.push_east = (self.v_east - before_e) / dt + drag * air_e if self.up > 0.0 else 0.0
         lift = 1.0 + 0.06 * self.v_up if self.up > 0.0 else 0.3
         self._drain(dt, self.airframe.hover_power * lift + self.airframe.drag_power * airspeed**3)
 
@@ -141,6 +157,7 @@ class Copter:
             want_n, want_e = d_n * scale, d_e * scale
             climb = min(math.sqrt(1.4 * self.airframe.climb_acceleration * abs(d_u)), 0.9 * abs(d_u))
             want_u = min(climb, demand.climb) if d_u >= 0 else -min(climb, demand.descend)
+        want_n, want_e = self._within_airspeed(want_n, want_e)
         push = self.airframe.gust_response
         share = min(1.0, dt / self.airframe.velocity_time)
         a_n, a_e = (want_n - self.v_north) * share, (want_e - self.v_east) * share
@@ -163,3 +180,12 @@ class Copter:
         if self.up <= 0.0:
             self.up = 0.0
             self.v_north = self.v_east = self.v_up = 0.0
+
+    def _within_airspeed(self, want_n: float, want_e: float) -> tuple[float, float]:
+        """The velocity over the ground nearest to the wanted one that its airspeed allows: more wind carries it off."""
+        air_n, air_e = want_n - self._wind_north, want_e - self._wind_east
+        airspeed = math.sqrt(air_n * air_n + air_e * air_e)
+        if airspeed <= self.airframe.airspeed:
+            return want_n, want_e
+        share = self.airframe.airspeed / airspeed
+        return self._wind_north + share * air_n, self._wind_east + share * air_e

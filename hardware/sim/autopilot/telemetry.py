@@ -16,6 +16,8 @@ from hardware.sim.autopilot.firmware import Firmware
 
 Message = mavlink.MAVLink_message
 
+GRAVITY = 9.81
+
 _SENSORS = (
     mavlink.MAV_SYS_STATUS_SENSOR_3D_GYRO
     | mavlink.MAV_SYS_STATUS_SENSOR_3D_ACCEL
@@ -126,8 +128,14 @@ def global_position_int(firmware: Firmware) -> Message:
 
 def attitude(firmware: Firmware) -> Message:
     yaw = math.remainder(math.radians(firmware.navigation.heading_deg()), 2.0 * math.pi)
+    copter = firmware.copter
+    heading = math.radians(copter.heading)
+    forward = copter.push_north * math.cos(heading) + copter.push_east * math.sin(heading)
+    right = copter.push_east * math.cos(heading) - copter.push_north * math.sin(heading)
+    pitch = -math.atan(forward / GRAVITY)
+    roll = math.atan(right * math.cos(pitch) / GRAVITY)
     return mavlink.MAVLink_attitude_message(
-        _boot_ms(firmware), 0.0, 0.0, yaw, 0.0, 0.0, math.radians(firmware.copter.yaw_rate)
+        _boot_ms(firmware), roll, pitch, yaw, 0.0, 0.0, math.radians(firmware.copter.yaw_rate)
     )
 
 

@@ -78,6 +78,14 @@ async def test_a_kind_that_is_no_word_is_refused_like_any_other(client):
         assert "area" in [error["field"] for error in problem["errors"]]
 
 
+async def test_an_altitude_outside_its_band_is_named_as_a_field(client):
+    flight = {"altitude_relative_m": 130, "maximum_altitude_relative_m": 120}
+    problem = is_problem(await client.post("/api/missions", json=spec(flight=flight)), 422)
+    assert [(error["field"], error["reason"]["code"]) for error in problem["errors"]] == [
+        ("flight.altitude_relative_m", "altitude_outside")
+    ]
+
+
 @pytest.mark.parametrize("body", [b"", b"{", b"[" * 100_000, b"\xff\xfe", b'{"name": NaN}', b"1" * 5000])
 async def test_a_body_that_is_no_json_is_a_problem(client, body):
     reply = await client.post("/api/missions", content=body, headers={"content-type": "application/json"})

@@ -15,8 +15,9 @@ from backend.craft.listening import Listening, channels_of
 from backend.events import CheckFact
 from backend.reasons import checks, refusals, safety, search
 from backend.spec import EmitterSpec, MissionSpec, Polygon
-from hardware.readings import CheckName
+from hardware.readings import CheckName, ReturnAltitude
 from hardware.reasons.receiver import ReceiverUnplugged
+from planner.reason import remedy_of, text_of
 
 
 async def checked(stage: Stage, mission: MissionSpec | None = None) -> dict[CheckName, CheckFact]:
@@ -32,7 +33,8 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_a_vehicle_that_stands_ready_passes_every_check() -> None:
     found, task = await checklist(spec(), Stage().craft(), None)
     assert all(check.ok for check in found)
-    assert {check.name for check in found} == {"vehicle_link", "area", "nets", "safety", "receiver", "pattern"}
+    names = {check.name for check in found}
+    assert names == {"vehicle_link", "failsafe", "area", "nets", "safety", "receiver", "pattern"}
     assert task is not None
 
 
@@ -40,6 +42,20 @@ async def test_the_check_of_the_antenna_stays_in_the_list() -> None:
     antenna = CHECK.model_copy(update={"name": "antenna"})
     found, _ = await checklist(spec(), Stage().craft(), None, antenna)
     assert antenna in found
+
+
+@pytest.mark.parametrize(
+    ("altitude", "ok", "blocking"), [(0.0, True, True), (120.0, True, True), (121.0, False, True), (None, False, False)]
+)
+async def test_the_autopilots_own_return_stays_below_the_missions_ceiling(
+    altitude: float | None, ok: bool, blocking: bool
+) -> None:
+    stage = Stage()
+    stage.vehicle.returns_at = ReturnAltitude("RTL_ALT", altitude)
+    check = (await checked(stage))["failsafe"]
+    assert (check.ok, check.blocking) == (ok, blocking)
+    assert "RTL_ALT" in text_of(check.reason)
+    assert ok or "120 m" in remedy_of(check.reason)
 
 
 async def test_a_vehicle_without_a_home_has_no_task() -> None:

@@ -17,6 +17,7 @@ from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.effects import CraftEffect
 from backend.craft.ladder import Ladder
+from backend.craft.low_battery import COUNTDOWN_S
 from backend.craft.machine import kept_of, transition
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
 from backend.events import MissionEnded, OrderDone, OrderNotDone, PreflightChecked
@@ -81,6 +82,8 @@ def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
         craft.searching,
         craft.took_off,
         craft.automatic,
+        craft.counting_down,
+        craft.countdown_stopped,
         craft.chosen is None,
         "vehicle" in craft.links_down,
         ladder and (ladder.way, ladder.stage),
@@ -201,7 +204,9 @@ def test_a_held_craft_moves_only_when_an_operator_says_so_or_nobody_is_left_to()
             timer = step.given == inputs.TimerExpired("console_return")
             ladder = step.craft.ladder
             refused = ladder is not None and ladder.stage == "waits" and step.given == inputs.TimerExpired("order")
-            assert ordered or timer or refused, step.about
+            counted = step.given == inputs.TimerExpired("battery_return") and step.craft.counting_down
+            lower = isinstance(step.given, inputs.BatteryLow) and step.given.stage != "return"
+            assert ordered or timer or refused or counted or lower, step.about
 
 
 def under_way(step: Step) -> Ladder | None:
@@ -267,6 +272,37 @@ def test_whoever_takes_the_vehicle_ends_every_order_of_ours() -> None:
             assert effects.CancelTimer("order") in step.asked, step.about
         if step.after.taken_over or step.after.authority.who == "failsafe":
             assert step.after.ladder is None, step.about
+
+
+def test_a_countdown_runs_in_hold_only_and_is_stopped_once() -> None:
+    for step in steps():
+        started = effects.StartTimer("battery_return", COUNTDOWN_S) in step.asked
+        assert started == (step.after.counting_down and not step.craft.counting_down), step.about
+        if step.after.counting_down:
+            assert step.after.phase == "hold", step.about
+            assert not step.after.taken_over, step.about
+        if started:
+            assert not step.craft.countdown_stopped, step.about
+        if isinstance(step.command, commands.KeepHolding):
+            assert step.carried_out == step.craft.counting_down, step.about
+            assert not moves(step.asked), step.about
+            assert not step.after.counting_down, step.about
+
+
+def test_the_lower_the_battery_the_less_is_asked() -> None:
+    for step in steps():
+        if not isinstance(step.given, inputs.BatteryLow) or not step.craft.engaged:
+            continue
+        ours = not (step.craft.taken_over or step.craft.authority.who == "failsafe")
+        if not ours or step.craft.phase in ("manual", "landing"):
+            assert not sent(step.asked), step.about
+        elif step.given.stage == "land":
+            assert moves(step.asked) == [effects.Land()], step.about
+            assert step.after.phase == "landing", step.about
+        elif step.craft.phase in AUTOMATIC or (step.craft.phase == "hold" and step.given.stage == "last"):
+            assert moves(step.asked) == [effects.ReturnHome()], step.about
+        else:
+            assert not sent(step.asked), step.about
 
 
 def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:

@@ -108,7 +108,7 @@ async def test_what_the_vehicle_was_told_is_carried_out_once_telemetry_shows_it(
         rig.runner.carry_out(effect)
         await rig.until(lambda way=way: rig.given == [inputs.CarriedOut(way)])
         rig.given.clear()
-    assert rig.vehicle.names == ["hold", "return_home", "land"]
+    assert rig.vehicle.names == ["hold", "land", "land"]
 
 
 async def test_what_fails_is_given_with_its_reason_and_whether_the_vehicle_flies(rig: Rig) -> None:
@@ -156,7 +156,7 @@ async def test_a_timer_expires_once_and_a_cancelled_one_never(rig: Rig) -> None:
 
 async def test_what_safety_has_against_an_order_is_found_before_it_is_given(rig: Rig) -> None:
     rig.flies()
-    far: Place = FRAME.to_geo(900.0, 0.0)
+    far: Place = FRAME.to_geo(300.0, 0.0)
     (fence,) = rig.runner.objections(commands.Override(place=far))
     assert isinstance(fence, OutsideFence)
     assert rig.runner.objections(commands.Override(place=NEAR)) == ()

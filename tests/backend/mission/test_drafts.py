@@ -10,9 +10,10 @@ from refusals import refusing
 from stage import Stage
 
 from backend import commands
-from backend.events import AntennaChecked, BearingMeasured, BeliefUpdated, MissionEdited, PersonSource
+from backend.events import AntennaChecked, BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, PersonSource
 from backend.mission.inputs import Input
 from backend.reasons import refusals
+from backend.reasons.safety import AltitudeOutside
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.search.inputs import BearingsArrived
 from backend.search.state import SearchState
@@ -41,6 +42,38 @@ async def test_drafts_are_checked_edited_and_refused_with_reasons(stage: Stage) 
     assert (await order(stage, mission_id, commands.Start())).accepted
     with refusing(refusals.NotEditable, MissionConflict):
         await stage.room.drafts.edit(mission_id, spec(), "anna")
+
+
+@pytest.mark.parametrize(
+    ("flight", "outside"),
+    [
+        ({"altitude_relative_m": 130.0}, (130.0, 10.0, 120.0)),
+        ({"altitude_relative_m": 5.0}, (5.0, 10.0, 120.0)),
+        ({"minimum_altitude_relative_m": 60.0, "maximum_altitude_relative_m": 30.0}, (40.0, 60.0, 30.0)),
+    ],
+)
+async def test_an_altitude_outside_its_band_is_refused_where_it_is_drafted_and_where_it_is_edited(
+    stage: Stage, flight: dict[str, float], outside: tuple[float, float, float]
+) -> None:
+    mission_id = await stage.room.drafts.create(spec(altitude_relative_m=120.0), "anna")
+    for refused in (
+        stage.room.drafts.create(spec(**flight), "anna"),
+        stage.room.drafts.edit(mission_id, spec(**flight), "anna"),
+    ):
+        with pytest.raises(MissionInputError) as error:
+            await refused
+        assert error.value.field == "flight.altitude_relative_m"
+        assert error.value.reason == AltitudeOutside(*outside)
+    assert stage.journal.of_kind(mission_id, MissionEdited) == []
+
+
+async def test_a_draft_from_before_the_band_was_asked_is_read_and_not_started(stage: Stage) -> None:
+    high = spec(altitude_relative_m=130.0)
+    await stage.journal.append("old", [MissionDrafted(spec=high)])
+    checked = await stage.room.drafts.preflight("old")
+    assert AltitudeOutside(130.0, 10.0, 120.0) in [check.reason for check in checked.checks if not check.ok]
+    assert not (await order(stage, "old", commands.Start())).accepted
+    assert stage.vehicle.names == []
 
 
 async def test_the_check_of_the_antenna_stays_in_the_checklist_until_an_edit(stage: Stage) -> None:

@@ -36,7 +36,7 @@ from hardware.readings import Telemetry
 
 async def test_a_mission_is_flown_to_its_end_and_everything_is_kept(stage: Stage) -> None:
     mission_id = await flying(stage)
-    await stage.until_phase(mission_id, "landing")
+    await stage.until_true(lambda: stage.vehicle.names[-1:] == ["land"])
     stage.vehicle.touch_down()
     ended = await stage.until(mission_id, "mission_ended")
     assert isinstance(ended, MissionEnded)
@@ -50,7 +50,8 @@ async def test_a_mission_is_flown_to_its_end_and_everything_is_kept(stage: Stage
     measured = [e.sweep_id for e in stage.journal.of_kind(mission_id, BearingMeasured)]
     assert [s for _, _, s in stage.journal.sweeps] == measured
     assert stage.vehicle.names[0] == "take_off"
-    assert stage.vehicle.names[-1] == "return_home"
+    assert stage.vehicle.names[-1] == "land"
+    assert "return_home" not in stage.vehicle.names
     assert stage.vehicle.names.count("turn") == len(measured)
     assert stage.journal.track
     assert stage.publisher.beliefs == [(b.emitter_id, b.bearings) for b in beliefs]
@@ -99,7 +100,7 @@ async def test_abort_holds_and_returns_at_once(stage: Stage) -> None:
     stage.vehicle.stuck = False
     assert (await order(stage, mission_id, commands.Abort())).accepted
     assert stage.journal.state(mission_id).phase == "aborted"
-    await stage.until_true(lambda: stage.vehicle.names[-2:] == ["hold", "return_home"])
+    await stage.until_true(lambda: stage.vehicle.names[-2:] == ["hold", "land"])
 
 
 async def test_a_return_during_the_take_off_ends_the_mission_once_the_vehicle_is_down(stage: Stage) -> None:
@@ -202,7 +203,7 @@ async def test_after_an_abort_and_a_restart_the_vehicle_can_be_held_and_brought_
     assert refused.reason == refusals.MissionOver()
     stage.vehicle.stuck = False
     assert (await order(stage, mission_id, commands.Return())).accepted
-    await stage.until_true(lambda: stage.vehicle.names[-1] == "return_home")
+    await stage.until_true(lambda: stage.vehicle.names[-1] == "land")
     await stage.until_phase(mission_id, "landing")
     second = await stage.room.drafts.create(spec(), "anna")
     busy = await order(stage, second, commands.Start())

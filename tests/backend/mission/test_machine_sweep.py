@@ -81,7 +81,9 @@ def check_rules(before: MissionState, given_: Input, after: MissionState, asked:
         expired = given_.given if isinstance(given_, ToCraft) else None
         refused = craft.ladder is not None and expired == inputs.TimerExpired("order")
         timer = expired == inputs.TimerExpired("console_return")
-        assert ordered or timer or refused, f"{given_} moved a held vehicle"
+        counted = expired == inputs.TimerExpired("battery_return") and craft.counting_down
+        lower = isinstance(expired, inputs.BatteryLow) and expired.stage != "return"
+        assert ordered or timer or refused or counted or lower, f"{given_} moved a held vehicle"
     if before.search.outcome is not None:
         assert after.search.outcome == before.search.outcome
         assert after.phase == before.phase

@@ -131,6 +131,8 @@ WANTED = (
     Wanted(21, "page_start", "page usable after a whole start, idle machine", "s", at_most=3.0),
     Wanted(27, "library", "5,000 missions: list, search or open, server time", "ms", at_most=100.0),
     Wanted(27, "library_storage", "storage a bearing after retention", "kB", at_most=10.0),
+    # The flight
+    Wanted(29, "battery_home", "returns in wind that took no more of the battery than promised", "%", at_least=95.0),
     # Installation
     Wanted(22, "install", "clean machine to two phones and a flown simulated mission", "min", at_most=10.0),
     Wanted(22, "install_commands", "commands and taps for it", "", at_most=10),

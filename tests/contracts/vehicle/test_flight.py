@@ -14,7 +14,7 @@ from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import WallClock
 from hardware.frame import LocalFrame
 from hardware.ports import VehicleError, VehicleUnreachable
-from hardware.readings import Place
+from hardware.readings import Place, ReturnAltitude
 from hardware.reasons.preflight import FailsafeParameter
 from hardware.reasons.vehicle_news import TakenOver, TakenOverBySticks
 
@@ -51,6 +51,13 @@ async def test_a_ready_vehicle_passes_its_checklist_and_each_bad_failsafe_refuse
     reason = refused[0].reason
     assert isinstance(reason, FailsafeParameter)
     assert (reason.parameter, reason.value) == (parameter, 0.0)
+
+
+async def test_the_altitude_of_its_own_return_is_read_in_metres(rig: Rig) -> None:
+    parameter, unit = {"sim-px4": ("RTL_RETURN_ALT", 1.0), "sim-ardupilot": ("RTL_ALT", 100.0)}.get(rig.name, ("", 1.0))
+    await rig.sim.order("set_param", name=parameter, value=45.0 * unit)
+
+    assert await rig.vehicle.return_altitude() == ReturnAltitude(parameter, 45.0)
 
 
 async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: Rig) -> None:

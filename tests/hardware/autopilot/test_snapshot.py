@@ -43,6 +43,7 @@ def test_wire_units_become_named_units() -> None:
     assert (t.altitude_amsl_m, t.altitude_relative_m) == (528.0, 40.0)
     assert (t.velocity_north_m_s, t.velocity_east_m_s, t.velocity_down_m_s) == (3.0, -4.0, 0.12)
     assert t.heading_deg == pytest.approx(270.0)
+    assert (t.push_north_m_s2, t.push_east_m_s2) == (None, None)
     assert (t.armed, t.in_air, t.gps_fix, t.satellites) == (True, True, "3D", 12)
     assert (t.battery_percent, t.home_amsl_m) == (77.0, 488.0)
 
@@ -154,3 +155,22 @@ def test_in_air_without_a_landed_state_is_judged_by_height() -> None:
     assert snapshot.in_air is True
     snapshot.fold("EXTENDED_SYS_STATE", {"landed_state": 1}, T0)
     assert snapshot.in_air is False
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "yaw", "north", "east"),
+    [
+        (0.0, -10.0, 0.0, 1.73, 0.0),
+        (0.0, -10.0, 90.0, 0.0, 1.73),
+        (10.0, 0.0, 0.0, 0.0, 1.73),
+        (10.0, 0.0, 90.0, -1.73, 0.0),
+    ],
+)
+def test_the_attitude_says_where_the_thrust_pushes(
+    roll: float, pitch: float, yaw: float, north: float, east: float
+) -> None:
+    snapshot = Snapshot()
+    angles = {"roll": math.radians(roll), "pitch": math.radians(pitch)}
+    snapshot.fold("ATTITUDE", attitude(1000, math.radians(yaw)) | angles, T0)
+    t = snapshot.telemetry(T0, True, "HOLD", NOBODY, "px4")
+    assert (t.push_north_m_s2, t.push_east_m_s2) == pytest.approx((north, east), abs=0.01)

@@ -100,6 +100,10 @@ export const flight = {
     text: "{order?hold=Das Halten|return=Die Rückkehr|land=Die Landung|abort=Der Abbruch} war nicht möglich, darum {way?hold=hält das Fluggerät|return=kehrt das Fluggerät zurück|land=landet das Fluggerät, wo es ist}. {because}",
     remedy: "Nach dem Fluggerät sehen. Ein anderer Befehl tritt an seine Stelle.",
   },
+  autopilot_flies_home: {
+    text: "Der Autopilot fliegt auf seinem eigenen Weg zurück, der keine Flugverbotsgebiete kennt: {because}",
+    remedy: "Hinsehen; Anhalten stoppt ihn.",
+  },
   ordered_again_later: {
     text: "{because}",
     remedy: "Es wird noch einmal befohlen, wenn das Fluggerät wieder zu hören ist.",

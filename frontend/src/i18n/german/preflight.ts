@@ -97,6 +97,16 @@ export const preflight = {
     remedy: "Die Funkstrecke prüfen und es noch einmal versuchen.",
   },
 
+  return_altitude_checked: {
+    text: "Die eigene Rückkehr des Autopiloten steigt auf {altitude_relative_m} ({parameter}).",
+    remedy:
+      "{parameter} so setzen, dass die eigene Rückkehr des Autopiloten nicht über die Höchsthöhe der Mission von {ceiling_relative_m} steigt, oder diese anheben.",
+  },
+  return_altitude_unread: {
+    text: "Wie hoch die eigene Rückkehr des Autopiloten steigt ({parameter}), war nicht zu lesen.",
+    remedy:
+      "{parameter} so setzen, dass die eigene Rückkehr des Autopiloten nicht über die Höchsthöhe der Mission von {ceiling_relative_m} steigt.",
+  },
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },
   receiver_delivers: { text: "Der Empfänger liefert Messwerte auf {channels|Kanal|Kanälen}.", remedy: "" },

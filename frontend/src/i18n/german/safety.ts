@@ -47,6 +47,10 @@ export const safety = {
     text: "Der Ort liegt {near_m:1} neben einem Flugverbotsgebiet, und ein schwebendes Fluggerät steht nie ganz still.",
     remedy: "Einen Ort mindestens {least_m} neben dem Gebiet wählen.",
   },
+  no_way_home: {
+    text: "Von hier führt kein Weg um die Flugverbotsgebiete herum und innerhalb des Zauns zum {distance_m} entfernten Startplatz.",
+    remedy: "Zaun und Flugverbotsgebiete so zeichnen, dass es einen gibt.",
+  },
   way_leaves_fence: { text: "Der Weg dorthin verlässt den Zaun.", remedy: "Über einen Ort dazwischen fliegen." },
   way_crosses_no_fly: {
     text: "Der Weg dorthin kreuzt ein Flugverbotsgebiet.",
@@ -57,6 +61,7 @@ export const safety = {
   already_started: { text: "Die Mission hat schon begonnen.", remedy: "Für den nächsten Flug eine neue entwerfen." },
   mission_over: { text: "Die Mission ist zu Ende.", remedy: "Eine neue entwerfen." },
   not_held: { text: "Die Mission ist nicht angehalten.", remedy: "" },
+  no_countdown: { text: "Es wird nicht zurückgezählt: Es ist vorbei oder wurde schon gestoppt.", remedy: "" },
   landing_already: { text: "Das Fluggerät landet schon am Startplatz.", remedy: "Halten unterbricht die Landung." },
   on_the_way_home: {
     text: "Das Fluggerät ist auf dem Heimweg.",

@@ -14,9 +14,8 @@ from backend.craft import inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.machine import transition
-from backend.craft.safety import NOMINAL_DRAIN_PERCENT_S, limits_of, vehicle_vetoes
+from backend.craft.safety import limits_of, vehicle_vetoes
 from backend.craft.state import CraftState
-from backend.craft.watch.drain import Drain
 from backend.craft.watch.watch import Watch
 from backend.events import FIRST_CRAFT
 from backend.reasons.flight import NoConsole, PlaceUnknown, VehicleLinkLost
@@ -155,6 +154,27 @@ def test_a_charge_at_the_limit_is_noticed_once(scene: Scene) -> None:
         scene.see(battery_percent=charge)
         found += [type(given) for given in scene.tick()]
     assert found == [inputs.BatteryLow]
+
+
+def stages(found: list[inputs.CraftInput]) -> list[str]:
+    return [given.stage for given in found if isinstance(given, inputs.BatteryLow)]
+
+
+def test_a_battery_counts_as_lower_once_it_has_been_that_low_for_a_while(scene: Scene) -> None:
+    scene.be(craft_in("hold").craft)
+    scene.see(position=FRAME.to_geo(0.0, 80.0), battery_percent=5.0)
+    assert stages(scene.tick(20)) == ["return"]
+    assert stages(scene.tick(10)) == ["land"]
+
+
+def test_no_single_reading_makes_a_vehicle_land(scene: Scene) -> None:
+    scene.be(craft_in("hold").craft)
+    scene.see(position=FRAME.to_geo(0.0, 80.0))
+    found: list[inputs.CraftInput] = []
+    for charge in (90.0, 0.0, 90.0, 0.0, 88.0, None, 0.0, 88.0):
+        scene.see(battery_percent=charge)
+        found += scene.tick(5)
+    assert set(stages(found)) == {"return"}
 
 
 def test_a_low_battery_is_noticed_again_when_the_mission_flies_on_or_is_held_on_its_way_home(scene: Scene) -> None:
@@ -312,26 +332,3 @@ def test_home_and_ground_are_noticed_when_they_are_reached(scene: Scene) -> None
 def test_the_track_is_thinned_to_two_points_a_second(scene: Scene) -> None:
     scene.tick(50)
     assert 17 <= len(scene.watch.track.points) <= 20
-
-
-def test_drain_is_nominal_until_enough_was_used_to_tell() -> None:
-    drain = Drain()
-    flying = replace(Stage().vehicle.state, in_air=True)
-    for second in range(0, 600, 10):
-        drain.update(replace(flying, battery_percent=90.0 - 0.1 * second), float(second))
-        if second < 60:
-            assert drain.percent_s == NOMINAL_DRAIN_PERCENT_S
-    assert drain.percent_s == pytest.approx(0.1)
-
-
-def test_drain_counts_neither_the_time_on_the_ground_nor_a_silent_link() -> None:
-    drain = Drain()
-    flying = replace(Stage().vehicle.state, in_air=True)
-    drain.update(replace(flying, battery_percent=90.0, battery_at_s=0.0), 0.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 100.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=100.0), 300.0)
-    assert drain.percent_s == pytest.approx(0.1)
-    drain.update(replace(flying, in_air=False, battery_percent=80.0, battery_at_s=1_000.0), 1_000.0)
-    drain.update(replace(flying, battery_percent=80.0, battery_at_s=2_000.0), 2_000.0)
-    drain.update(replace(flying, battery_percent=60.0, battery_at_s=2_100.0), 2_100.0)
-    assert drain.percent_s == pytest.approx(0.2)

@@ -95,3 +95,30 @@ def test_twenty_simulated_minutes_are_no_burden() -> None:
         copter.step(DT, Demand(0.0, 0.0, 40.0, 0.0))
 
     assert math.hypot(copter.north, copter.east) < 3.0
+
+
+def flown(wind: Wind, north: float = 400.0, seconds: float = 60.0) -> tuple[Copter, float]:
+    """(the body, Wh it used) after so long towards a place in the north."""
+    copter = airborne(wind)
+    full = copter.energy
+    for _ in range(int(seconds / DT)):
+        copter.step(DT, Demand(north, 0.0, 40.0, 0.0, speed=7.0))
+    return copter, full - copter.energy
+
+
+def test_against_the_wind_it_takes_more_and_flies_no_faster_than_its_airspeed() -> None:
+    still, without = flown(Wind())
+    against, with_wind = flown(Wind(6.5, 0.0))
+    assert against.north == pytest.approx(still.north, abs=1.0)
+    assert with_wind > 1.5 * without
+    stormy, _ = flown(Wind(11.0, 0.0))
+    assert stormy.north == pytest.approx(60.0 * 3.0, rel=0.05)
+    carried, _ = flown(Wind(16.0, 0.0), north=0.0)
+    assert carried.north == pytest.approx(-60.0 * 2.0, rel=0.05)
+
+
+def test_it_leans_into_the_wind_and_more_when_it_flies_against_it() -> None:
+    hovering, _ = flown(Wind(6.0, 0.0), north=0.0)
+    flying, _ = flown(Wind(6.0, 0.0), seconds=20.0)
+    assert 0.0 < hovering.push_north < flying.push_north
+    assert hovering.push_east == pytest.approx(0.0, abs=0.01)

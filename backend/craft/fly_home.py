@@ -1,0 +1,94 @@
+"""How a return is flown: by way points of ours around what may not be flown over, then down at home.
+
+The autopilot knows neither our no-fly areas nor our altitude band: its own return flies straight. It is ordered only
+when ours cannot be flown, and that is told. Each leg is held against the vetoes again right before it is sent; a pilot
+who takes over, or the autopilot's failsafe, ends it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+
+from backend.craft import inputs
+from backend.craft.recent_telemetry import recent
+from backend.craft.safety import return_vetoes
+from backend.craft.way_home import ABOVE_HOME_M, Point2, way_home
+from backend.craft.work import Work
+from backend.reasons import Reason, carried, safety
+from hardware.ports import HardwareError, NotInControl, VehicleUnreachable
+from hardware.readings import Place
+
+log = logging.getLogger("crossfix.craft")
+
+AT_HOME_M = 2.0
+CLIMB_FIRST_M = 3.0
+"""A vehicle that is further than this from the altitude it returns at goes there first, on the spot."""
+
+
+async def fly_home(work: Work) -> inputs.AutopilotReturns | None:
+    """Returns once the landing at home, or the autopilot's own return, has begun; the latter with its reason.
+
+    Raises NotInControl when somebody else flies, HardwareError when the autopilot does not return either.
+    """
+    vehicle = work.equipment.vehicle
+    if vehicle.telemetry().in_air is False:
+        await vehicle.return_home()
+        return None
+    try:
+        because = await _our_way(work)
+    except (NotInControl, VehicleUnreachable):
+        raise
+    except HardwareError as error:
+        because = carried(error.reason)
+    if because is None:
+        if vehicle.telemetry().in_air is not False:
+            await vehicle.land()
+        return None
+    log.warning("%s: the autopilot returns by itself: %s", work.equipment.craft_id, because)
+    await vehicle.return_home()
+    return inputs.AutopilotReturns(because)
+
+
+async def _our_way(work: Work) -> Reason | None:
+    """Fly it. Why it cannot be flown (any further), None once the vehicle is above its home."""
+    now = await recent(work.situation)
+    position = now.telemetry.position
+    if position is None:
+        return safety.NoPosition()
+    at = work.task.frame.to_enu(position)
+    amsl = now.telemetry.altitude_amsl_m
+    if math.hypot(*at) < ABOVE_HOME_M:
+        return await _over_home(work, at, amsl)
+    way = await asyncio.to_thread(way_home, work.limits.problem, at)
+    if way is None:
+        return safety.NoWayHome(math.hypot(*at))
+    if amsl is not None and abs(work.task.altitude_at(position) - amsl) > CLIMB_FIRST_M:
+        because = await _leg(work, position, way)
+        if because is not None:
+            return because
+    for index, point in enumerate(way):
+        last = index == len(way) - 1
+        because = await _leg(work, work.task.home if last else work.task.frame.to_geo(*point), way[index:])
+        if because is not None:
+            return because
+    return None
+
+
+async def _over_home(work: Work, at: Point2, amsl: float | None) -> Reason | None:
+    """The last metres, as high as it is; a vehicle that is lower than the band lands where it is."""
+    low = work.limits.home_amsl_m + work.limits.minimum_altitude_relative_m
+    if math.hypot(*at) < AT_HOME_M or amsl is None or amsl < low:
+        return None
+    return await _leg(work, work.task.home, ((0.0, 0.0),), amsl)
+
+
+async def _leg(work: Work, to: Place, way: tuple[Point2, ...], amsl: float | None = None) -> Reason | None:
+    """One leg, and what safety has against it or against the rest of the way. amsl None: the task's altitude there."""
+    altitude = work.task.altitude_at(to) if amsl is None else amsl
+    vetoes = return_vetoes(work.limits, await recent(work.situation), way, altitude)
+    if vetoes:
+        return vetoes[0]
+    await work.equipment.vehicle.goto(to, altitude, work.task.mission.flight.speed_m_s)
+    return None
