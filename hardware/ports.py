@@ -40,6 +40,10 @@ class NotInControl(VehicleError):
     """Somebody else took control: no command is sent until an operator takes it back."""
 
 
+class PlaceRefused(VehicleError):
+    """The autopilot will not fly to this place: it hovers where it is, and the same order again changes nothing."""
+
+
 class VehicleUnreachable(VehicleError):
     """No vehicle answers on the link."""
 

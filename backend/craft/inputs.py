@@ -12,6 +12,7 @@ from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
 from backend.spec import Place
 from hardware.authority import Authority
+from hardware.reasons.vehicle_news import AutopilotWords
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +97,28 @@ class WorkFailed:
     step: StepName
     because: Reason
     in_air: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceNotTaken:
+    """The autopilot will not fly to this place; the vehicle hovers where it is."""
+
+    place: Place
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """The autopilot warns of something, in its own words."""
+
+    reason: AutopilotWords
+
+
+@dataclass(frozen=True, slots=True)
+class SaidNoMore:
+    """This text was not heard for a long time."""
+
+    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,6 +232,9 @@ CraftInput = (
     | SweepTaken
     | CarriedOut
     | WorkFailed
+    | PlaceNotTaken
+    | Said
+    | SaidNoMore
     | WorkVetoed
     | AuthorityHeard
     | FailsafeEnded

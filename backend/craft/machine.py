@@ -30,8 +30,11 @@ from backend.craft.inputs import (
     LinkDown,
     LinkUp,
     NothingToPlan,
+    PlaceNotTaken,
     Planned,
     Restarted,
+    Said,
+    SaidNoMore,
     SearchChanged,
     SweepTaken,
     TimerExpired,
@@ -48,6 +51,7 @@ from backend.craft.step import (
     carried_out,
     clear_alerts,
     clear_failsafe,
+    clear_said,
     come_down,
     go_home,
     go_on,
@@ -56,6 +60,7 @@ from backend.craft.step import (
     measure,
     not_done,
     refuse_flight,
+    tell_said,
     try_rung,
 )
 from backend.events import (
@@ -65,6 +70,7 @@ from backend.events import (
     LinkLost,
     LinkRestored,
     PlaceReached,
+    PlaceRefused,
     ReturnOrdered,
     SweepRejected,
     TookOff,
@@ -83,6 +89,8 @@ from backend.search.effects import Refuse
 from backend.search.state import SearchState
 from hardware.authority import Authority
 
+MOST_REFUSED = 3
+"""So many places in a row that the autopilot will not fly to are no accident."""
 UNSURE_PLACE_M = 5.0
 """A vehicle that hovers stays within this; what it reports beyond is an alert."""
 
@@ -115,6 +123,13 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             carried_out(step, way)
         case WorkFailed():
             _failed(step, given)
+        case PlaceNotTaken():
+            _place_not_taken(step, given)
+        case Said(reason=reason):
+            if craft.engaged:
+                tell_said(step, reason)
+        case SaidNoMore(text=text):
+            clear_said(step, text)
         case WorkVetoed(vetoes=vetoes):
             if craft.phase in AUTOMATIC:
                 refuse_flight(step, vetoes)
@@ -219,6 +234,21 @@ def _doubt_place(step: CraftStep, bearing: BearingMeasured) -> None:
         alert(step, "place", "caution", flight.PlaceUnsure(bearing.place_number, bearing.drift_m))
     else:
         clear_alerts(step, "place")
+
+
+def _place_not_taken(step: CraftStep, given: PlaceNotTaken) -> None:
+    """Another place is chosen; when the autopilot takes none, somebody has to look."""
+    craft = step.craft
+    if craft.phase != "flying":
+        return
+    step.record(
+        PlaceRefused(craft_id=craft.craft_id, place_number=craft.place_number, place=given.place, reason=given.because)
+    )
+    alert(step, "place", "caution", given.because)
+    if step.craft.refused_in_a_row >= MOST_REFUSED:
+        hold(step, given.because)
+    else:
+        go_on(step, given.because)
 
 
 def _failed(step: CraftStep, given: WorkFailed) -> None:

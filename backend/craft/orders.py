@@ -195,6 +195,8 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
         raise Refused(PilotControls())
     if craft.phase in HOMEWARD:
         raise Refused(refusals.OnTheWayHome())
+    if command.place in craft.refused:
+        raise Refused(refusals.PlaceRefusedBefore())
     _refuse_objections(step, given)
     in_the_way = craft.phase in AUTOMATIC and craft.took_off
     if in_the_way:

@@ -30,6 +30,7 @@ from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from hardware.readings import Telemetry
+from hardware.reasons.vehicle_news import AutopilotSaid
 
 log = logging.getLogger("crossfix.craft")
 
@@ -161,8 +162,10 @@ class CraftRunner:
                 await asyncio.sleep(KEEP_ON_S)
 
     async def _changes(self) -> None:
-        async for _ in self.equipment.vehicle.changes():
+        async for announcement in self.equipment.vehicle.changes():
             self.watch.look_at_authority()
+            if isinstance(announcement.reason, AutopilotSaid):
+                self.watch.hear(announcement.reason)
 
     async def _save_track(self) -> None:
         while True:

@@ -30,6 +30,8 @@ from backend.events import (
     OrderTried,
     Phase,
     PhaseChanged,
+    PlaceReached,
+    PlaceRefused,
     PlanChosen,
     PlanVetoed,
     ServerRestarted,
@@ -52,9 +54,10 @@ class CraftState:
 
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
     or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
-    from the specification. return_reason: why it is on its way home. ladder: of the hold, return or landing that was
-    ordered last; None once something else has come of it. counting_down: it returns soon because its battery runs low;
-    countdown_stopped: somebody has stopped that, which they may once a flight.
+    from the specification. refused: places that the autopilot would not fly to, since the search area changed;
+    refused_in_a_row: the last so many, none reached since. return_reason: why it is on its way home. ladder: of the
+    hold, return or landing that was ordered last; None once something else has come of it. counting_down: it returns
+    soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a flight.
     """
 
     craft_id: str
@@ -70,6 +73,8 @@ class CraftState:
     attempt: int = 0
     place_number: int = 0
     avoid: tuple[Place, ...] = ()
+    refused: tuple[Place, ...] = ()
+    refused_in_a_row: int = 0
     return_reason: Reason | None = None
     ladder: Ladder | None = None
     counting_down: bool = False
@@ -109,7 +114,7 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(state, automatic=spec.flight.automatic, maximum_retakes=spec.sensor.maximum_retakes)
         case AreaChanged():
-            return replace(state, chosen=None, accepted=False, avoid=())
+            return replace(state, chosen=None, accepted=False, avoid=(), refused=(), refused_in_a_row=0)
         case MissionStarted():
             return replace(state, engaged=True, searching=True)
         case PhaseChanged(after=after, reason=reason):
@@ -167,6 +172,12 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, chosen=event, place_number=number, accepted=source == "operator", attempt=0)
         case PlanVetoed(place=place):
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, place))
+        case PlaceRefused(place=place):
+            refused = (*state.refused, place)
+            in_a_row = state.refused_in_a_row + 1
+            return replace(state, chosen=None, accepted=False, refused=refused, refused_in_a_row=in_a_row)
+        case PlaceReached():
+            return replace(state, refused_in_a_row=0)
         case FlightStarted():
             return replace(state, accepted=True)
         case SweepStarted(attempt=attempt):

@@ -44,12 +44,15 @@ from backend.search.altitude import altitude_at
 from backend.search.effects import Record
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
+from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords
 
 OF_THE_FLIGHT: tuple[Topic, ...] = (
     "vehicle", "receiver", "console", "payload", "gps", "pilot", "battery", "place", "failure", "safety", "ground",
-    "order",
+    "order", "autopilot",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
+MOST_SAID = 5
+"""Alerts of the autopilot's own words at a time."""
 
 
 @dataclass(slots=True)
@@ -105,7 +108,7 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         go_home(step, NotLocalized(PlacesUsedUp(search.place_number), search.not_yet))
     else:
         step.go("planning", reason)
-        step.do(PlanNext(search.place_number + 1, craft.avoid))
+        step.do(PlanNext(search.place_number + 1, (*craft.avoid, *craft.refused)))
 
 
 def take_off(step: CraftStep, reason: Reason) -> None:
@@ -239,9 +242,30 @@ def _does_instead(step: CraftStep, ladder: Ladder) -> None:
 def alert(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:
     """Raise an alert; one that is open on the same topic gives way to it."""
     clear_alerts(step, topic)
+    _raise(step, topic, level, reason)
+
+
+def _raise(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "advisory"], reason: Reason) -> None:
     craft_id = step.craft.craft_id
     alert_id = f"{craft_id}-{topic}-{step.craft.alerts_raised + 1}"
     step.record(AlertRaised(alert_id=alert_id, topic=topic, level=level, reason=reason, craft_id=craft_id))
+
+
+def tell_said(step: CraftStep, reason: AutopilotWords) -> None:
+    """Beside the autopilot's other texts, but in place of the same one before. The oldest makes room."""
+    clear_said(step, None if isinstance(reason, AutopilotSaidMore) else reason.text)
+    standing = [raised for raised in step.craft.open_alerts if raised.topic == "autopilot"]
+    for raised in standing[: max(0, len(standing) + 1 - MOST_SAID)]:
+        step.record(AlertCleared(alert_id=raised.alert_id))
+    severe = not isinstance(reason, AutopilotSaidMore) and reason.severity != "warning"
+    _raise(step, "autopilot", "warning" if severe else "caution", reason)
+
+
+def clear_said(step: CraftStep, text: str | None) -> None:
+    """text None: the count of what was left out."""
+    for raised in step.craft.open_alerts:
+        if raised.topic == "autopilot" and getattr(raised.reason, "text", None) == text:
+            step.record(AlertCleared(alert_id=raised.alert_id))
 
 
 def clear_alerts(step: CraftStep, *topics: Topic) -> None:

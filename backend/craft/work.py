@@ -22,7 +22,7 @@ from backend.search.planning import next_place, way_to
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import Place
-from hardware.ports import VehicleError
+from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.vehicle import PositionLost
 from planner.types import PlannerError
 
@@ -73,7 +73,10 @@ class Work:
                 return inputs.WorkVetoed(vetoes)
             (east, north), *way = way
             leg = self.task.frame.to_geo(east, north) if way else effect.place
-            await self.equipment.vehicle.goto(leg, altitude, speed)
+            try:
+                await self.equipment.vehicle.goto(leg, altitude, speed)
+            except PlaceRefused as error:
+                return inputs.PlaceNotTaken(effect.place, carried(error.reason))
         here = self._here()
         off = math.dist(self.task.frame.to_enu(here), end)
         return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)

@@ -46,6 +46,7 @@ from backend.events.craft import (
     Phase,
     PhaseChanged,
     PlaceReached,
+    PlaceRefused,
     SweepStarted,
     TookOff,
 )
@@ -126,6 +127,7 @@ __all__ = [
     "Phase",
     "PhaseChanged",
     "PlaceReached",
+    "PlaceRefused",
     "PlanChosen",
     "PlanVetoed",
     "PreflightChecked",
@@ -157,6 +159,7 @@ Event = Annotated[
     | TookOff
     | PlanChosen
     | PlanVetoed
+    | PlaceRefused
     | FlightStarted
     | PlaceReached
     | SweepStarted

@@ -25,8 +25,10 @@ Topic = Literal[
     "ground",
     "order",
     "storage",
+    "autopilot",
 ]
-"""What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place."""
+"""What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place.
+Of "autopilot" a few stand side by side, one a text."""
 
 
 class SafetyVetoed(Fact):

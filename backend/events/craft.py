@@ -69,6 +69,16 @@ class FlightStarted(Fact):
     altitude_amsl_m: float
 
 
+class PlaceRefused(Fact):
+    """The autopilot would not fly to the chosen place; it is not ordered again."""
+
+    kind: Literal["place_refused"] = "place_refused"
+    craft_id: Id
+    place_number: int
+    place: Place
+    reason: Reason
+
+
 class PlaceReached(Fact):
     """distance_m: from where it was sent to. flight_time_s: by the mission's clock."""
 

@@ -9,6 +9,12 @@ from planner.reason import Words
 
 
 @dataclass(frozen=True, slots=True)
+class PlaceRefusedBefore:
+    code: Literal["place_refused_before"] = "place_refused_before"
+    english: ClassVar[Words] = Words("The autopilot has refused to fly to this place.", "Choose another place.")
+
+
+@dataclass(frozen=True, slots=True)
 class NotStarted:
     code: Literal["not_started"] = "not_started"
     english: ClassVar[Words] = Words("The mission has not started.", "Start it first.")
@@ -170,6 +176,7 @@ RefusalReason = (
     | OnTheGround
     | AreaOnlyInHold
     | NoProposedPlace
+    | PlaceRefusedBefore
     | NoSuchBearing
     | BearingExcludedAlready
     | NoSuchAlert

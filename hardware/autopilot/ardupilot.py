@@ -68,6 +68,7 @@ ARDUPILOT = Dialect(
     returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
     landing_modes=frozenset({LAND}),
     takeover_text=None,
+    place_refused_texts=(),
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),
     return_home=_order("return", RTL),

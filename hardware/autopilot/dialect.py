@@ -83,6 +83,7 @@ class Dialect:
     failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
     mode_report_hz: how often to ask for CURRENT_MODE. PX4 sends it when the mode changed, at most so often, and else
     twice a second: a fast rate costs nothing and shows a mode that lasted for an instant.
+    place_refused_texts: the beginnings of those by which it refuses a place that it has acknowledged.
     hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
     the raw modes it then shows. steering: the mode in which it flies to places and turns as told.
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
@@ -101,6 +102,7 @@ class Dialect:
     returning_modes: frozenset[int]
     landing_modes: frozenset[int]
     takeover_text: str | None
+    place_refused_texts: tuple[str, ...]
     hold: tuple[Outgoing, ...]
     hold_modes: frozenset[int]
     return_home: ModeOrder

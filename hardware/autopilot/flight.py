@@ -9,9 +9,9 @@ from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hover import Hover
 from hardware.autopilot.messages import CHANGE_SPEED, command_long, reposition
 from hardware.deadline import Deadline
-from hardware.ports import VehicleError
+from hardware.ports import PlaceRefused, VehicleError
 from hardware.readings import Place
-from hardware.reasons.vehicle import NoProgress, NotArrived
+from hardware.reasons.vehicle import NoProgress, NotArrived, PlaceNotTaken
 from hardware.reasons.vehicle_news import TriedAgain
 
 ARRIVED_M = 2.0
@@ -20,14 +20,16 @@ ATTEMPTS = 3
 
 
 async def fly_to(guidance: Guidance, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
-    """Returns once arrived and settled. Raises VehicleError when it does not arrive."""
+    """Returns once arrived and settled. Raises PlaceRefused when the autopilot says that it will not fly there,
+    VehicleError when it does not arrive."""
     monitor = guidance.monitor
     manoeuvre = guidance.begin("flight")
     distance, climb = guidance.distance(place, altitude_amsl_m)
     deadline = Deadline(monitor.clock, 30.0 + 3.0 * distance / speed_m_s + climb / 0.5)
+    ordered_at_s = monitor.clock.now()
     for attempt in range(1, ATTEMPTS + 1):
         await _send(guidance, manoeuvre, place, altitude_amsl_m, speed_m_s)
-        if await _arrive(guidance, manoeuvre, place, altitude_amsl_m, deadline):
+        if await _arrive(guidance, manoeuvre, place, altitude_amsl_m, deadline, ordered_at_s):
             return
         distance, climb = guidance.distance(place, altitude_amsl_m)
         if deadline.passed:
@@ -43,7 +45,12 @@ async def _send(
     dialect = guidance.monitor.dialect
     await guidance.enter_steering(manoeuvre)
     there = reposition(place, altitude_amsl_m, speed_m_s, None)
-    await guidance.steer(manoeuvre, there, "place")
+    try:
+        await guidance.steer(manoeuvre, there, "place")
+    except CommandDenied as denied:
+        if denied.refusal.result == "failed":  # ArduCopter's answer to a place beyond its fence
+            raise PlaceRefused(PlaceNotTaken(denied.refusal.said)) from denied
+        raise
     guidance.spot = (place, altitude_amsl_m)
     if not dialect.reposition_sets_speed:
         speed = command_long(CHANGE_SPEED, 1.0, speed_m_s, -1.0, 0.0, 0.0, 0.0, 0.0)
@@ -51,8 +58,21 @@ async def _send(
             await guidance.steer(manoeuvre, speed, "speed")
 
 
+def _check_taken(guidance: Guidance, ordered_at_s: float) -> None:
+    """PX4 acknowledges a place before it looks at it, and refuses by a text alone."""
+    beginnings = guidance.monitor.dialect.place_refused_texts
+    for text in guidance.monitor.said_since(ordered_at_s):
+        if text.startswith(beginnings):
+            raise PlaceRefused(PlaceNotTaken(text))
+
+
 async def _arrive(
-    guidance: Guidance, manoeuvre: Manoeuvre, place: Place, altitude_amsl_m: float, deadline: Deadline
+    guidance: Guidance,
+    manoeuvre: Manoeuvre,
+    place: Place,
+    altitude_amsl_m: float,
+    deadline: Deadline,
+    ordered_at_s: float,
 ) -> bool:
     """True when arrived and settled; False when no progress was seen for STUCK_S, or the deadline passed.
 
@@ -63,6 +83,7 @@ async def _arrive(
     hover = Hover()
     while not deadline.passed:
         guidance.go_on(manoeuvre)
+        _check_taken(guidance, ordered_at_s)
         distance, climb = guidance.distance(place, altitude_amsl_m)
         seen_at = snapshot.position_at_s or 0.0
         inside = distance < ARRIVED_M and climb < ARRIVED_M

@@ -6,6 +6,7 @@ import asyncio
 import logging
 import math
 import time
+from collections import deque
 from collections.abc import AsyncIterator
 
 from hardware.authority import Authority, ModeHeard, SticksTookOver
@@ -20,6 +21,7 @@ from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
 from hardware.autopilot.snapshot import NAMES, Snapshot
+from hardware.autopilot.status_texts import StatusText, StatusTexts
 from hardware.autopilot.timesync import Timesync
 from hardware.deadline import Deadline
 from hardware.ports import Clock, VehicleUnreachable
@@ -27,6 +29,7 @@ from hardware.readings import Announcement, Telemetry
 from hardware.reasons.vehicle import HeartbeatStopped, UnknownAutopilot, VehicleNotConnected
 from hardware.reasons.vehicle_news import (
     AutopilotRestarted,
+    AutopilotSaid,
     ClockRateOdd,
     ModeChanged,
     PositionJumped,
@@ -60,6 +63,9 @@ STREAMS: tuple[tuple[int, float], ...] = (
 LINK_LOST_WALL_S = 3.0
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
+
+SAID_KEPT = 30
+"""The autopilot's last words, to find among them why it refused."""
 STREAMS_CEASED_S = 3.0
 AFTER_SILENCE_S, AFTER_SILENCE_WALL_S = 15.0, 5.0
 """For this long after it was heard again, or the server came back, a vehicle may still act on the silence before: it
@@ -75,6 +81,8 @@ class Monitor:
         self.link = MavlinkLink(url, listened, self._on_message)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
+        self._texts = StatusTexts()
+        self._said: deque[tuple[float, str]] = deque(maxlen=SAID_KEPT)
         self.wakeup = Wakeup()
         self.connected = False
         self._dialect: Dialect | None = None
@@ -163,6 +171,8 @@ class Monitor:
 
     def look_at_link(self, elapsed_s: float) -> None:
         """Is the vehicle still heard? elapsed_s: of the wall, since the last look."""
+        for text in self._texts.overdue(self.clock.now()):
+            self._say(text, self.clock.now())
         self.silence.look(elapsed_s)
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
@@ -190,7 +200,7 @@ class Monitor:
         elif name == "TIMESYNC":
             self.timesync.heard(fields, now)
         elif name == "STATUSTEXT":
-            self._on_text(str(fields["text"]).rstrip("\x00\t "))
+            self._on_text(fields, now)
         elif name == ARM_STATUS:
             self.remote_id = remote_id(int(fields["status"]), str(fields["error"]), now)
         else:
@@ -209,11 +219,24 @@ class Monitor:
         while self.snapshot.mode_at_s == known_at_s and not deadline.passed:
             await self.wakeup.wait()
 
-    def _on_text(self, text: str) -> None:
-        log.info("autopilot: %s", text)
+    def _on_text(self, fields: Fields, now_s: float) -> None:
+        text, chunk = str(fields["text"]), int(fields.get("chunk_seq", 0))
         takeover = None if self._dialect is None else self._dialect.takeover_text
-        if takeover is not None and text.startswith(takeover):
-            self.control.see(SticksTookOver(self.clock.now()))
+        if takeover is not None and chunk == 0 and text.startswith(takeover):
+            self.control.see(SticksTookOver(now_s))
+        for whole in self._texts.take(int(fields["severity"]), text, int(fields.get("id", 0)), chunk, now_s):
+            self._say(whole, now_s)
+
+    def _say(self, text: StatusText, now_s: float) -> None:
+        if text.severity == "information":
+            log.info("autopilot: %s", text.text)
+            return
+        self._said.append((now_s, text.text))
+        self.announce(AutopilotSaid(text.severity, text.text))
+
+    def said_since(self, at_s: float) -> list[str]:
+        """The autopilot's warnings and errors from then on, each once, oldest first."""
+        return list(dict.fromkeys(text for said_at_s, text in self._said if said_at_s >= at_s))
 
     def _on_mode(self) -> None:
         snapshot = self.snapshot

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
 from hardware.autopilot.dialect import FailsafeRule
@@ -30,12 +31,18 @@ REMOTE_ID_FRESH_S = 10.0
 _GOOD_FIXES = frozenset({"3D", "DGPS", "RTK float", "RTK fixed", "PPP"})
 
 
+@dataclass(frozen=True, slots=True)
+class Readiness:
+    """prearm_ok: the autopilot would arm, None: it does not say. in_our_mode: in a mode that we would arm in; PX4
+    answers for the present one only. said: its own words lately."""
+
+    prearm_ok: bool | None
+    in_our_mode: bool = True
+    said: str = ""
+
+
 def telemetry_checks(
-    telemetry: Telemetry,
-    prearm_ok: bool | None,
-    in_our_mode: bool,
-    remote_id: RemoteId,
-    minimum_battery_percent: float,
+    telemetry: Telemetry, readiness: Readiness, remote_id: RemoteId, minimum_battery_percent: float
 ) -> list[PreflightCheck]:
     """Link, position, heading, battery, home, readiness, Remote ID, control."""
     t = telemetry
@@ -48,7 +55,7 @@ def telemetry_checks(
         PreflightCheck("home", False, NeverReported("home"))
         if t.home is None
         else PreflightCheck("home", True, HomeSet(t.home.lat, t.home.lon)),
-        _ready_to_arm(t, prearm_ok, in_our_mode),
+        _ready_to_arm(t, readiness),
         _remote_id(remote_id, t.at_s),
         _control(t),
     ]
@@ -78,14 +85,14 @@ def _battery(telemetry: Telemetry, minimum_percent: float) -> PreflightCheck:
     return PreflightCheck("battery", charge >= minimum_percent, BatteryCharge(charge, minimum_percent))
 
 
-def _ready_to_arm(telemetry: Telemetry, prearm_ok: bool | None, in_our_mode: bool) -> PreflightCheck:
-    """in_our_mode: in one that we would arm in; PX4 answers for the present one only."""
+def _ready_to_arm(telemetry: Telemetry, readiness: Readiness) -> PreflightCheck:
     if telemetry.in_air:
         return PreflightCheck("ready_to_arm", True, ArmingChecked("in_the_air"))
-    if prearm_ok is False and not in_our_mode:
-        return PreflightCheck("ready_to_arm", False, ArmingChecked("not_in_this_mode"), blocking=False)
-    state = "not_reported" if prearm_ok is None else "ready" if prearm_ok else "not_ready"
-    return PreflightCheck("ready_to_arm", prearm_ok is not False, ArmingChecked(state))
+    if readiness.prearm_ok is False:
+        state = "not_ready" if readiness.in_our_mode else "not_in_this_mode"
+        reason = ArmingChecked(state, readiness.said)
+        return PreflightCheck("ready_to_arm", False, reason, blocking=readiness.in_our_mode)
+    return PreflightCheck("ready_to_arm", True, ArmingChecked("ready" if readiness.prearm_ok else "not_reported"))
 
 
 def _remote_id(heard: RemoteId, now_s: float) -> PreflightCheck:

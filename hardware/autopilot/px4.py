@@ -73,6 +73,7 @@ PX4 = Dialect(
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
     takeover_text="Pilot took over",
+    place_refused_texts=("Reposition is outside geofence",),
     hold=(pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
     return_home=_order("return", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),

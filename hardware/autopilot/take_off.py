@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hardware.authority import FlightEnded
 from hardware.autopilot.commander import CommandDenied, Manoeuvre, OutOfMode
 from hardware.autopilot.guidance import Guidance
@@ -12,6 +14,7 @@ from hardware.reasons.vehicle import AutopilotRefused, ClimbTooLow, NoTakeOff, T
 from hardware.reasons.vehicle_news import TriedAgain
 
 LEAVE_GROUND_S = 60.0
+MOST_SAID = 3
 
 
 async def take_off(guidance: Guidance, altitude_relative_m: float) -> None:
@@ -51,6 +54,7 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
     deadline, attempt = Deadline(clock, LEAVE_GROUND_S, 5.0), 1
     trouble: AutopilotRefused | TakeOffIgnored = TakeOffIgnored()
     while not deadline.passed:
+        began_s = clock.now()
         try:
             if snapshot.custom_mode not in dialect.before_take_off.modes:
                 await guidance.select(manoeuvre, dialect.before_take_off)
@@ -67,6 +71,8 @@ async def _leave_ground(guidance: Guidance, manoeuvre: Manoeuvre, relative_m: fl
         except CommandDenied as denied:
             trouble = denied.refusal
         attempt += 1
-        monitor.announce(TriedAgain(trouble, attempt))
         await guidance.until(manoeuvre, Deadline(clock, 2.0, 0.2), lambda: False)
+        if isinstance(trouble, AutopilotRefused):  # why comes as a text, a moment after the answer
+            trouble = replace(trouble, said=" / ".join(monitor.said_since(began_s)[-MOST_SAID:]))
+        monitor.announce(TriedAgain(trouble, attempt))
     raise VehicleError(NoTakeOff(LEAVE_GROUND_S, trouble))

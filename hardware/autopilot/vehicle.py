@@ -14,8 +14,8 @@ from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hold import hold
 from hardware.autopilot.monitor import Monitor
 from hardware.autopilot.nets import put_nets_back, read_nets, set_nets
-from hardware.autopilot.preflight import failsafe_check, telemetry_checks
-from hardware.autopilot.take_off import take_off
+from hardware.autopilot.preflight import Readiness, failsafe_check, telemetry_checks
+from hardware.autopilot.take_off import MOST_SAID, take_off
 from hardware.autopilot.turn import turn_around
 from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, VehicleError
@@ -26,6 +26,9 @@ from hardware.reasons.vehicle import (
     StandsDisarmed,
 )
 from hardware.reasons.vehicle_news import OperatorInControl, ParameterSet
+
+SAID_LATELY_S = 40.0
+"""ArduPilot says every 30 s why it does not arm."""
 
 
 class MavsdkVehicle:
@@ -67,7 +70,9 @@ class MavsdkVehicle:
         heard, snapshot = self.telemetry(), monitor.snapshot
         prearm_ok = dialect.prearm_ok(snapshot.prearm_present, snapshot.prearm_healthy)
         in_our_mode = dialect.prearm_has_present_bit or snapshot.custom_mode in dialect.before_take_off.modes
-        checks = telemetry_checks(heard, prearm_ok, in_our_mode, monitor.remote_id, self._minimum_battery_percent)
+        said = " / ".join(monitor.said_since(heard.at_s - SAID_LATELY_S)[-MOST_SAID:])
+        readiness = Readiness(prearm_ok, in_our_mode, said)
+        checks = telemetry_checks(heard, readiness, monitor.remote_id, self._minimum_battery_percent)
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
         charge_known = heard.battery_percent is not None
         return checks + [failsafe_check(rule, name, value, charge_known) for rule, name, value in found]

@@ -132,15 +132,18 @@ class HomeSet:
 
 @dataclass(frozen=True, slots=True)
 class ArmingChecked:
-    """state: of the autopilot's own checks; not every autopilot reports them."""
+    """state: of the autopilot's own checks; not every autopilot reports them. said: what it gave as its reasons, in its
+    own words; empty when it said nothing lately."""
 
     state: Literal["ready", "not_ready", "not_in_this_mode", "in_the_air", "not_reported"]
+    said: str = ""
     code: Literal["arming_checked"] = "arming_checked"
 
     english: ClassVar[Words] = Words(
         "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm"
         "|not_in_this_mode=The autopilot is not ready to arm in its present mode"
-        "|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
+        "|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}."
+        "{said?=|*= It says: “}{said}{said?=|*=”.}",
         "{state?not_in_this_mode=Select its mode for holding to learn whether it would arm in that"
         "|*=Read the autopilot's messages: its own checks refuse to arm}.",
     )

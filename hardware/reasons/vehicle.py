@@ -157,15 +157,32 @@ class ManoeuvreReplaced:
 
 @dataclass(frozen=True, slots=True)
 class AutopilotRefused:
+    """said: what the autopilot gave as its reason, in its own words; empty when it said nothing."""
+
     command: CommandName
     result: CommandResult
+    said: str = ""
     code: Literal["autopilot_refused"] = "autopilot_refused"
 
     english: ClassVar[Words] = Words(
         f"The autopilot refused {_COMMAND}: "
         "{result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied"
-        "|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.",
+        "|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}."
+        "{said?=|*= It says: “}{said}{said?=|*=”.}",
         "Read the autopilot's messages.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceNotTaken:
+    """said: in the autopilot's own words; empty when it said nothing."""
+
+    said: str
+    code: Literal["place_not_taken"] = "place_not_taken"
+
+    english: ClassVar[Words] = Words(
+        "The autopilot does not fly to this place.{said?=|*= It says: “}{said}{said?=|*=”.}",
+        "Look at the fence that it holds.",
     )
 
 
@@ -347,6 +364,7 @@ VehicleReason = (
     | ModeNotCommanded
     | ManoeuvreReplaced
     | AutopilotRefused
+    | PlaceNotTaken
     | CommandUnanswered
     | ModeNotShown
     | ModeLeft

@@ -50,6 +50,47 @@ class AutopilotRestarted:
     english: ClassVar[Words] = Words("The autopilot has restarted.")
 
 
+Worse = Literal["critical", "error", "warning"]
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotSaid:
+    """text: the autopilot's own words, made printable."""
+
+    severity: Worse
+    text: str
+    code: Literal["autopilot_said"] = "autopilot_said"
+
+    english: ClassVar[Words] = Words("The autopilot says: “{text}”.")
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotRepeats:
+    """times: heard so often since the first."""
+
+    severity: Worse
+    text: str
+    times: int
+    code: Literal["autopilot_repeats"] = "autopilot_repeats"
+
+    english: ClassVar[Words] = Words("The autopilot says again: “{text}” ({times|time|times}).")
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotSaidMore:
+    """texts: different ones, that came too fast to be shown one by one."""
+
+    texts: int
+    code: Literal["autopilot_said_more"] = "autopilot_said_more"
+
+    english: ClassVar[Words] = Words(
+        "The autopilot said {texts|more thing|more things} than can be shown.", "Read them in the server's log."
+    )
+
+
+AutopilotWords = AutopilotSaid | AutopilotRepeats | AutopilotSaidMore
+
+
 @dataclass(frozen=True, slots=True)
 class ClockRateOdd:
     """rate: seconds of the autopilot's clock in one of ours."""
@@ -160,6 +201,7 @@ VehicleNews = (
     | VehicleHeardAgain
     | AutopilotRestarted
     | ClockRateOdd
+    | AutopilotWords
     | ModeChanged
     | PositionJumped
     | TakenOver

@@ -36,6 +36,8 @@ from backend.events import Link
 from backend.reasons import Interrupted
 from backend.reasons.flight import StepName, Way
 from backend.search.state import SearchState
+from hardware.reasons.vehicle import PlaceNotTaken
+from hardware.reasons.vehicle_news import AutopilotRepeats, AutopilotSaid, AutopilotSaidMore, AutopilotWords
 
 AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NOBODY, LANDED_BY_PILOT)
 ORDERS: tuple[commands.ForCraft, ...] = (
@@ -56,6 +58,15 @@ LINKS: tuple[Link, ...] = ("vehicle", "receiver", "console", "payload", "gps")
 TIMERS: tuple[TimerName, ...] = ("console_hold", "console_return", "landing", "order", "battery_return")
 WAYS: tuple[Way, ...] = ("hold", "return", "land")
 STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "hold", "return", "land")
+
+
+NOT_TAKEN = PlaceNotTaken("Reposition is outside geofence")
+SAID: tuple[AutopilotWords, ...] = (
+    AutopilotSaid("critical", "Battery failure"),
+    AutopilotRepeats("critical", "Battery failure", 4),
+    AutopilotSaid("warning", "High wind"),
+    AutopilotSaidMore(3),
+)
 
 
 def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.CraftInput]:
@@ -79,6 +90,9 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.SweepTaken((rejected(attempt, number),)),
         *(inputs.WorkFailed(step, NO_ANSWER, in_air) for step in STEPS for in_air in (True, False, None)),
         *(inputs.CarriedOut(way) for way in WAYS),
+        inputs.PlaceNotTaken(HOME, NOT_TAKEN),
+        *(inputs.Said(words) for words in SAID),
+        inputs.SaidNoMore("Battery failure"),
         inputs.WorkVetoed((VETO,)),
         inputs.WorkVetoed((BATTERY_VETO,)),
         *(inputs.AuthorityHeard(authority) for authority in AUTHORITIES),

@@ -16,8 +16,10 @@ from backend.craft.watch.authority import AuthorityWatch
 from backend.craft.watch.battery import BatteryWatch
 from backend.craft.watch.consumption import Consumption
 from backend.craft.watch.links import LinkWatch
+from backend.craft.watch.said import SaidWatch
 from backend.craft.watch.track import Track
 from backend.craft.watch.way_down import WayDown
+from hardware.reasons.vehicle_news import AutopilotSaid
 
 TICK_S = 0.2
 LONGEST_TICK_S = 1.0
@@ -37,6 +39,7 @@ class Watch:
     track: Track = field(default_factory=Track)
     _links: LinkWatch = field(default_factory=LinkWatch)
     _battery: BatteryWatch = field(default_factory=BatteryWatch)
+    _said: SaidWatch = field(default_factory=SaidWatch)
     _way_down: WayDown = field(default_factory=WayDown)
     _authority: AuthorityWatch = field(init=False)
     _ticked_at: float = math.inf
@@ -66,7 +69,12 @@ class Watch:
         self._give_all(self._links.look(telemetry, now, self.listening.trouble, consoles))
         self._give_all(self._battery.look(self.situation(), self.state(), self.limits))
         self._give_all(self._way_down.look(telemetry, now, self.state(), self.limits))
+        self._give_all(self._said.look(now))
         self.track.update(telemetry, now)
+
+    def hear(self, said: AutopilotSaid) -> None:
+        """The autopilot said something."""
+        self._give_all(self._said.hear(said, self.equipment.clock.now()))
 
     def look_at_authority(self) -> None:
         """Ask the vehicle who flies; also called the moment it says that something changed."""

@@ -658,6 +658,7 @@ export const de: Record<MessageKey, string> = {
   "event.took_off": "Abgehoben auf {height}",
   "event.plan_chosen": "Ort {number} gewählt: {reason}",
   "event.plan_vetoed": "Ort abgelehnt von {by}",
+  "event.place_refused": "Ort {number} wurde abgelehnt: {reason}",
   "event.flight_started": "Fliegt zu Ort {number}",
   "event.place_reached": "Ort {number} erreicht in {time}",
   "event.sweep_started": "Drehung an Ort {number}",

@@ -654,6 +654,7 @@ export const en = {
   "event.took_off": "Took off to {height}",
   "event.plan_chosen": "Place {number} chosen: {reason}",
   "event.plan_vetoed": "Place vetoed by {by}",
+  "event.place_refused": "Place {number} was refused: {reason}",
   "event.flight_started": "Flying to place {number}",
   "event.place_reached": "Place {number} reached in {time}",
   "event.sweep_started": "Sweep at place {number}",

@@ -611,8 +611,12 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   autopilot_refused: {
-    text: "The autopilot refused {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}: {result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.",
+    text: "The autopilot refused {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing}: {result?temporarily_rejected=temporarily rejected|in_progress=still in progress|denied=denied|unsupported=unsupported|failed=failed|cancelled=cancelled|*=for a reason that it does not give}.{said?=|*= It says: “}{said}{said?=|*=”.}",
     remedy: "Read the autopilot's messages.",
+  },
+  place_not_taken: {
+    text: "The autopilot does not fly to this place.{said?=|*= It says: “}{said}{said?=|*=”.}",
+    remedy: "Look at the fence that it holds.",
   },
   command_unanswered: {
     text: "The autopilot did not answer {command?take_off_mode=the mode for taking off|arming=arming|take_off=the take-off|steering_mode=the mode for steering|place=the next place|speed=the speed|spot=holding the spot|turn=the turn|hold=the hold|return=the return|landing=the landing} (sent {attempts|time|times}).",
@@ -694,6 +698,18 @@ export const reasonsEn: ReasonTable = {
     text: "The autopilot's clock runs at {rate:2} of ours: its headings cannot be dated.",
     remedy: "Restart the autopilot. A simulator needs more processor.",
   },
+  autopilot_said: {
+    text: "The autopilot says: “{text}”.",
+    remedy: "",
+  },
+  autopilot_repeats: {
+    text: "The autopilot says again: “{text}” ({times|time|times}).",
+    remedy: "",
+  },
+  autopilot_said_more: {
+    text: "The autopilot said {texts|more thing|more things} than can be shown.",
+    remedy: "Read them in the server's log.",
+  },
   mode_changed: {
     text: "The vehicle is in {mode}.",
     remedy: "",
@@ -769,7 +785,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   arming_checked: {
-    text: "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm|not_in_this_mode=The autopilot is not ready to arm in its present mode|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.",
+    text: "{state?ready=The autopilot is ready to arm|not_ready=The autopilot is not ready to arm|not_in_this_mode=The autopilot is not ready to arm in its present mode|in_the_air=The vehicle is in the air|not_reported=The autopilot does not report whether it is ready to arm}.{said?=|*= It says: “}{said}{said?=|*=”.}",
     remedy:
       "{state?not_in_this_mode=Select its mode for holding to learn whether it would arm in that|*=Read the autopilot's messages: its own checks refuse to arm}.",
   },
@@ -1074,6 +1090,10 @@ export const reasonsEn: ReasonTable = {
   no_proposed_place: {
     text: "No place is proposed.",
     remedy: "Wait for the planner's next place.",
+  },
+  place_refused_before: {
+    text: "The autopilot has refused to fly to this place.",
+    remedy: "Choose another place.",
   },
   no_such_bearing: {
     text: "This mission has no such bearing.",

@@ -36,6 +36,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "link_lost":
     case "safety_vetoed":
     case "command_refused":
+    case "place_refused":
       return "alert";
     case "phase_changed":
     case "authority_changed":

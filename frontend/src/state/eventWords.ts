@@ -86,6 +86,8 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.plan_chosen", { number: event.place_number, reason: reasonText(event.reason) });
     case "plan_vetoed":
       return t("event.plan_vetoed", { by: byWords(event.by) });
+    case "place_refused":
+      return t("event.place_refused", { number: event.place_number, reason: reasonText(event.reason) });
     case "flight_started":
       return t("event.flight_started", { number: event.place_number });
     case "place_reached":

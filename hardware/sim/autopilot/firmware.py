@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections import deque
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from random import Random
 from typing import ClassVar
@@ -29,6 +30,7 @@ FLIES_ON_WITHOUT_FIX = 5.0
 """Seconds from the last fix to the autopilot's own landing, as measured on PX4."""
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = 0, 1, 2, 3, 4
 """MAV_RESULT."""
+_CHUNK = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +140,7 @@ class Firmware(ABC):
         self.heartbeat_due = False
         self.rebooted = False
         """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
+        self._text_id = 0
         self._armed_at = 0.0
         self._battery_failsafe = False
 
@@ -161,8 +164,20 @@ class Firmware(ABC):
         """Begin the flight task of a mode."""
 
     def say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
-        """As STATUSTEXT, cut to its 50 bytes."""
-        self.outbox.append(mavlink.MAVLink_statustext_message(severity, text.encode()[:50]))
+        """As STATUSTEXT, a long one in chunks."""
+        self.say_bytes(text.encode(), severity)
+
+    def say_bytes(self, words: bytes, severity: int, lost: Collection[int] = ()) -> None:
+        """In one message, or in chunks of 50 bytes under an id of their own. lost: chunks that get lost."""
+        if len(words) <= _CHUNK:
+            self.outbox.append(mavlink.MAVLink_statustext_message(severity, words))
+            return
+        self._text_id = self._text_id % 65_535 + 1
+        ends = len(words) // _CHUNK + 1  # one that is full is not the last
+        for seq in range(ends):
+            chunk = words[seq * _CHUNK : (seq + 1) * _CHUNK]
+            if seq not in lost:
+                self.outbox.append(mavlink.MAVLink_statustext_message(severity, chunk, self._text_id, seq))
 
     def report_remote_id(self, problem: str) -> None:
         """What a Remote ID transmitter would say now; no problem: the vehicle may arm."""
@@ -221,7 +236,9 @@ class Firmware(ABC):
     def arm(self) -> int:
         """MAV_RESULT: temporarily rejected until the prearm checks pass. Armed already is accepted."""
         if not self.prearm_ok:
-            self.say("Preflight Fail: not ready", mavlink.MAV_SEVERITY_CRITICAL)
+            self.say(
+                "Preflight Fail: the position estimate is not ready, wait for the GPS", mavlink.MAV_SEVERITY_CRITICAL
+            )
             return TEMPORARILY_REJECTED
         if not self.flight.armed:
             self.flight.arm()

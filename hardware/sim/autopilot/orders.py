@@ -12,6 +12,7 @@
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
     {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent", "count": 1}
     {"do": "prearm", "ok": false}
+    {"do": "say", "text": "", "severity": 2, "lost": []}   a STATUSTEXT, its lost chunks left out; "hex" for any bytes
     {"do": "fence_fault", "mute": 0, "deaf_after": -1, "altered": false}   see firmware.Faults; as given, all at once
     {"do": "fence"}                           the fence that it holds
     {"do": "remote_id", "problem": ""}        Remote ID says once what is wrong (nothing: good)
@@ -108,6 +109,11 @@ class Orders:
                 firmware.parameters.set(str(order.get("name")), _number(order, "value"))
             case "prearm":
                 faults.no_prearm = not order.get("ok", True)
+            case "say":
+                words = bytes.fromhex(str(order["hex"])) if "hex" in order else str(order.get("text", "")).encode()
+                firmware.say_bytes(
+                    words, int(_number(order, "severity", 2.0)), [int(seq) for seq in order.get("lost", [])]
+                )
             case "fence_fault":
                 faults.fence_mute = int(_number(order, "mute", 0.0))
                 faults.fence_deaf_after = int(_number(order, "deaf_after", -1.0))

@@ -6,7 +6,7 @@ import pytest
 from rig import Rig
 
 from hardware.fence import FencePolygon, MissionNets, Nets, NetsPlan
-from hardware.ports import VehicleError
+from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.nets import FenceNotTransferred, FenceReadBackDifferent, OwnCeilingLower, OwnFenceTighter
 
 
@@ -48,7 +48,7 @@ async def test_within_its_nets_a_vehicle_flies_and_beyond_them_it_does_not(rig: 
         await rig.vehicle.goto(inside, rig.amsl(), 5.0)
         assert rig.off_by(inside) < 3.0
         for place in (rig.place(0.0, 200.0), rig.place(30.0, 30.0)):
-            with pytest.raises(VehicleError):
+            with pytest.raises(PlaceRefused):
                 await rig.vehicle.goto(place, rig.amsl(), 5.0)
             assert rig.off_by(inside) < 5.0
         await rig.vehicle.land()

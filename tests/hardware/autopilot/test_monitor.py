@@ -110,7 +110,7 @@ async def test_a_return_begun_soon_after_a_silence_is_the_failsafes_a_later_one_
 
 
 async def test_the_autopilots_report_of_the_sticks_is_a_takeover_before_its_mode_shows_one(holding: Scene) -> None:
-    holding.hear("STATUSTEXT", {"text": "Pilot took over using sticks\x00"})
+    holding.hear("STATUSTEXT", {"severity": 6, "text": "Pilot took over using sticks\x00"})
     authority = holding.monitor.telemetry().authority
     assert (authority.who, authority.taken_by) == ("pilot", "sticks")
 

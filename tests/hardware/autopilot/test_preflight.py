@@ -7,7 +7,7 @@ import pytest
 from hardware.authority import Authority
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.dialect import Dialect
-from hardware.autopilot.preflight import failsafe_check, telemetry_checks
+from hardware.autopilot.preflight import Readiness, failsafe_check, telemetry_checks
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import RemoteId
 from hardware.readings import Place, Telemetry
@@ -51,10 +51,11 @@ SAFE_ARDUPILOT = {
     "BATT_FS_CRT_ACT": 1.0,
 }
 NO_REMOTE_ID = RemoteId()
+READY_TO_ARM = Readiness(True)
 
 
 def refused(telemetry: Telemetry, prearm_ok: bool | None = True, remote_id: RemoteId = NO_REMOTE_ID) -> list[str]:
-    checks = telemetry_checks(telemetry, prearm_ok, True, remote_id, minimum_battery_percent=30.0)
+    checks = telemetry_checks(telemetry, Readiness(prearm_ok), remote_id, minimum_battery_percent=30.0)
     assert all(check.ok or remedy_of(check.reason) for check in checks)
     return [check.name for check in checks if check.blocking and not check.ok]
 
@@ -93,7 +94,7 @@ def test_an_autopilot_that_would_not_arm_and_a_pilot_in_control_refuse() -> None
 
 def test_satellites_that_the_autopilot_does_not_know_are_not_fine() -> None:
     unknown = replace(READY, satellites=None)
-    (check,) = [one for one in telemetry_checks(unknown, True, True, NO_REMOTE_ID, 30.0) if one.name == "gps"]
+    (check,) = [one for one in telemetry_checks(unknown, READY_TO_ARM, NO_REMOTE_ID, 30.0) if one.name == "gps"]
     assert (check.ok, check.blocking, check.reason) == (False, False, SatellitesUnknown("3D"))
     assert refused(replace(unknown, gps_fix="2D")) == ["gps"]
 
@@ -110,7 +111,7 @@ def test_satellites_that_the_autopilot_does_not_know_are_not_fine() -> None:
 def test_remote_id_counts_by_what_its_transmitter_says(
     heard: RemoteId, ok: bool, blocks: bool, reason: RemoteIdChecked | RemoteIdRefuses
 ) -> None:
-    (check,) = [one for one in telemetry_checks(READY, True, True, heard, 30.0) if one.name == "remote_id"]
+    (check,) = [one for one in telemetry_checks(READY, READY_TO_ARM, heard, 30.0) if one.name == "remote_id"]
     assert (check.ok, check.reason) == (ok, reason)
     assert refused(READY, remote_id=heard) == (["remote_id"] if blocks else [])
 
@@ -133,7 +134,7 @@ def test_each_autopilot_says_in_its_own_way_whether_it_would_arm(
 
 
 def test_what_an_autopilot_says_of_another_mode_than_ours_blocks_nothing() -> None:
-    found = telemetry_checks(READY, False, False, NO_REMOTE_ID, 30.0)
+    found = telemetry_checks(READY, Readiness(False, in_our_mode=False), NO_REMOTE_ID, 30.0)
     (check,) = [one for one in found if one.name == "ready_to_arm"]
     assert (check.ok, check.blocking, check.reason) == (False, False, ArmingChecked("not_in_this_mode"))
 

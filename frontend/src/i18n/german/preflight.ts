@@ -52,7 +52,7 @@ export const preflight = {
   battery_charge: { text: "Der Akku hat {charge_percent}.", remedy: "Ihn auf mindestens {wanted_percent} laden." },
   home_set: { text: "Der Startplatz liegt bei {lat@lon}.", remedy: "" },
   arming_checked: {
-    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|not_in_this_mode=Der Autopilot ist in seinem jetzigen Modus nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.",
+    text: "{state?ready=Der Autopilot ist bereit zum Scharfschalten|not_ready=Der Autopilot ist nicht bereit zum Scharfschalten|not_in_this_mode=Der Autopilot ist in seinem jetzigen Modus nicht bereit zum Scharfschalten|in_the_air=Das Fluggerät ist in der Luft|not_reported=Der Autopilot meldet nicht, ob er zum Scharfschalten bereit ist}.{said?=|*= Er sagt: „}{said}{said?=|*=“.}",
     remedy:
       "{state?not_in_this_mode=Seinen Modus zum Halten wählen, um zu erfahren, ob er darin scharfschalten würde|*=Die Meldungen des Autopiloten lesen: Seine eigenen Prüfungen verweigern das Scharfschalten}.",
   },

@@ -72,6 +72,7 @@ export const safety = {
     text: "Das Suchgebiet lässt sich nur ändern, während die Mission hält.",
     remedy: "Halten, dann ändern.",
   },
+  place_refused_before: { text: "Der Autopilot hat es abgelehnt, an diesen Ort zu fliegen.", remedy: "Einen anderen Ort wählen." },
   no_proposed_place: { text: "Es ist kein Ort vorgeschlagen.", remedy: "Auf den nächsten Ort des Planers warten." },
   no_such_bearing: { text: "Diese Peilung hat die Mission nicht.", remedy: "Die Seite neu laden." },
   bearing_excluded_already: { text: "Die Peilung ist schon weggelassen.", remedy: "" },

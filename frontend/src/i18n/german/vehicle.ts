@@ -48,8 +48,18 @@ export const vehicle = {
     remedy: "",
   },
   autopilot_refused: {
-    text: `Der Autopilot lehnte {command?${COMMAND}} ab ({result?temporarily_rejected=vorübergehend|in_progress=noch in Arbeit|denied=verweigert|unsupported=nicht unterstützt|failed=gescheitert|cancelled=abgebrochen|*=ohne Angabe von Gründen}).`,
+    text: `Der Autopilot lehnte {command?${COMMAND}} ab ({result?temporarily_rejected=vorübergehend|in_progress=noch in Arbeit|denied=verweigert|unsupported=nicht unterstützt|failed=gescheitert|cancelled=abgebrochen|*=ohne Angabe von Gründen}).{said?=|*= Er sagt: „}{said}{said?=|*=“.}`,
     remedy: "Die Meldungen des Autopiloten lesen.",
+  },
+  place_not_taken: {
+    text: "Der Autopilot fliegt nicht an diesen Ort.{said?=|*= Er sagt: „}{said}{said?=|*=“.}",
+    remedy: "Den Zaun ansehen, den er hat.",
+  },
+  autopilot_said: { text: "Der Autopilot sagt: „{text}“.", remedy: "" },
+  autopilot_repeats: { text: "Der Autopilot sagt wieder: „{text}“ ({times|Mal|Mal}).", remedy: "" },
+  autopilot_said_more: {
+    text: "Der Autopilot sagte {texts|weitere Sache|weitere Sachen}, mehr als sich zeigen lässt.",
+    remedy: "Im Protokoll des Servers nachlesen.",
   },
   command_unanswered: {
     text: `Der Autopilot antwortete nicht auf {command?${COMMAND}} ({attempts|Mal|Mal} gesendet).`,
