@@ -12,6 +12,7 @@ from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
 from backend.live.hub import Hub
+from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
@@ -125,6 +126,7 @@ async def open_simulation(
                     clock=clock,
                     software=VERSION,
                     database=lambda: journal.report().state,
+                    grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
                 )
             )
             await missions.start_up()

@@ -88,6 +88,7 @@ CheckName = Literal[
     "antenna",
     "pattern",
     "area",
+    "terrain",
     "safety",
 ]
 

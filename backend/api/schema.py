@@ -17,7 +17,7 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
-from backend.api import maps, missions, planning, read_export, recordings, review, scene, system
+from backend.api import maps, missions, planning, read_export, recordings, review, scene, system, terrain
 from backend.commands import Command
 from backend.events import Event
 from backend.reasons import REASONS
@@ -34,6 +34,7 @@ ROUTERS = (
     read_export.router,
     planning.router,
     maps.router,
+    terrain.router,
     scene.router,
 )
 

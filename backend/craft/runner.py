@@ -118,6 +118,10 @@ class CraftRunner:
             case _:
                 return ()
 
+    def altitude_of(self, command: ForCraft) -> float | None:
+        """Metres AMSL at which an override would be flown to."""
+        return self.work.altitude_for(command.place) if isinstance(command, Override) else None
+
     def carry_out(self, effect: effects.CraftEffect) -> None:
         vehicle = self.equipment.vehicle
         match effect:
@@ -172,6 +176,14 @@ class CraftRunner:
                 raise
             except HardwareError as error:
                 log.warning("%s: no hold before the return: %s", self.equipment.craft_id, error)
+        try:
+            await self.work.level_off_for_home()
+        except NotInControl:
+            raise
+        except HardwareError as error:
+            log.warning("%s: no climb before the return: %s", self.equipment.craft_id, error)
+        if self._comes_by_itself:
+            return
         await vehicle.return_home()
 
     # Work: one a slot, the newest wins; the result of a cancelled one is never given

@@ -14,15 +14,19 @@ from shapely import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
 from backend.reasons import Reason, safety
-from backend.reasons.safety import What
+from backend.reasons.safety import Over, What
+from backend.search.altitude import level_altitude
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
+from backend.search.ground import VERTICAL_TOLERANCE_M, Ground, Way
 from backend.search.task import SearchTask
+from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
 
 POSITION_STALE_S = 3.0
 BATTERY_STALE_S = 30.0
 LANDING_S = 60.0
+ROUNDING_M = 0.01
 NOMINAL_DRAIN_PERCENT_S = 100.0 / 1_200.0
 """Battery a second in the air until it has been measured: twenty minutes from full to empty."""
 
@@ -32,18 +36,22 @@ class Limits:
     """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
 
     fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m.
+    ground: below it. flight: how high above it, and above home.
     """
 
     frame: LocalFrame
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
-    minimum_altitude_relative_m: float
-    maximum_altitude_relative_m: float
-    home_amsl_m: float
+    ground: Ground
+    flight: FlightSpec
     reserve_percent: float
     battery_telemetry: bool
     speed_m_s: float
     measurement_time_s: float
+
+    @property
+    def home_amsl_m(self) -> float:
+        return self.ground.home_amsl_m
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,9 +91,8 @@ def limits_of(task: SearchTask) -> Limits:
         frame=task.frame,
         fence=task.fence,
         no_fly=task.no_fly,
-        minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
-        maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
-        home_amsl_m=task.home_amsl_m,
+        ground=task.ground,
+        flight=flight,
         reserve_percent=flight.reserve_battery_percent,
         battery_telemetry=flight.battery_telemetry,
         speed_m_s=flight.speed_m_s,
@@ -150,7 +157,9 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     if telemetry.in_air:
         found.append(safety.AlreadyInAir())
     if telemetry.position is not None:
-        found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "vehicle_stands")
+        at = limits.frame.to_enu(telemetry.position)
+        found += _area_vetoes(limits, at, "vehicle_stands")
+        found += ground_vetoes(limits, [at], level_altitude([at], limits.ground, limits.flight), "take_off")
     return tuple(found)
 
 
@@ -171,7 +180,7 @@ def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tup
     """May anything fly at `place` at all, wherever the vehicle is?"""
     found: list[Reason] = []
     relative = altitude_amsl_m - limits.home_amsl_m
-    low, high = limits.minimum_altitude_relative_m, limits.maximum_altitude_relative_m
+    low, high = limits.flight.minimum_altitude_relative_m, limits.flight.maximum_altitude_relative_m
     if not low - 0.5 <= relative <= high + 0.5:
         found.append(safety.AltitudeOutside(relative, low, high))
     at = limits.frame.to_enu(place)
@@ -181,6 +190,8 @@ def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tup
     near = min((zone.distance(Point(at)) for zone in limits.no_fly), default=math.inf)
     if near < EDGE_TOLERANCE_M and not any(isinstance(veto, safety.InsideNoFly) for veto in found):
         found.append(safety.NearNoFly(near, EDGE_TOLERANCE_M))
+    if not found:
+        found += ground_vetoes(limits, [at], altitude_amsl_m, "way_there") or _way_home_vetoes(limits, at)
     return tuple(found)
 
 
@@ -198,10 +209,46 @@ def place_vetoes(
     if position is not None and not any(isinstance(veto, safety.TooFarFromHome) for veto in standing):
         path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
         if not found:
-            found += _path_vetoes(limits, path)
+            found += _path_vetoes(limits, path) or ground_vetoes(
+                limits, list(path.coords), altitude_amsl_m, "way_there"
+            )
         flight_s = path.length / limits.speed_m_s + limits.measurement_time_s
         found += battery_vetoes(limits, situation, flight_s, place)
     return tuple(found)
+
+
+def ground_vetoes(limits: Limits, way: Way, altitude_amsl_m: float, where: Over) -> tuple[Reason, ...]:
+    """Does a way (m ENU) flown level keep clearance and ceiling above the ground, at worst within tolerance?
+
+    Without terrain nothing is known against it: the band above home holds.
+    """
+    if limits.ground.terrain is None:
+        return ()
+    below = limits.ground.below(way)
+    if below is None:
+        return (safety.GroundUnknown(where),)
+    flight, relative = limits.flight, altitude_amsl_m - limits.home_amsl_m
+    clearance = altitude_amsl_m - VERTICAL_TOLERANCE_M - below.highest_m
+    height = altitude_amsl_m + VERTICAL_TOLERANCE_M - below.lowest_m
+    found: list[Reason] = []
+    if clearance < flight.minimum_clearance_m - ROUNDING_M:
+        found.append(safety.ClearanceShort(where, relative, clearance, flight.minimum_clearance_m))
+    if height > flight.maximum_above_ground_m + ROUNDING_M:
+        found.append(safety.TooHighAboveGround(where, relative, height, flight.maximum_above_ground_m))
+    return tuple(found)
+
+
+def _way_home_vetoes(limits: Limits, at: tuple[float, float]) -> tuple[Reason, ...]:
+    """From a place that is left for home there is one level way that may be flown."""
+    way = [at, (0.0, 0.0)]
+    altitude = level_altitude(way, limits.ground, limits.flight)
+    highest = limits.home_amsl_m + limits.flight.maximum_altitude_relative_m
+    found = ground_vetoes(limits, way, altitude, "way_home")
+    if found or limits.ground.terrain is None or altitude <= highest + 0.5:
+        return found
+    clearance = limits.flight.minimum_clearance_m - (altitude - highest)
+    relative = highest - limits.home_amsl_m
+    return (safety.ClearanceShort("way_home", relative, clearance, limits.flight.minimum_clearance_m),)
 
 
 def _area_vetoes(limits: Limits, at: tuple[float, float], what: What) -> list[Reason]:

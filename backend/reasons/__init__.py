@@ -20,6 +20,7 @@ from backend.reasons.request import RequestReason
 from backend.reasons.safety import SafetyReason
 from backend.reasons.search import SearchReason
 from backend.reasons.storage import StorageReason
+from backend.reasons.terrain import TerrainReason
 from hardware.readings import CheckName
 from hardware.reasons import HardwareReason
 from planner.reason import Reason as AnyReason
@@ -134,6 +135,7 @@ ReasonUnion = TypeAliasType(
         | SafetyReason
         | SearchReason
         | StorageReason
+        | TerrainReason
         | CompositeReason,
         Field(discriminator="code"),
     ],

@@ -4,10 +4,12 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from facts import FAILSAFE, GIVEN_BACK, PILOT
 from hypothesis import given
 from hypothesis import strategies as st
+from relief import Shape, hill, level, terrain
 from shapely import box
 
 from backend.craft.safety import (
@@ -25,6 +27,8 @@ from backend.craft.safety import (
 )
 from backend.reasons import Reason, safety
 from backend.search.area import EDGE_TOLERANCE_M
+from backend.search.ground import Ground
+from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
 from planner.reason import remedy_of
@@ -35,9 +39,8 @@ LIMITS = Limits(
     frame=FRAME,
     fence=box(-50, -50, 400, 200),
     no_fly=(box(100, 0, 150, 100),),
-    minimum_altitude_relative_m=10.0,
-    maximum_altitude_relative_m=120.0,
-    home_amsl_m=100.0,
+    ground=Ground(FRAME, 100.0),
+    flight=FlightSpec(),
     reserve_percent=25.0,
     battery_telemetry=True,
     speed_m_s=7.0,
@@ -212,3 +215,54 @@ def test_every_veto_says_how_to_mend_it() -> None:
     assert len(vetoes) >= 4
     for veto in vetoes:
         assert remedy_of(veto)
+
+
+def over(shape: Shape, **flight: object) -> Limits:
+    return replace(
+        LIMITS,
+        fence=box(-500, -500, 1500, 500),
+        no_fly=(),
+        ground=Ground(FRAME, 100.0, terrain(shape)),
+        flight=FlightSpec(**flight),  # type: ignore[arg-type]
+    )
+
+
+def flown(limits: Limits, east: float, north: float, amsl: float, seen: Situation | None = None) -> list[type]:
+    return kinds(place_vetoes(limits, seen or situation(), FRAME.to_geo(east, north), amsl))
+
+
+def test_a_way_over_a_hill_is_refused_below_the_clearance_and_allowed_above() -> None:
+    limits = over(hill(300.0, 0.0, 60.0))
+    assert flown(limits, 600, 0, 140.0) == [safety.ClearanceShort]
+    assert flown(limits, 600, 0, 184.0) == []
+    assert flown(limits, 0, 300, 140.0) == []
+
+
+def test_a_way_over_a_hollow_is_refused_above_the_ceiling() -> None:
+    limits = over(hill(300.0, 0.0, -60.0), maximum_above_ground_m=80.0)
+    assert flown(limits, 600, 0, 140.0) == [safety.TooHighAboveGround]
+
+
+def test_a_way_over_unknown_ground_is_refused() -> None:
+    limits = replace(over(level()), ground=Ground(FRAME, 100.0, terrain(level(), reach_m=300.0)))
+    assert flown(limits, 400, 0, 140.0) == [safety.GroundUnknown]
+
+
+def test_a_place_from_which_no_way_leads_home_is_refused() -> None:
+    """The vehicle is behind the mountain already; a place beside it would be fine, but for the way home."""
+    limits = over(hill(400.0, 0.0, 160.0), maximum_above_ground_m=300.0)
+    (veto,) = place_vetoes(limits, situation(east=800.0), FRAME.to_geo(810, 0), 140.0)
+    assert isinstance(veto, safety.ClearanceShort)
+    assert veto.where == "way_home"
+
+
+def test_a_start_beside_ground_that_rises_at_once_is_refused() -> None:
+    steep = over(lambda east, north: np.where(east > 5.0, 320.0, 100.0))
+    (veto,) = start_vetoes(steep, situation(in_air=False))
+    assert isinstance(veto, safety.TooHighAboveGround)
+    assert veto.where == "take_off"
+
+
+def test_without_terrain_the_band_alone_holds() -> None:
+    low = replace(LIMITS, flight=FlightSpec(altitude_relative_m=12.0))
+    assert kinds(place_vetoes(low, situation(), FRAME.to_geo(50, 100), 112.0)) == []
