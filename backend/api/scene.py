@@ -26,6 +26,7 @@ from backend.ports import TrackPoint
 from backend.reasons.request import SceneSilent, TooManyScenes
 from backend.scene.server import SUBPROTOCOL
 from backend.scene.views import SceneViews, TooManyViews
+from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest, SceneView
 from hardware.readings import Telemetry
 
@@ -65,6 +66,9 @@ class ServicesSource:
     async def track(self, mission_id: str) -> list[TrackPoint]:
         tracks = await self._services.journal.tracks(mission_id)
         return [point for track in tracks.values() for point in track]
+
+    async def ground(self, digest: str) -> Terrain | None:
+        return await self._services.missions.equipment.grounds.kept(digest)
 
 
 def scene_views(connection: HTTPConnection) -> SceneViews:

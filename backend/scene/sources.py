@@ -6,6 +6,7 @@ from typing import Protocol
 
 from backend.events import Recorded
 from backend.ports import TrackPoint
+from backend.terrain import Terrain
 from hardware.readings import Telemetry
 
 
@@ -29,3 +30,7 @@ class SceneSource(Protocol):
     async def read(self, mission_id: str) -> list[Recorded]: ...
 
     async def track(self, mission_id: str) -> list[TrackPoint]: ...
+
+    async def ground(self, digest: str) -> Terrain | None:
+        """What a mission was flown over; None when it is lost."""
+        ...
