@@ -9,7 +9,8 @@ from typing import Literal, Protocol
 from backend.events import Event, MissionPhase, Phase, Recorded
 from backend.reasons import Reason
 from backend.reasons.flight import OrderName, Way
-from hardware.readings import Sweep, Telemetry
+from backend.terrain import Terrain
+from hardware.readings import Place, Sweep, Telemetry
 from planner.belief.grid import GridBelief
 from planner.reason import ReasonedError
 
@@ -77,6 +78,37 @@ class Journal(Protocol):
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft still flies: what a restart must bring back."""
         ...
+
+
+class Grounds(Protocol):
+    """The terrain that people brought, and what missions were flown over."""
+
+    async def around(self, home: Place) -> Terrain | None:
+        """The ground within reach of a home; None where nobody knows any of it."""
+        ...
+
+    async def keep(self, terrain: Terrain) -> None:
+        """Under its digest, for a restart and the review. Raises OSError."""
+        ...
+
+    async def kept(self, digest: str) -> Terrain | None:
+        """None when it is lost."""
+        ...
+
+
+class NoGrounds:
+    """Nobody brought terrain."""
+
+    async def around(self, home: Place) -> Terrain | None:
+        """None."""
+        return None
+
+    async def keep(self, terrain: Terrain) -> None:
+        """There is nothing to keep."""
+
+    async def kept(self, digest: str) -> Terrain | None:
+        """None."""
+        return None
 
 
 @dataclass(frozen=True, slots=True)

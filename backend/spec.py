@@ -176,6 +176,10 @@ class FlightSpec(Model):
     altitude_relative_m: float = Field(default=40.0, ge=2, le=500)
     minimum_altitude_relative_m: float = Field(default=10.0, ge=0, le=500)
     maximum_altitude_relative_m: float = Field(default=120.0, ge=2, le=1000)
+    minimum_clearance_m: float = Field(default=20.0, ge=0, le=500)
+    """Above the ground, wherever terrain tells of it; the band of altitudes is above home."""
+    maximum_above_ground_m: float = Field(default=120.0, ge=2, le=1000)
+    """As above: the ceiling."""
     speed_m_s: float = Field(default=7.0, gt=0, le=30)
     fence: Area | None = None
     fence_margin_m: float = Field(default=60.0, ge=0, le=5000)

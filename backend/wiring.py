@@ -13,6 +13,7 @@ from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
 from backend.first_hold import FirstHold
 from backend.live.hub import Hub
+from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
@@ -139,6 +140,7 @@ async def open_simulation(
                     clock=clock,
                     software=VERSION,
                     database=lambda: journal.report().state,
+                    grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
                 )
             )
             if not unfinished:

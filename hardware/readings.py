@@ -98,6 +98,7 @@ CheckName = Literal[
     "antenna",
     "pattern",
     "area",
+    "terrain",
     "safety",
 ]
 

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-import asyncio
-import errno
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path as FilePath
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse
 from starlette.requests import ClientDisconnect
 
 from backend.api.dependencies import PrincipalDep, ServicesDep
-from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
+from backend.api.map_files import (
+    RAW_BODY,
+    ContentId,
+    Filename,
+    Name,
+    announced_bytes,
+    in_thread,
+    label,
+    told,
+)
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
 from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
-from backend.maps.refusal import MapRefused, NotStored
-from backend.reasons.maps import NoRoomForMap
 from backend.reasons.request import BodyTooLarge, UploadBrokeOff
-from backend.reasons.work import DiskFull
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -37,20 +42,6 @@ from backend.wire.maps import (
 
 router = APIRouter(prefix="/api", tags=["maps"], responses=PROBLEM_RESPONSES)
 
-T = TypeVar("T")
-
-DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
-
-ContentId = Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")]
-Name = Annotated[str, Query(max_length=120, description="What to call it; the file's own name when left out")]
-Filename = Annotated[str, Query(max_length=255)]
-
-RAW_BODY = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
 TILES: dict[int | str, dict[str, object]] = {
     status: {
         "description": text,
@@ -81,45 +72,11 @@ MapFolderDep = Annotated[MapFolder, Depends(map_folder)]
 OverlayFolderDep = Annotated[OverlayFolder, Depends(overlay_folder)]
 
 
-async def _in_thread(what: Literal["map", "overlay"], work: Callable[..., T], *arguments: object) -> T:
-    """Disk work off the event loop."""
-    return await _told(what, asyncio.to_thread(work, *arguments))
-
-
-async def _told(what: Literal["map", "overlay"], doing: Awaitable[T]) -> T:
-    """What the map room refuses becomes a problem."""
-    try:
-        return await doing
-    except NotStored as error:
-        raise ApiProblem(404, error.reason) from error
-    except FileNotFoundError as error:  # deleted meanwhile
-        raise not_found(what, FilePath(error.filename).stem) from error
-    except OSError as error:
-        if error.errno not in DISK_IS_FULL:
-            raise
-        raise ApiProblem(507, DiskFull()) from error
-    except MapRefused as error:
-        raise _refused(error) from error
-
-
-def _refused(error: MapRefused) -> ApiProblem:
-    return ApiProblem(413 if isinstance(error.reason, NoRoomForMap) else 422, error.reason)
-
-
-def _announced_bytes(request: Request) -> int | None:
-    stated = request.headers.get("content-length", "")
-    return int(stated) if stated.isdigit() else None
-
-
-def _label(name: str, filename: str) -> str:
-    return name.strip() or FilePath(filename.replace("\\", "/")).stem
-
-
 @router.get("/maps")
 async def list_maps(folder: MapFolderDep) -> MapList:
     """The maps on this machine."""
-    packages, unusable = await _in_thread("map", folder.packages)
-    return MapList(maps=packages, room_bytes=await _in_thread("map", folder.room_bytes), unusable=[*unusable])
+    packages, unusable = await in_thread("map", folder.packages)
+    return MapList(maps=packages, room_bytes=await in_thread("map", folder.room_bytes), unusable=[*unusable])
 
 
 @router.post("/maps", status_code=201, openapi_extra=RAW_BODY)
@@ -133,9 +90,9 @@ async def upload_map(
 ) -> MapPackage:
     """Store a PMTiles v3 archive: the request's body is the file itself."""
     try:
-        label, size = _label(name, filename), _announced_bytes(request)
+        called, size = label(name, filename), announced_bytes(request)
         now = datetime.now(UTC)
-        return await _told("map", folder.store(request.stream(), label, size, now, services.workers))
+        return await told("map", folder.store(request.stream(), called, size, now, services.workers))
     except ClientDisconnect as error:
         raise ApiProblem(400, UploadBrokeOff()) from error
 
@@ -152,19 +109,19 @@ async def map_coverage(request: CoverageRequest, folder: MapFolderDep) -> Covera
         ]
         return coverage(request.area, tile_sets)
 
-    return await _in_thread("map", compare)
+    return await in_thread("map", compare)
 
 
 @router.get("/maps/{map_id}")
 async def get_map(map_id: ContentId, folder: MapFolderDep) -> MapPackage:
     """One map."""
-    return await _in_thread("map", folder.package, map_id)
+    return await in_thread("map", folder.package, map_id)
 
 
 @router.delete("/maps/{map_id}", status_code=204)
 async def delete_map(map_id: ContentId, folder: MapFolderDep, principal: PrincipalDep) -> None:
     """Remove a map from the disk."""
-    await _in_thread("map", folder.delete, map_id)
+    await in_thread("map", folder.delete, map_id)
 
 
 @router.get("/maps/{map_id}/layers")
@@ -174,13 +131,13 @@ async def get_map_layers(map_id: ContentId, folder: MapFolderDep, theme: Theme =
     def layers() -> MapLayers:
         return map_layers(folder.package(map_id), theme, folder.archive(map_id).tile_pixels())
 
-    return await _in_thread("map", layers)
+    return await in_thread("map", layers)
 
 
 @router.get("/maps/{map_id}/tiles.pmtiles", response_class=Response, responses=TILES)
 async def map_tiles(map_id: ContentId, folder: MapFolderDep) -> Response:
     """The archive itself, whole or by ranges of bytes (Range, If-Range, ETag), as the pmtiles client reads it."""
-    path = await _in_thread("map", folder.path, map_id)
+    path = await in_thread("map", folder.path, map_id)
     headers = {"ETag": f'"{map_id}"', "Cache-Control": "private, max-age=0, must-revalidate"}
     return FileResponse(path, media_type="application/vnd.pmtiles", headers=headers)
 
@@ -188,7 +145,7 @@ async def map_tiles(map_id: ContentId, folder: MapFolderDep) -> Response:
 @router.get("/overlays")
 async def list_overlays(folder: OverlayFolderDep) -> OverlayList:
     """The overlays on this machine."""
-    overlays, unusable = await _in_thread("overlay", folder.overlays)
+    overlays, unusable = await in_thread("overlay", folder.overlays)
     return OverlayList(overlays=overlays, unusable=[*unusable])
 
 
@@ -203,8 +160,8 @@ async def upload_overlay(
 ) -> Overlay:
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
     content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
-    label, now = _label(name, filename), datetime.now(UTC)
-    return await _told("overlay", services.workers.run(folder.store, content, label, now))
+    called, now = label(name, filename), datetime.now(UTC)
+    return await told("overlay", services.workers.run(folder.store, content, called, now))
 
 
 async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
@@ -219,10 +176,10 @@ async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
 @router.get("/overlays/{overlay_id}", response_class=Response, responses={200: {"model": OverlayCollection}})
 async def get_overlay(overlay_id: ContentId, folder: OverlayFolderDep) -> Response:
     """One overlay as a GeoJSON FeatureCollection, as it was checked and stored."""
-    return FileResponse(await _in_thread("overlay", folder.path, overlay_id), media_type="application/json")
+    return FileResponse(await in_thread("overlay", folder.path, overlay_id), media_type="application/json")
 
 
 @router.delete("/overlays/{overlay_id}", status_code=204)
 async def delete_overlay(overlay_id: ContentId, folder: OverlayFolderDep, principal: PrincipalDep) -> None:
     """Remove an overlay."""
-    await _in_thread("overlay", folder.delete, overlay_id)
+    await in_thread("overlay", folder.delete, overlay_id)

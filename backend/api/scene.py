@@ -26,6 +26,7 @@ from backend.ports import TrackPoint
 from backend.reasons.request import SceneSilent, TooManyScenes
 from backend.scene.server import SUBPROTOCOL
 from backend.scene.views import SceneViews, TooManyViews
+from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest, SceneView
 from hardware.readings import Telemetry
 
@@ -71,6 +72,10 @@ class ServicesSource:
         """Of all craft, one after the other."""
         tracks = await self._services.journal.tracks(mission_id)
         return [point for track in tracks.values() for point in track]
+
+    async def ground(self, digest: str) -> Terrain | None:
+        """What a mission was flown over; None when it is lost."""
+        return await self._services.missions.equipment.grounds.kept(digest)
 
 
 def scene_views(connection: HTTPConnection) -> SceneViews:

@@ -14,7 +14,7 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
-from backend.api import crafts, maps, missions, planning, read_export, recordings, review, scene, system
+from backend.api import crafts, maps, missions, planning, read_export, recordings, review, scene, system, terrain
 from backend.commands import Command
 from backend.events import Event
 from backend.generated import write_or_check
@@ -33,6 +33,7 @@ ROUTERS = (
     read_export.router,
     planning.router,
     maps.router,
+    terrain.router,
     scene.router,
 )
 

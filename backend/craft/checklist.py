@@ -5,18 +5,21 @@ from __future__ import annotations
 import asyncio
 
 from backend.craft.equipment import CraftEquipment
+from backend.craft.ground_check import ground_checks, knows_nothing
 from backend.craft.listening import Listening, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
 from backend.craft.return_altitude import return_altitude_check
 from backend.craft.safety import Situation, limits_of, start_vetoes
 from backend.events import CheckFact
+from backend.ports import Grounds
 from backend.reasons import Reason, carried, checks
 from backend.reasons.refusals import NoHome
 from backend.search.errors import MissionInputError
 from backend.search.planning import lay_out_ways
 from backend.search.task import SearchTask, search_task
 from backend.spec import MissionSpec, Place
+from backend.terrain import Terrain
 from hardware.readings import Channel, CheckName, PreflightCheck, Telemetry
 
 RECEIVER_WALL_S = 3.0
@@ -30,13 +33,15 @@ def home_of(telemetry: Telemetry) -> tuple[Place | None, float | None]:
     return telemetry.home or telemetry.position, amsl
 
 
-def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[SearchTask | None, CheckFact]:
+def task_at(mission: MissionSpec, telemetry: Telemetry, terrain: Terrain | None) -> tuple[SearchTask | None, CheckFact]:
     """The mission's task seen from the vehicle's home, and the line of the checklist that says whether there is one."""
     home, amsl = home_of(telemetry)
     if home is None or amsl is None:
         return None, _fact("area", False, NoHome())
     try:
-        task = search_task(mission, home, amsl)
+        task = search_task(mission, home, amsl, terrain)
+        if terrain is not None and knows_nothing(task):
+            task = search_task(mission, home, amsl)
     except MissionInputError as error:
         return None, _fact("area", False, error.reason)
     lay_out_ways(task.first)
@@ -44,11 +49,15 @@ def task_at(mission: MissionSpec, telemetry: Telemetry) -> tuple[SearchTask | No
 
 
 async def checklist(
-    mission: MissionSpec, equipment: CraftEquipment, listening: Listening | None, antenna: CheckFact | None = None
+    mission: MissionSpec,
+    equipment: CraftEquipment,
+    listening: Listening | None,
+    antenna: CheckFact | None = None,
+    grounds: Grounds | None = None,
 ) -> tuple[tuple[CheckFact, ...], SearchTask | None]:
     """All checks, and the task when the specification is sound. listening: that of a running mission, else None.
 
-    antenna: what its check before a known emitter said, when there was one.
+    antenna: what its check before a known emitter said, when there was one. grounds: where terrain is found, if any.
     """
 
     def situation() -> Situation:
@@ -58,9 +67,12 @@ async def checklist(
     found = [check_fact(check) for check in await equipment.vehicle.preflight()]
     returns = await return_altitude_check(mission.flight, equipment.vehicle)
     found += [] if returns is None else [returns]
-    task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry())
+    home, _ = home_of(equipment.vehicle.telemetry())
+    terrain = None if grounds is None or home is None else await grounds.around(home)
+    task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry(), terrain)
     found.append(sound)
     if task is not None:
+        found += await asyncio.to_thread(ground_checks, task)
         found.append(await nets_check(equipment.vehicle, limits_of(task)))
         vetoes = start_vetoes(limits_of(task), await recent(situation))
         found += [_fact("safety", False, veto) for veto in vetoes]

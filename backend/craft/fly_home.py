@@ -1,8 +1,8 @@
 """How a return is flown: by way points of ours around what may not be flown over, then down at home.
 
-The autopilot knows neither our no-fly areas nor our altitude band: its own return flies straight. It is ordered only
-when ours cannot be flown, and that is told. Each leg is held against the vetoes again right before it is sent; a pilot
-who takes over, or the autopilot's failsafe, ends it.
+The autopilot knows neither our no-fly areas nor our altitude band nor the ground: its own return flies straight. It is
+ordered only when ours cannot be flown, from an altitude that keeps clear of the ground, and that is told. Each leg is
+held against the vetoes again right before it is sent; a pilot who takes over, or the autopilot's failsafe, ends it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import math
 
 from backend.craft import inputs
 from backend.craft.recent_telemetry import recent
-from backend.craft.safety import return_vetoes
+from backend.craft.safety import ground_return_vetoes, return_vetoes
 from backend.craft.way_home import ABOVE_HOME_M, Point2, way_home
-from backend.craft.work import Work
+from backend.craft.work import LEVEL_M, Work
 from backend.reasons import Reason, carried, safety
 from hardware.ports import HardwareError, NotInControl, VehicleUnreachable
 from hardware.readings import Place
@@ -47,8 +47,19 @@ async def fly_home(work: Work) -> inputs.AutopilotReturns | None:
             await vehicle.land()
         return None
     log.warning("%s: the autopilot returns by itself: %s", work.equipment.craft_id, because)
+    await _level_off(work)
     await vehicle.return_home()
     return inputs.AutopilotReturns(because)
+
+
+async def _level_off(work: Work) -> None:
+    """Over known ground, as high as the straight way needs. One that fails holds no return up."""
+    try:
+        await work.level_off_for_home()
+    except (NotInControl, VehicleUnreachable):
+        raise
+    except HardwareError as error:
+        log.warning("%s: no climb before the return: %s", work.equipment.craft_id, error)
 
 
 async def _our_way(work: Work) -> Reason | None:
@@ -64,13 +75,18 @@ async def _our_way(work: Work) -> Reason | None:
     way = await asyncio.to_thread(way_home, work.limits.problem, at)
     if way is None:
         return safety.NoWayHome(math.hypot(*at))
-    if amsl is not None and abs(work.task.altitude_at(position) - amsl) > CLIMB_FIRST_M:
-        because = await _leg(work, position, way)
+    altitude = await asyncio.to_thread(work.task.level_altitude, [at, *way])
+    against = await asyncio.to_thread(ground_return_vetoes, work.limits, [at, *way], altitude)
+    if against:
+        return against[0]
+    off_m = CLIMB_FIRST_M if work.task.ground.terrain is None else LEVEL_M
+    if amsl is not None and abs(altitude - amsl) > off_m:
+        because = await _leg(work, position, way, altitude)
         if because is not None:
             return because
     for index, point in enumerate(way):
         last = index == len(way) - 1
-        because = await _leg(work, work.task.home if last else work.task.frame.to_geo(*point), way[index:])
+        because = await _leg(work, work.task.home if last else work.task.frame.to_geo(*point), way[index:], altitude)
         if because is not None:
             return because
     return None
@@ -84,9 +100,8 @@ async def _over_home(work: Work, at: Point2, amsl: float | None) -> Reason | Non
     return await _leg(work, work.task.home, ((0.0, 0.0),), amsl)
 
 
-async def _leg(work: Work, to: Place, way: tuple[Point2, ...], amsl: float | None = None) -> Reason | None:
-    """One leg, and what safety has against it or against the rest of the way. amsl None: the task's altitude there."""
-    altitude = work.task.altitude_at(to) if amsl is None else amsl
+async def _leg(work: Work, to: Place, way: tuple[Point2, ...], altitude: float) -> Reason | None:
+    """One leg at an altitude (m AMSL), and what safety has against it or against the rest of the way."""
     vetoes = return_vetoes(work.limits, await recent(work.situation), way, altitude)
     if vetoes:
         return vetoes[0]

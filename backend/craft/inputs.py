@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from backend.commands import ForCraft
 from backend.craft.effects import TimerName
 from backend.craft.safety import BatteryStage
-from backend.events import AntennaFact, BearingMeasured, CheckFact, Link, PlanChosen, SweepRejected
+from backend.events import AntennaFact, BearingMeasured, CheckFact, GroundFact, Link, PlanChosen, SweepRejected
 from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
 from backend.spec import Place
@@ -24,18 +24,21 @@ class StartFacts:
     home_amsl_m: float | None
     software: str
     antenna: AntennaFact | None = None
+    ground: GroundFact | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class CraftOrdered:
     """An operator's command. objections: vetoes found beforehand (safety of an override, a pilot who has not given
-    control back when it is to be resumed, another mission flying). on_ground: the vehicle says that it stands there."""
+    control back when it is to be resumed, another mission flying). on_ground: the vehicle says that it stands
+    there. altitude_amsl_m: at which an override would be flown to."""
 
     by: str
     command: ForCraft
     objections: tuple[Reason, ...] = ()
     start: StartFacts | None = None
     on_ground: bool = False
+    altitude_amsl_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,6 +106,7 @@ def _start(step: CraftStep, given: CraftOrdered) -> None:
             home_amsl_m=facts.home_amsl_m,
             software=facts.software,
             antenna=facts.antenna,
+            ground=facts.ground,
         )
     )
     _take_control(step, given.by)
@@ -215,6 +216,7 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
             rollouts=0,
             plan_ms=0.0,
             by=given.by,
+            altitude_amsl_m=given.altitude_amsl_m,
         )
     )
     if in_the_way:

@@ -113,6 +113,10 @@ class CraftRunner:
             case _:
                 return ()
 
+    def altitude_of(self, command: ForCraft) -> float | None:
+        """Metres AMSL at which an override would be flown to."""
+        return self.work.altitude_for(command.place) if isinstance(command, Override) else None
+
     def carry_out(self, effect: effects.CraftEffect) -> None:
         """Begins the work and returns; what comes of it is given to the machine."""
         match effect:

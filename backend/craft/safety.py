@@ -18,9 +18,12 @@ from shapely.geometry.base import BaseGeometry
 from backend.craft.endurance import Endurance, landing_s, unknown
 from backend.craft.way_home import legs_home, way_home
 from backend.reasons import Reason, safety
-from backend.reasons.safety import What
+from backend.reasons.safety import Over, What
+from backend.search.altitude import level_altitude
 from backend.search.area import EDGE_TOLERANCE_M, FAR_M
+from backend.search.ground import VERTICAL_TOLERANCE_M, Ground, Way
 from backend.search.task import SearchTask
+from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
 from planner.types import Problem
@@ -33,6 +36,7 @@ LAND_SPARE_PERCENT = 5.0
 """A charge that is no further above what the landing here takes is for landing here."""
 ALTITUDE_TOLERANCE_M = 0.5
 """Of an altitude that went to AMSL and back."""
+ROUNDING_M = 0.01
 
 
 BatteryStage = Literal["return", "last", "land"]
@@ -43,22 +47,40 @@ BatteryStage = Literal["return", "last", "land"]
 class Limits:
     """What the mission allows. Geometries in metres ENU of `frame`, whose origin is the vehicle's home at the start.
 
-    fence: the platform stays inside. no_fly: it neither enters nor crosses these. Altitudes relative to home, m;
-    altitude_relative_m: the one to take off to. problem: the planner's, whose ways keep clear of what may not be flown.
+    fence: the platform stays inside. no_fly: it neither enters nor crosses these. problem: the planner's, whose ways
+    keep clear of what may not be flown. ground: below it all. flight: how high above it, and above home.
     """
 
     frame: LocalFrame
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
     problem: Problem
-    altitude_relative_m: float
-    minimum_altitude_relative_m: float
-    maximum_altitude_relative_m: float
-    home_amsl_m: float
+    ground: Ground
+    flight: FlightSpec
     reserve_percent: float
     battery_telemetry: bool
     speed_m_s: float
     measurement_time_s: float
+
+    @property
+    def altitude_relative_m(self) -> float:
+        """The one to take off to, m above home."""
+        return self.flight.altitude_relative_m
+
+    @property
+    def minimum_altitude_relative_m(self) -> float:
+        """Metres above home."""
+        return self.flight.minimum_altitude_relative_m
+
+    @property
+    def maximum_altitude_relative_m(self) -> float:
+        """Metres above home."""
+        return self.flight.maximum_altitude_relative_m
+
+    @property
+    def home_amsl_m(self) -> float:
+        """As the autopilot says."""
+        return self.ground.home_amsl_m
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,10 +127,8 @@ def limits_of(task: SearchTask) -> Limits:
         fence=task.fence,
         no_fly=task.no_fly,
         problem=task.first.problem,
-        altitude_relative_m=flight.altitude_relative_m,
-        minimum_altitude_relative_m=flight.minimum_altitude_relative_m,
-        maximum_altitude_relative_m=flight.maximum_altitude_relative_m,
-        home_amsl_m=task.home_amsl_m,
+        ground=task.ground,
+        flight=flight,
         reserve_percent=flight.reserve_battery_percent,
         battery_telemetry=flight.battery_telemetry,
         speed_m_s=flight.speed_m_s,
@@ -196,7 +216,9 @@ def start_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
         found.append(safety.AlreadyInAir())
     found += _altitude_vetoes(limits, limits.altitude_relative_m)
     if telemetry.position is not None:
-        found += _area_vetoes(limits, limits.frame.to_enu(telemetry.position), "vehicle_stands")
+        at = limits.frame.to_enu(telemetry.position)
+        found += _area_vetoes(limits, at, "vehicle_stands")
+        found += ground_vetoes(limits, [at], level_altitude([at], limits.ground, limits.flight), "take_off")
     return tuple(found)
 
 
@@ -226,6 +248,8 @@ def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tup
     near = min((zone.distance(Point(at)) for zone in limits.no_fly), default=math.inf)
     if near < EDGE_TOLERANCE_M and not any(isinstance(veto, safety.InsideNoFly) for veto in found):
         found.append(safety.NearNoFly(near, EDGE_TOLERANCE_M))
+    if not found:
+        found += ground_vetoes(limits, [at], altitude_amsl_m, "way_there") or _way_home_vetoes(limits, at)
     return tuple(found)
 
 
@@ -241,10 +265,11 @@ def place_vetoes(
     found: list[Reason] = [*vehicle_vetoes(situation), *standing]
     position = situation.telemetry.position
     if position is not None and not any(isinstance(veto, safety.TooFarFromHome) for veto in standing):
-        path = LineString([limits.frame.to_enu(position), *way, limits.frame.to_enu(place)])
+        points = [limits.frame.to_enu(position), *way, limits.frame.to_enu(place)]
+        path = LineString(points)
         if not found:
-            found += _path_vetoes(limits, path)
-        legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path.coords)]
+            found += _path_vetoes(limits, path) or ground_vetoes(limits, points, altitude_amsl_m, "way_there")
+        legs = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
         found += battery_vetoes(limits, situation, limits.measurement_time_s, legs, place)
     return tuple(found)
 
@@ -252,7 +277,8 @@ def place_vetoes(
 def return_vetoes(
     limits: Limits, situation: Situation, way: Sequence[tuple[float, float]], altitude_amsl_m: float
 ) -> tuple[Reason, ...]:
-    """May the vehicle fly home along `way` (m ENU, home last)? Battery is no reason against it.
+    """May the vehicle fly home along `way` (m ENU, home last)? Battery is no reason against it, the ground is asked of
+    with `ground_return_vetoes`.
 
     A vehicle that is where it may not be may leave: its first leg is held against the other zones only.
     """
@@ -275,6 +301,47 @@ def return_vetoes(
     if len(way) > 1:
         found += _path_vetoes(limits, LineString(way))
     return tuple(found)
+
+
+def ground_vetoes(limits: Limits, way: Way, altitude_amsl_m: float, where: Over) -> tuple[Reason, ...]:
+    """Does a way (m ENU) flown level keep clearance and ceiling above the ground, at worst within tolerance?
+
+    Without terrain nothing is known against it: the band above home holds.
+    """
+    if limits.ground.terrain is None:
+        return ()
+    below = limits.ground.below(way)
+    if below is None:
+        return (safety.GroundUnknown(where),)
+    flight, relative = limits.flight, altitude_amsl_m - limits.home_amsl_m
+    clearance = altitude_amsl_m - VERTICAL_TOLERANCE_M - below.highest_m
+    height = altitude_amsl_m + VERTICAL_TOLERANCE_M - below.lowest_m
+    found: list[Reason] = []
+    if clearance < flight.minimum_clearance_m - ROUNDING_M:
+        found.append(safety.ClearanceShort(where, relative, clearance, flight.minimum_clearance_m))
+    if height > flight.maximum_above_ground_m + ROUNDING_M:
+        found.append(safety.TooHighAboveGround(where, relative, height, flight.maximum_above_ground_m))
+    return tuple(found)
+
+
+def ground_return_vetoes(limits: Limits, way: Way, altitude_amsl_m: float) -> tuple[Reason, ...]:
+    """Does a level way home (m ENU, from the vehicle on) keep its clearance? The ceiling is no reason against it: the
+    autopilot's own return keeps none either."""
+    found = ground_vetoes(limits, way, altitude_amsl_m, "way_home")
+    return tuple(veto for veto in found if not isinstance(veto, safety.TooHighAboveGround))
+
+
+def _way_home_vetoes(limits: Limits, at: tuple[float, float]) -> tuple[Reason, ...]:
+    """From a place that is left for home there is one level way that may be flown."""
+    way = [at, (0.0, 0.0)]
+    altitude = level_altitude(way, limits.ground, limits.flight)
+    highest = limits.home_amsl_m + limits.flight.maximum_altitude_relative_m
+    found = ground_vetoes(limits, way, altitude, "way_home")
+    if found or limits.ground.terrain is None or altitude <= highest + ALTITUDE_TOLERANCE_M:
+        return found
+    clearance = limits.flight.minimum_clearance_m - (altitude - highest)
+    relative = highest - limits.home_amsl_m
+    return (safety.ClearanceShort("way_home", relative, clearance, limits.flight.minimum_clearance_m),)
 
 
 def _altitude_vetoes(limits: Limits, relative_m: float) -> list[Reason]:

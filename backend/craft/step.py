@@ -40,7 +40,6 @@ from backend.reasons import Instead, NotDone, NotLocalized, OrderedAgainLater, P
 from backend.reasons.flight import OrderName, Way
 from backend.reasons.safety import BATTERY
 from backend.reasons.search import Localized
-from backend.search.altitude import altitude_at
 from backend.search.effects import Record
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
@@ -98,7 +97,9 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         go_home(step, Localized())
     elif craft.chosen is not None and (accepted or craft.accepted or craft.automatic):
         place, number = craft.chosen.place, craft.place_number
-        altitude = altitude_at(place, search.home_amsl_m, spec.flight)
+        altitude = craft.chosen.altitude_amsl_m
+        if altitude is None:
+            altitude = search.home_amsl_m + spec.flight.altitude_relative_m
         step.go("flying", reason)
         step.record(FlightStarted(craft_id=craft.craft_id, place_number=number, place=place, altitude_amsl_m=altitude))
         step.do(FlyTo(number, place))

@@ -8,7 +8,9 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from shapely.geometry.base import BaseGeometry
 
 from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
@@ -18,6 +20,7 @@ from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, turn_vetoes
 from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
+from backend.search.closed_by_ground import closed_by_ground
 from backend.search.planning import next_place, way_to
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
@@ -25,6 +28,12 @@ from backend.spec import Place
 from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.vehicle import PositionLost
 from planner.types import PlannerError
+
+LEVEL_M = 1.0
+"""A vehicle that is within this of an altitude is at it; well within what a level way is given."""
+
+PLACES_TRIED = 5
+"""The planner knows only roughly where the ground leaves no room: what is not allowed after all is chosen again."""
 
 
 @dataclass(slots=True)
@@ -55,22 +64,28 @@ class Work:
             vetoes = start_vetoes(self.limits, now)
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
-            await vehicle.take_off(effect.altitude_relative_m)
+            await vehicle.take_off(self._take_off_height(effect.altitude_relative_m))
         heard = vehicle.telemetry()
         return inputs.InTheAir(self._here(), heard.altitude_relative_m or effect.altitude_relative_m)
 
     async def fly(self, effect: effects.FlyTo) -> inputs.CraftInput:
         """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""
         began_s, speed = self.equipment.clock.now(), self.task.mission.flight.speed_m_s
-        end, altitude = self.task.frame.to_enu(effect.place), self.task.altitude_at(effect.place)
+        end = self.task.frame.to_enu(effect.place)
         try:
             way = await asyncio.to_thread(self._way, end)
         except PlannerError as error:
             return inputs.WorkVetoed((carried(error.reason),))
+        await recent(self.situation)
+        altitude, levelled = self.level_altitude(way), False
         while way:
             vetoes = place_vetoes(self.limits, await recent(self.situation), effect.place, altitude, way[:-1])
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
+            if not levelled:
+                levelled = True
+                if await self.level_off(altitude):
+                    continue
             (east, north), *way = way
             leg = self.task.frame.to_geo(east, north) if way else effect.place
             try:
@@ -98,17 +113,32 @@ class Work:
         position = (await recent(self.situation)).telemetry.position
         if position is None:
             raise VehicleError(PositionLost())
-        try:
-            choice = await asyncio.to_thread(self._choose, self.search(), self.task.frame.to_enu(position), effect)
-        except PlannerError as error:
-            return inputs.NothingToPlan(carried(error.reason))
-        await recent(self.situation)
-        return inputs.Planned(choice, self.vetoes_against(choice.place))
+        here, avoid, closed = self.task.frame.to_enu(position), effect.avoid, None
+        for _ in range(PLACES_TRIED):
+            wanted = replace(effect, avoid=avoid)
+            try:
+                choice = await asyncio.to_thread(self._choose, self.search(), here, wanted, closed)
+            except PlannerError as error:
+                return inputs.NothingToPlan(carried(error.reason))
+            await recent(self.situation)
+            vetoes = self.vetoes_against(choice.place)
+            if not vetoes or not all(isinstance(veto, safety.GROUND) for veto in vetoes):
+                break
+            task, avoid = self.task, (*avoid, choice.place)
+            closed = await asyncio.to_thread(closed_by_ground, task.ground, task.mission.flight, task.fence, here)
+        foreseen = choice.model_copy(update={"altitude_amsl_m": self.altitude_for(choice.place)})
+        return inputs.Planned(foreseen, vetoes)
 
-    def _choose(self, search: SearchState, platform: tuple[float, float], effect: effects.PlanNext) -> PlanChosen:
-        """For the first emitter that is not localized; each turn listens to all of them."""
+    def _choose(
+        self,
+        search: SearchState,
+        platform: tuple[float, float],
+        effect: effects.PlanNext,
+        closed: BaseGeometry | None = None,
+    ) -> PlanChosen:
+        """For the first emitter that is not localized; each turn listens to all of them. closed: m ENU."""
         emitter = (*search.wanted, *search.emitters.values())[0]
-        task = self.task.emitters[emitter.emitter_id]
+        task = self.task.emitters[emitter.emitter_id].without(closed)
         belief = task.planning_belief(task.planner_bearings(emitter.bearings))
         return next_place(
             task,
@@ -124,16 +154,61 @@ class Work:
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),
         None: straight, else around what may not be crossed."""
-        altitude, now = self.task.altitude_at(place), self.situation()
-        straight = place_vetoes(self.limits, now, place, altitude, way or ())
+        end, now = self.task.frame.to_enu(place), self.situation()
+        points = [*(way or ()), end]
+        straight = place_vetoes(self.limits, now, place, self.level_altitude(points), way or ())
         around = safety.WayLeavesFence | safety.WayCrossesNoFly
+        if self.task.ground.terrain is not None:
+            around |= safety.ClearanceShort | safety.TooHighAboveGround | safety.AltitudeOutside
         if way is not None or not straight or not all(isinstance(veto, around) for veto in straight):
             return straight
         try:
-            found = self._way(self.task.frame.to_enu(place))
+            found = self._way(end)
         except PlannerError:
             return straight
-        return place_vetoes(self.limits, now, place, altitude, found[:-1])
+        return place_vetoes(self.limits, now, place, self.level_altitude(found), found[:-1])
+
+    def level_altitude(self, way: Sequence[tuple[float, float]]) -> float:
+        """Metres AMSL at which a way (m ENU) is flown from where the vehicle is now."""
+        position = self.situation().telemetry.position
+        before = [] if position is None else [self.task.frame.to_enu(position)]
+        return self.task.level_altitude([*before, *way])
+
+    def way_points(self, place: Place) -> list[tuple[float, float]]:
+        """Of the flight to a place, m ENU: straight, or around what may not be crossed when there is such a way."""
+        end = self.task.frame.to_enu(place)
+        try:
+            return self._way(end)
+        except PlannerError:
+            return [end]
+
+    def altitude_for(self, place: Place) -> float:
+        """Metres AMSL of the flight to a place, as foreseen."""
+        return self.level_altitude(self.way_points(place))
+
+    async def level_off(self, altitude_amsl_m: float) -> bool:
+        """Climb or sink on the spot before a level way over known ground; False when nothing is to be done."""
+        telemetry = self.situation().telemetry
+        here, now = telemetry.position, telemetry.altitude_amsl_m
+        if self.task.ground.terrain is None or here is None or now is None or abs(now - altitude_amsl_m) <= LEVEL_M:
+            return False
+        await self.equipment.vehicle.goto(here, altitude_amsl_m, self.task.mission.flight.speed_m_s)
+        return True
+
+    async def level_off_for_home(self) -> None:
+        """The way home keeps clearance and ceiling too: the autopilot's own return looks at no ground."""
+        telemetry = self.situation().telemetry
+        here, now = telemetry.position, telemetry.altitude_amsl_m
+        if here is not None and now is not None:
+            way = [self.task.frame.to_enu(here), (0.0, 0.0)]
+            await self.level_off(self.task.level_altitude(way, now))
+
+    def _take_off_height(self, wanted_relative_m: float) -> float:
+        """Metres above home."""
+        position = self.situation().telemetry.position
+        if self.task.ground.terrain is None or position is None:
+            return wanted_relative_m
+        return self.task.altitude_at(position) - self.task.home_amsl_m
 
     def _way(self, end: tuple[float, float]) -> list[tuple[float, float]]:
         position = self.situation().telemetry.position

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from backend.events.bearings import AntennaFact
-from backend.events.fact import Fact
+from backend.events.fact import Fact, Known
 from backend.reasons import Reason
 from backend.spec import Id, Place
 from hardware.authority import Authority
@@ -27,9 +27,19 @@ Phase = Literal[
 """What a craft does."""
 
 
+class GroundFact(Fact):
+    """The terrain that a flight is checked against, which is kept under its digest. sources: names of the files.
+    home_m: the home's height AMSL by the terrain."""
+
+    digest: str
+    sources: list[str]
+    spacing_m: float
+    home_m: Known
+
+
 class MissionStarted(Fact):
     """A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
-    None: nobody kept it."""
+    None: nobody kept it. ground None: the ground was taken to be flat at the home's height."""
 
     kind: Literal["mission_started"] = "mission_started"
     craft_id: Id
@@ -38,6 +48,7 @@ class MissionStarted(Fact):
     home_amsl_m: float
     software: str
     antenna: AntennaFact | None = None
+    ground: GroundFact | None = None
 
 
 class PhaseChanged(Fact):

@@ -23,7 +23,8 @@ class CandidateFact(Fact):
 class PlanChosen(Fact):
     """The next measurement place. `emitter_id`: the emitter it is to tell most of, None of an operator's.
     `place_number` counts places from 1. `expected_time_s`: mean time until localized by way of this place; `time_90_s`:
-    not exceeded in 90 % of the rollouts (None when not sampled)."""
+    not exceeded in 90 % of the rollouts (None when not sampled). `altitude_amsl_m`: at which it would be flown to from
+    where the craft was, None before terrain counted."""
 
     kind: Literal["plan_chosen"] = "plan_chosen"
     craft_id: Id
@@ -38,6 +39,7 @@ class PlanChosen(Fact):
     rollouts: int
     plan_ms: float
     by: str | None = None
+    altitude_amsl_m: Known = None
 
 
 class PlanVetoed(Fact):

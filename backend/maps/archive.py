@@ -170,19 +170,34 @@ class Archive:
 
     def has(self, zoom: int, x: int, y: int) -> bool:
         """Whether the tile at zoom/x/y (XYZ scheme) is in the archive."""
+        return self._place_of(zoom, x, y) is not None
+
+    def tile(self, zoom: int, x: int, y: int) -> bytes | None:
+        """The tile at zoom/x/y as stored, None when there is none. ArchiveUnusable when it is damaged."""
+        found = self._place_of(zoom, x, y)
+        if found is None:
+            return None
+        at, size = found
+        if size > MOST_TILE_BYTES:
+            raise _damaged("tiles", "too_large")
+        return self._read(self.header["tile_data_offset"] + at, size, "tiles")
+
+    def _place_of(self, zoom: int, x: int, y: int) -> tuple[int, int] | None:
+        """Offset in the tile data, and length."""
         tile_id = zxy_to_tileid(zoom, x, y)
         offset, length = self.header["root_offset"], self.header["root_length"]
         for _ in range(DEEPEST_DIRECTORY):
             directory = self._directory(offset, length)
             at = int(np.searchsorted(directory.tile_id, tile_id, side="right")) - 1
             if at < 0:
-                return False
+                return None
             run = int(directory.run_length[at])
             if run > 0:
-                return tile_id - int(directory.tile_id[at]) < run
+                inside = tile_id - int(directory.tile_id[at]) < run
+                return (int(directory.offset[at]), int(directory.length[at])) if inside else None
             offset = self.header["leaf_directory_offset"] + int(directory.offset[at])
             length = int(directory.length[at])
-        return False
+        return None
 
     def _tiles(self, offset: int, length: int, depth: int) -> Iterator[bytes]:
         if depth >= DEEPEST_DIRECTORY:

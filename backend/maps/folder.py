@@ -7,12 +7,9 @@ event loop use threads.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
-import shutil
-import tempfile
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from datetime import datetime
@@ -24,22 +21,12 @@ import anyio.to_thread
 from backend.maps.archive import HEADER_BYTES, Archive, read_header
 from backend.maps.description import describe
 from backend.maps.features import storable
-from backend.maps.refusal import ArchiveUnusable, MapRefused, NotStored
-from backend.reasons.maps import (
-    MapLabelDamaged,
-    MapUnusable,
-    NoRoomForMap,
-    PutByHand,
-    UploadIncomplete,
-)
+from backend.maps.refusal import ArchiveUnusable, NotStored
+from backend.maps.upload import Upload, received, replace_text, room_bytes, sync_directory
+from backend.reasons.maps import MapLabelDamaged, MapUnusable, PutByHand
 from backend.wire.maps import MapPackage
 from backend.workers import Workers
 from hardware.reasons.table import FileUnreadable
-
-BLOCK_BYTES = 2**20
-ID_DIGITS = 16
-ABANDONED_S = 6 * 3600.0
-"""A part file not written to for so long is the rest of an upload that died with its server."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +38,7 @@ class MapFolder:
 
     def room_bytes(self) -> int:
         """How large an upload may be."""
-        self.directory.mkdir(parents=True, exist_ok=True)
-        return max(0, shutil.disk_usage(self.directory).free - self.reserve_bytes)
+        return room_bytes(self.directory, self.reserve_bytes)
 
     def packages(self) -> tuple[list[MapPackage], list[MapUnusable]]:
         """All maps by name, and the files that are none."""
@@ -106,48 +92,16 @@ class MapFolder:
 
         Raises MapRefused as soon as the header shows that the file is none, or when it does not fit; WorkStopped.
         """
-        if announced_bytes is not None:
-            self._must_fit(announced_bytes, self.room_bytes())
-        await anyio.to_thread.run_sync(self._remove_abandoned, now.timestamp())
-        upload = await anyio.to_thread.run_sync(_Upload, self.directory)
-        try:
-            held = bytearray()
-            async for piece in body:
-                held += piece
-                if len(held) >= BLOCK_BYTES:
-                    await anyio.to_thread.run_sync(self._write, upload, bytes(held))
-                    held.clear()
-            await anyio.to_thread.run_sync(self._write, upload, bytes(held))
-            if announced_bytes is not None and upload.size != announced_bytes:
-                raise MapRefused(UploadIncomplete(upload.size, announced_bytes))
-            await anyio.to_thread.run_sync(upload.finish)
-            package = await workers.run(read_archive, upload.path, upload.map_id, name, now)
+        async with received(body, announced_bytes, self.directory, self.reserve_bytes, _look, now) as upload:
+            package = await workers.run(read_archive, upload.path, upload.content_id, name, now)
             await anyio.to_thread.run_sync(self._keep, upload, package)
             return package
-        finally:
-            upload.discard()
 
-    def _remove_abandoned(self, now_s: float) -> None:
-        for part in self.directory.glob(".upload-*.part"):
-            if now_s - part.stat().st_mtime > ABANDONED_S:
-                part.unlink(missing_ok=True)
-
-    def _write(self, upload: _Upload, block: bytes) -> None:
-        first = upload.size == 0
-        if first:
-            read_header(block[:HEADER_BYTES])
-        self._must_fit(len(block), self.room_bytes())
-        upload.write(block)
-
-    def _must_fit(self, size: int, room: int) -> None:
-        if size > room:
-            raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
-
-    def _keep(self, upload: _Upload, package: MapPackage) -> None:
+    def _keep(self, upload: Upload, package: MapPackage) -> None:
         kept = {"name": package.name, "added_at_utc": package.added_at_utc.isoformat()}
-        _replace_text(self.directory / f"{package.map_id}.json", json.dumps(kept))
+        replace_text(self.directory / f"{package.map_id}.json", json.dumps(kept))
         os.replace(upload.path, self.directory / f"{package.map_id}.pmtiles")
-        _sync_directory(self.directory)
+        sync_directory(self.directory)
 
 
 def read_archive(path: Path, map_id: str, name: str, added_at: datetime) -> MapPackage:
@@ -159,34 +113,9 @@ def read_archive(path: Path, map_id: str, name: str, added_at: datetime) -> MapP
     return describe(archive, map_id, storable(label[:120]), added_at)
 
 
-class _Upload:
-    """A part file that is being written, and the digest of what it holds."""
-
-    def __init__(self, directory: Path) -> None:
-        directory.mkdir(parents=True, exist_ok=True)
-        descriptor, path = tempfile.mkstemp(prefix=".upload-", suffix=".part", dir=directory)
-        self.file = os.fdopen(descriptor, "wb")
-        self.path = Path(path)
-        self.digest = hashlib.sha256()
-        self.size = 0
-
-    @property
-    def map_id(self) -> str:
-        return self.digest.hexdigest()[:ID_DIGITS]
-
-    def write(self, block: bytes) -> None:
-        self.file.write(block)
-        self.digest.update(block)
-        self.size += len(block)
-
-    def finish(self) -> None:
-        self.file.flush()
-        os.fsync(self.file.fileno())
-        self.file.close()
-
-    def discard(self) -> None:
-        self.file.close()
-        self.path.unlink(missing_ok=True)
+def _look(first_bytes: bytes, size: int) -> None:
+    if first_bytes or size == 0:
+        read_header(first_bytes[:HEADER_BYTES])
 
 
 @lru_cache(maxsize=64)
@@ -198,17 +127,3 @@ def _opened(path: Path) -> Archive:
 @lru_cache(maxsize=64)
 def _described(path: Path, map_id: str, name: str, added_at: datetime) -> MapPackage:
     return describe(_opened(path), map_id, name, added_at)
-
-
-def _replace_text(path: Path, text: str) -> None:
-    part = path.with_suffix(".json.part")
-    part.write_text(text, "utf-8")
-    os.replace(part, path)
-
-
-def _sync_directory(directory: Path) -> None:
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -33,9 +33,9 @@ class ArchiveUnusable(MapRefused):
 
 
 class NotStored(ReasonedError, LookupError):
-    """There is no map or overlay with this id."""
+    """There is no map, overlay or terrain with this id."""
 
-    def __init__(self, what: Literal["map", "overlay"], which: str) -> None:
+    def __init__(self, what: Literal["map", "overlay", "terrain"], which: str) -> None:
         super().__init__(NothingThere(what, which))
 
     @property

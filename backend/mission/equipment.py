@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from backend.craft.equipment import CraftEquipment
-from backend.ports import Journal, Publisher
+from backend.ports import Grounds, Journal, NoGrounds, Publisher
 from hardware.ports import Clock
 
 DatabaseState = Literal["ok", "slow", "lost"]
@@ -28,6 +28,7 @@ class MissionEquipment:
     software: str
     threads: int = 2
     database: Callable[[], DatabaseState] = _ok
+    grounds: Grounds = field(default_factory=NoGrounds)
 
     @property
     def first(self) -> CraftEquipment:

@@ -16,13 +16,14 @@ from backend import commands
 from backend.commands import CommandReply, CommandRequest
 from backend.craft.checklist import checklist
 from backend.craft.equipment import CraftEquipment
+from backend.craft.ground_check import ground_fact
 from backend.craft.inputs import Abandoned, StartFacts, WorkFailed
 from backend.craft.listening import Listening
 from backend.craft.loose import LooseCommand, LooseCraft
 from backend.craft.runner import CraftRunner
 from backend.craft.safety import resume_vetoes
 from backend.craft.state import CraftState
-from backend.events import Event, Phase
+from backend.events import Event, GroundFact, Phase
 from backend.mission.effects import Effect, Reply
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
@@ -33,12 +34,15 @@ from backend.mission.state import MissionState
 from backend.reasons import Interrupted, Reason
 from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding
 from backend.reasons.safety import AlreadyInAir
+from backend.reasons.terrain import GroundNotKept
 from backend.search.antenna import antenna_fact
 from backend.search.errors import MissionInputError
 from backend.search.inputs import SearchOver
 from backend.search.other_area import task_or_reason
 from backend.search.planning import lay_out_ways
+from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
+from backend.terrain import Terrain, unknown_terrain
 from hardware.authority import NOBODY, Who
 
 log = logging.getLogger("crossfix.mission")
@@ -113,7 +117,9 @@ class Flights:
         if self.ending and not isinstance(request.command, WHILE_ENDING):
             return CommandReply(command_id=request.command_id, accepted=False, reason=ServerIsEnding(), seq=0)
         if runner is not None and isinstance(request.command, commands.ChangeArea):
-            task = await asyncio.to_thread(task_or_reason, runner.state.search, request.command.search)
+            task = await asyncio.to_thread(
+                task_or_reason, runner.state.search, request.command.search, runner.task.ground.terrain
+            )
             runner = self.running(mission_id)
             if runner is not None:
                 asked = runner.change_area(str(request.command_id), by, request.command, task)
@@ -186,11 +192,17 @@ class Flights:
             elif craft.vehicle.telemetry().in_air:
                 objections = (AlreadyInAir(),)
             checks, task = await checklist(
-                state.search.mission, craft, self.listening(craft.craft_id), state.search.antenna
+                state.search.mission,
+                craft,
+                self.listening(craft.craft_id),
+                state.search.antenna,
+                self.equipment.grounds,
             )
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
             software, antenna = self.equipment.software, antenna_fact(craft.pattern)
-            start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna)
+            ground, not_kept = await self._keep_ground(task)
+            objections += not_kept
+            start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna, ground)
             objections += resume_vetoes(craft.vehicle.telemetry())
             if task is not None and not objections and all(check.ok or not check.blocking for check in checks):
                 trouble = await self.nets.put_up(mission_id, craft, task)
@@ -212,6 +224,25 @@ class Flights:
                 self._fly(runner)
                 await runner.outbox.flushed()
             return _reply(request, asked, runner.outbox.last_seq)
+
+    async def _keep_ground(self, task: SearchTask | None) -> tuple[GroundFact | None, tuple[Reason, ...]]:
+        """What is flown over, stored before anything flies, and what forbids the start when it cannot be."""
+        if task is None or task.ground.terrain is None:
+            return None, ()
+        try:
+            await self.equipment.grounds.keep(task.ground.terrain)
+        except OSError as error:
+            return None, (GroundNotKept(error.strerror or str(error)),)
+        return ground_fact(task), ()
+
+    async def _ground_of(self, search: SearchState) -> Terrain | None:
+        """The same ground as at the start; when it is lost, one that nothing is known of."""
+        if search.ground is None or search.home is None:
+            return None
+        kept = await self.equipment.grounds.kept(search.ground.digest)
+        if kept is None:
+            log.error("the ground that a mission was started over is lost: %s", search.ground.digest)
+        return unknown_terrain(search.home) if kept is None else kept
 
     def _fly(self, runner: MissionRunner) -> None:
         runner.begin()
@@ -249,7 +280,7 @@ class Flights:
         if search.home is None or not state.engaged:
             return
         try:
-            task = search_task(search.mission, search.home, search.home_amsl_m)
+            task = search_task(search.mission, search.home, search.home_amsl_m, await self._ground_of(search))
         except MissionInputError as error:
             log.error("mission %s: %s", mission_id, error)
             await self._close_interrupted(mission_id, Interrupted("unreadable"))

@@ -26,6 +26,7 @@ class Context:
     objections: tuple[Reason, ...] = ()
     start: StartFacts | None = None
     on_ground: bool = False
+    altitude_amsl_m: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

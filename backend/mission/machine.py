@@ -161,7 +161,9 @@ def _order(now: _Transition, given: Commanded, command: ForCraft) -> Reason | No
     refused: list[Reason | None] = []
     for craft_id in wanted:
         context = given.contexts.get(craft_id, Context())
-        ordered = CraftOrdered(given.by, command, context.objections, context.start, context.on_ground)
+        ordered = CraftOrdered(
+            given.by, command, context.objections, context.start, context.on_ground, context.altitude_amsl_m
+        )
         refused.append(now.to_craft(craft_id, ordered))
     return None if None in refused else refused[0]
 

@@ -22,6 +22,16 @@ from backend.search.task import SearchTask, search_task
 from backend.spec import MissionSpec, Place, SearchArea
 
 
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """way: m ENU, from its beginning on. altitude_amsl_m: at which it is flown. objections: safety's."""
+
+    task: SearchTask
+    way: list[tuple[float, float]]
+    altitude_amsl_m: float
+    objections: tuple[Reason, ...]
+
+
 @dataclass(slots=True)
 class Questions:
     """Heavy answers are computed in threads; a mission that flies goes on meanwhile."""
@@ -34,7 +44,7 @@ class Questions:
         """The expected time to localization when a craft measured at this place next. Raises MissionNotFound."""
         runner = self.flights.running(mission_id)
         search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
-        task = runner.task if runner else self._task(search)
+        task = runner.task if runner else await self._task_on_ground(search)
         craft = next(iter(runner.crafts.values())) if runner else None
         start = task.home if craft is None else craft.equipment.vehicle.telemetry().position or task.home
 
@@ -58,24 +68,44 @@ class Questions:
             await self.records.load(mission_id)
             raise MissionConflict(MissionDoesNotFly())
         search, crafts = runner.state.search, tuple(runner.crafts.values())
-        task = await asyncio.to_thread(task_in, search, area)
+        task = await asyncio.to_thread(task_in, search, area, runner.task.ground.terrain)
         limits = limits_of(task)
         vetoes = tuple(veto for craft in crafts for veto in staying_vetoes(limits, craft.watch.situation()))
         positions = [craft.equipment.vehicle.telemetry().position for craft in crafts]
         here = next((position for position in positions if position is not None), task.home)
         return await asyncio.to_thread(outlook, search, task, here, self.equipment.threads), vetoes
 
+    async def leg(self, mission_id: str, place: Place) -> Leg:
+        """The way from where the vehicle is now to a place. Raises MissionNotFound, MissionInputError."""
+        runner = self.flights.running(mission_id)
+        if runner is None:
+            search = (await self.records.load(mission_id))[0].search
+            task = await self._task_on_ground(search)
+            way = [(0.0, 0.0), task.frame.to_enu(place)]
+            altitude = task.level_altitude(way)
+            return Leg(task, way, altitude, await asyncio.to_thread(standing_vetoes, limits_of(task), place, altitude))
+        craft, task = next(iter(runner.crafts.values())), runner.task
+        here = craft.equipment.vehicle.telemetry().position or task.home
+        way = [task.frame.to_enu(here), *await asyncio.to_thread(craft.work.way_points, place)]
+        objections = await asyncio.to_thread(craft.work.vetoes_against, place)
+        return Leg(task, way, task.level_altitude(way), objections)
+
+    async def _task_on_ground(self, search: SearchState) -> SearchTask:
+        """Of a mission that does not fly: over the ground that it flew over, else over what is known now."""
+        if search.home is None:
+            home, amsl = self._home_for(search.mission)
+            terrain = await self.equipment.grounds.around(home)
+            return await asyncio.to_thread(search_task, search.mission, home, amsl, terrain)
+        kept = None if search.ground is None else await self.equipment.grounds.kept(search.ground.digest)
+        return await asyncio.to_thread(search_task, search.mission, search.home, search.home_amsl_m, kept)
+
     async def preview(self, spec: MissionSpec) -> Preview:
         """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
         home, home_amsl_m = self._home_for(spec)
-        task = await asyncio.to_thread(search_task, spec, home, home_amsl_m)
+        terrain = await self.equipment.grounds.around(home)
+        task = await asyncio.to_thread(search_task, spec, home, home_amsl_m, terrain)
         start = self.equipment.first.vehicle.telemetry().position or task.home
         return await asyncio.to_thread(preview, task.first, start, self.equipment.threads)
-
-    def _task(self, search: SearchState) -> SearchTask:
-        if search.home is not None:
-            return search_task(search.mission, search.home, search.home_amsl_m)
-        return search_task(search.mission, *self._home_for(search.mission))
 
     def _home_for(self, spec: MissionSpec) -> tuple[Place, float]:
         home, amsl = home_of(self.equipment.first.vehicle.telemetry())

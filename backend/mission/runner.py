@@ -120,7 +120,9 @@ class MissionRunner:
         if isinstance(command, ForCraft):
             contexts = {
                 craft_id: Context(
-                    craft.objections(command), on_ground=craft.equipment.vehicle.telemetry().in_air is False
+                    craft.objections(command),
+                    on_ground=craft.equipment.vehicle.telemetry().in_air is False,
+                    altitude_amsl_m=craft.altitude_of(command),
                 )
                 for craft_id, craft in self.crafts.items()
             }

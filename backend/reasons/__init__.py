@@ -20,6 +20,7 @@ from backend.reasons.request import RequestReason
 from backend.reasons.safety import SafetyReason
 from backend.reasons.search import SearchReason
 from backend.reasons.storage import StorageReason
+from backend.reasons.terrain import TerrainReason
 from backend.reasons.work import WorkReason
 from hardware.readings import CheckName
 from hardware.reasons import HardwareReason
@@ -182,6 +183,7 @@ ReasonUnion = TypeAliasType(
         | SafetyReason
         | SearchReason
         | StorageReason
+        | TerrainReason
         | WorkReason
         | CompositeReason,
         Field(discriminator="code"),

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 from planner.reason import Words
 
 NothingKind = Literal[
+    "terrain",
     "mission",
     "page",
     "belief_about",
@@ -98,7 +99,7 @@ class NothingThere:
     code: Literal["nothing_there"] = "nothing_there"
     english: ClassVar[Words] = Words(
         "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event"
-        "|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|file=file"
+        "|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file"
         "|recording=recording|craft=craft|scene=3D view} {which}.",
         "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
     )

@@ -11,6 +11,10 @@ What = Literal["vehicle_stands", "vehicle", "home", "place"]
 _WHAT = "{what?vehicle_stands=The vehicle stands|vehicle=The vehicle is|home=Home is|place=The place is}"
 
 
+Over = Literal["way_there", "way_home", "take_off"]
+_OVER = "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off}"
+
+
 @dataclass(frozen=True, slots=True)
 class FailsafeActs:
     mode: str
@@ -176,8 +180,52 @@ class NoWayHome:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class GroundUnknown:
+    """where: the way to the place, or from there home."""
+
+    where: Over
+    code: Literal["ground_unknown"] = "ground_unknown"
+    english: ClassVar[Words] = Words(
+        _OVER + " leads over ground whose height the terrain does not know.",
+        "Upload terrain for the whole fence, or remove the terrain: the ground then counts as level with home.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ClearanceShort:
+    """clearance_m: what would be left above the highest ground within tolerance."""
+
+    where: Over
+    altitude_relative_m: float
+    clearance_m: float
+    least_m: float
+    code: Literal["clearance_short"] = "clearance_short"
+    english: ClassVar[Words] = Words(
+        _OVER + " at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+        "Choose another place, or allow more altitude above home.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TooHighAboveGround:
+    """height_m: above the lowest ground within tolerance."""
+
+    where: Over
+    altitude_relative_m: float
+    height_m: float
+    most_m: float
+    code: Literal["too_high_above_ground"] = "too_high_above_ground"
+    english: ClassVar[Words] = Words(
+        _OVER + " at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+        "Choose a nearer place: the ground falls away below one level way.",
+    )
+
+
 BATTERY = (BatteryUnknown, BatterySilent, BatteryShort)
 """Vetoes for which the answer is to go home."""
+GROUND = (GroundUnknown, ClearanceShort, TooHighAboveGround, AltitudeOutside)
+"""Vetoes of the height above ground or home: another place may do."""
 
 SafetyReason = (
     FailsafeActs
@@ -198,4 +246,7 @@ SafetyReason = (
     | WayLeavesFence
     | WayCrossesNoFly
     | NoWayHome
+    | GroundUnknown
+    | ClearanceShort
+    | TooHighAboveGround
 )

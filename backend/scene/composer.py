@@ -11,12 +11,15 @@ import numpy as np
 
 from backend.ports import TrackPoint
 from backend.scene.colours import PALETTES
-from backend.scene.composition import compose, story_belief
+from backend.scene.composition import compose, middle_and_extent, story_belief
 from backend.scene.content import Content, Story, VehicleMark, content, flown_path, read_story, vehicle_mark
 from backend.scene.flight import moving
 from backend.scene.items import Scene
+from backend.scene.relief import relief_around
 from backend.scene.sources import SceneSource
 from backend.search.errors import MissionInputError
+from backend.search.ground import Ground
+from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest
 from planner.belief.grid import GridBelief
 
@@ -46,6 +49,7 @@ class Composer:
     def __init__(self, source: SceneSource) -> None:
         self._source = source
         self._beliefs: OrderedDict[BeliefKey, GridBelief | None] = OrderedDict()
+        self._terrain: tuple[str, Terrain | None] | None = None
 
     async def take(self, mission_id: str, request: SceneRequest) -> Take | None:
         """The whole scene, composed again. None when there is nothing to show yet."""
@@ -57,7 +61,8 @@ class Composer:
         live = request.seq is None and mission_id == self._source.flying()
         now = self.now() if live else None
         belief = None if "belief" in request.hidden else await self._belief(story)
-        shown, scene = await asyncio.to_thread(_compose, story, track, now, belief, request)
+        terrain = await self._ground(story)
+        shown, scene = await asyncio.to_thread(_compose, story, track, now, belief, request, terrain)
         return Take(mission_id, request, story, shown, scene, live)
 
     def now(self) -> TrackPoint | None:
@@ -89,6 +94,15 @@ class Composer:
         still = [item for item in take.scene.items if item.layer not in MOVING_LAYERS and item.name not in names]
         return replace(take, content=shown, scene=replace(take.scene, items=(*still, *fresh)))
 
+    async def _ground(self, story: Story) -> Terrain | None:
+        """Of the last digest that was asked for it is kept: each event makes the scene anew."""
+        flown_over = story.state.search.ground
+        if flown_over is None:
+            return None
+        if self._terrain is None or self._terrain[0] != flown_over.digest:
+            self._terrain = (flown_over.digest, await self._source.ground(flown_over.digest))
+        return self._terrain[1]
+
     async def _belief(self, story: Story) -> GridBelief | None:
         """None when the specification makes no sense (a draft far from any home)."""
         emitter, spec = story.emitter, story.state.search.mission
@@ -114,8 +128,11 @@ def _compose(
     now: TrackPoint | None,
     belief: GridBelief | None,
     request: SceneRequest,
+    terrain: Terrain | None = None,
 ) -> tuple[Content, Scene]:
+    ground = Ground(story.frame, story.state.search.home_amsl_m, terrain)
     shown = content(story, track, now)
+    shown = replace(shown, relief=relief_around(ground, *middle_and_extent(shown)))
     if now is not None:
         shown = replace(shown, path=flown_path(story.frame, track))
     return shown, compose(shown, belief, request.hidden, request.belief_height_m, request.theme)

@@ -52,6 +52,12 @@ def story_belief(story: Story) -> GridBelief:
     return task.planning_belief(task.planner_bearings(story.emitter.bearings))
 
 
+def middle_and_extent(shown: Content) -> tuple[tuple[float, float], float]:
+    """m ENU and m: of what there is to see."""
+    west, south, east, north = shapely.union_all([shown.area, shown.fence]).bounds
+    return ((west + east) / 2, (south + north) / 2), max(east - west, north - south)
+
+
 def compose(
     shown: Content,
     belief: GridBelief | None,
@@ -61,9 +67,7 @@ def compose(
 ) -> Scene:
     """belief None: not known. belief_height_m: of the surface's peak; None: by the extent. hidden: layers left out."""
     palette = PALETTES[theme]
-    west, south, east, north = shapely.union_all([shown.area, shown.fence]).bounds
-    middle = (west + east) / 2, (south + north) / 2
-    extent = max(east - west, north - south)
+    middle, extent = middle_and_extent(shown)
     height = 0.0
     items: list[Item] = []
     if belief is not None:

@@ -17,6 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from backend.events import BearingMeasured, PlanChosen, Recorded, SweepRejected
 from backend.mission.state import MissionState, evolve
 from backend.ports import TrackPoint
+from backend.scene.relief import Relief
 from backend.search import area as areas
 from backend.search.errors import MissionInputError
 from backend.search.state import EmitterState
@@ -88,7 +89,8 @@ class VehicleMark:
 @dataclass(frozen=True, slots=True)
 class Content:
     """home: None before the start. path: (n, 3), in time order. next_places: where the craft fly or measure now;
-    none when the mission is over or no place is chosen yet. seq: the last event that is in here."""
+    none when the mission is over or no place is chosen yet. relief: None where the ground is taken to be flat. seq: the
+    last event that is in here."""
 
     mission_id: str
     seq: int
@@ -104,6 +106,7 @@ class Content:
     estimates: tuple[EstimateMark, ...]
     path: NDArray[np.float64]
     vehicle: VehicleMark | None
+    relief: Relief | None = None
 
 
 @dataclass(frozen=True, slots=True)

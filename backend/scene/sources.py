@@ -6,6 +6,7 @@ from typing import Protocol
 
 from backend.events import Recorded
 from backend.ports import TrackPoint
+from backend.terrain import Terrain
 from hardware.readings import Telemetry
 
 
@@ -34,4 +35,8 @@ class SceneSource(Protocol):
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
         """All that was flown, in order."""
+        ...
+
+    async def ground(self, digest: str) -> Terrain | None:
+        """What a mission was flown over; None when it is lost."""
         ...

@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from backend.scene.colours import Palette, flat
 from backend.scene.content import Content
 from backend.scene.items import Item, Label, Lines, Surface
+from backend.scene.relief import relief_surface
 from backend.scene.shapes import at_height, box, circle, outline, plate, rings, segments, wall
 from backend.wire.scene import SceneLayer
 
@@ -39,7 +40,10 @@ def grid_step(extent_m: float) -> float:
 
 def surroundings(content: Content, palette: Palette, centre: tuple[float, float], extent_m: float) -> Iterator[Item]:
     """centre, extent_m: of the ground and its grid; the rest has its own place and size."""
-    yield from _ground(palette, centre, extent_m)
+    if content.relief is None:
+        yield from _ground(palette, centre, extent_m)
+    else:
+        yield relief_surface(content.relief, palette)
     yield from _area(content, palette, extent_m)
     yield from _fence(content, palette)
     for number, zone in enumerate(content.no_fly):

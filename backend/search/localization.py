@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from shapely import Point, unary_union
 from shapely import Polygon as ShapelyPolygon
-from shapely import unary_union
+from shapely.geometry.base import BaseGeometry
 
 from backend import spec
 from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
@@ -74,6 +75,13 @@ class Localization:
     def home(self) -> Place:
         """Degrees; (0, 0) of the frame."""
         return self.frame.origin
+
+    def without(self, closed: BaseGeometry | None) -> Localization:
+        """The same with these places (m ENU) closed to the planner, too."""
+        if closed is None:
+            return self
+        problem = replace(self.problem, no_fly=(*self.problem.no_fly, *area.region(closed)))
+        return replace(self, problem=problem)
 
     def planner_bearings(self, measured: Sequence[BearingMeasured]) -> tuple[Bearing, ...]:
         """Facts to the planner's bearings: place in ENU, angles in rad ccw from east."""
@@ -180,8 +188,11 @@ class Localization:
         return point
 
 
-def localization(mission: MissionSpec, home: Place, emitter_id: str | None = None) -> Localization:
-    """The task as seen from `home`. emitter_id None: the first emitter.
+def localization(
+    mission: MissionSpec, home: Place, emitter_id: str | None = None, closed: BaseGeometry | None = None
+) -> Localization:
+    """The task as seen from `home`. emitter_id None: the first emitter. closed: where no place is looked for either,
+    m ENU; a belief does not depend on it.
 
     Raises MissionInputError when the specification makes no sense there.
     """
@@ -198,7 +209,7 @@ def localization(mission: MissionSpec, home: Place, emitter_id: str | None = Non
         measurement_time=sensor.measurement_time_s,
         motion=_motion(planner.motion),
         flight_area=area.region(fence),
-        no_fly=area.region(unary_union(zones).buffer(KEEP_OFF_M, join_style="mitre")),
+        no_fly=area.region(unary_union([*zones, closed or Point()]).buffer(KEEP_OFF_M, join_style="mitre")),
         standoff=planner.standoff_m,
         action_spacing=planner.action_spacing_m,
         estimator=planner.estimator,

@@ -12,6 +12,7 @@ from backend.search.planning import lay_out_ways, next_place
 from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
 from backend.spec import Place, SearchArea
+from backend.terrain import Terrain
 from planner.types import PlannerError
 
 
@@ -24,22 +25,22 @@ class Outlook:
     no_plan: Reason | None
 
 
-def task_in(state: SearchState, area: SearchArea) -> SearchTask:
-    """The flown search's task in another area, from the same home.
+def task_in(state: SearchState, area: SearchArea, terrain: Terrain | None = None) -> SearchTask:
+    """The flown search's task in another area, from the same home over the same ground.
 
     Raises MissionInputError when it makes no sense there, ValueError when the search has not started.
     """
     if state.home is None:
         raise ValueError("a mission that has not started has no home to search from")
-    task = search_task(state.mission.searching(area), state.home, state.home_amsl_m)
+    task = search_task(state.mission.searching(area), state.home, state.home_amsl_m, terrain)
     lay_out_ways(task.first)
     return task
 
 
-def task_or_reason(state: SearchState, area: SearchArea) -> SearchTask | Reason:
+def task_or_reason(state: SearchState, area: SearchArea, terrain: Terrain | None = None) -> SearchTask | Reason:
     """The reason instead of MissionInputError: it is refused like an order."""
     try:
-        return task_in(state, area)
+        return task_in(state, area, terrain)
     except MissionInputError as error:
         return error.reason
 

@@ -16,6 +16,7 @@ from backend.events import (
     BeliefUpdated,
     CheckFact,
     Event,
+    GroundFact,
     MissionDrafted,
     MissionEdited,
     MissionEnded,
@@ -81,6 +82,7 @@ class EmitterState:
 @dataclass(frozen=True, slots=True)
 class SearchState:
     """emitters: by id, in the specification's order. home: origin of the local frame, None until a craft started.
+    ground: the terrain below, None while it is taken to be flat.
 
     place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds.
     """
@@ -90,6 +92,7 @@ class SearchState:
     antenna: CheckFact | None = None
     home: Place | None = None
     home_amsl_m: float = 0.0
+    ground: GroundFact | None = None
     started_at_s: float | None = None
     emitters: Mapping[str, EmitterState] = field(default_factory=dict[str, EmitterState])
     place_number: int = 0
@@ -166,12 +169,12 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, passed=passed) if state.stage in ("draft", "ready") else state
         case AntennaChecked(check=check):
             return replace(state, antenna=check)
-        case MissionStarted(home=home, home_amsl_m=home_amsl_m):
+        case MissionStarted(home=home, home_amsl_m=home_amsl_m, ground=ground):
             if state.home is not None:
                 return state
             # bearings from before the start (imported) are folded again in the frame of the home
             begun = _each(state, lambda e: replace(e, belief_current=e.belief_current and not e.measured))
-            return replace(begun, home=home, home_amsl_m=home_amsl_m, started_at_s=at_s)
+            return replace(begun, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
         case PlanChosen(place_number=number):
             return replace(state, place_number=max(state.place_number, number))
         case BearingMeasured() | BearingExcluded() | BeliefUpdated():

@@ -8,19 +8,22 @@ from dataclasses import dataclass
 from shapely.geometry.base import BaseGeometry
 
 from backend.search import area
-from backend.search.altitude import altitude_at
+from backend.search.altitude import altitude_at, level_altitude
+from backend.search.closed_by_ground import closed_by_ground
+from backend.search.ground import Ground, Way
 from backend.search.localization import Localization, localization
 from backend.spec import MissionSpec, Place
+from backend.terrain import Terrain
 from hardware.frame import LocalFrame
 
 
 @dataclass(frozen=True, slots=True)
 class SearchTask:
-    """fence, no_fly: m ENU of `frame`, whose origin is the home. home_amsl_m: the altitude of that. emitters: by id."""
+    """fence, no_fly: m ENU of `frame`, whose origin is the home. ground: below all of it. emitters: by id."""
 
     mission: MissionSpec
     frame: LocalFrame
-    home_amsl_m: float
+    ground: Ground
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
     emitters: Mapping[str, Localization]
@@ -29,6 +32,11 @@ class SearchTask:
     def home(self) -> Place:
         """Degrees; (0, 0) of the frame."""
         return self.frame.origin
+
+    @property
+    def home_amsl_m(self) -> float:
+        """As the autopilot says."""
+        return self.ground.home_amsl_m
 
     @property
     def first(self) -> Localization:
@@ -41,12 +49,24 @@ class SearchTask:
 
     def altitude_at(self, place: Place) -> float:
         """Metres AMSL."""
-        return altitude_at(place, self.home_amsl_m, self.mission.flight)
+        return altitude_at(place, self.ground, self.mission.flight)
+
+    def level_altitude(self, way: Way, wanted_amsl_m: float | None = None) -> float:
+        """Metres AMSL at which a way (m ENU) is flown. wanted_amsl_m None: the mission's altitude."""
+        return level_altitude(way, self.ground, self.mission.flight, wanted_amsl_m)
 
 
-def search_task(mission: MissionSpec, home: Place, home_amsl_m: float) -> SearchTask:
-    """Raises MissionInputError when the specification makes no sense as seen from `home`."""
-    emitters = {emitter.emitter_id: localization(mission, home, emitter.emitter_id) for emitter in mission.emitters}
-    frame = next(iter(emitters.values())).frame
-    fence = area.fence(mission, area.target_area(mission, frame), frame)
-    return SearchTask(mission, frame, home_amsl_m, fence, area.no_fly(mission, frame), emitters)
+def search_task(mission: MissionSpec, home: Place, home_amsl_m: float, terrain: Terrain | None = None) -> SearchTask:
+    """terrain None: the ground is taken to be flat.
+
+    Raises MissionInputError when the specification makes no sense as seen from `home`.
+    """
+    frame = LocalFrame(home)
+    target = area.target_area(mission, frame)
+    area.check_reach(target)
+    fence, ground = area.fence(mission, target, frame), Ground(frame, home_amsl_m, terrain)
+    closed = closed_by_ground(ground, mission.flight, fence)
+    emitters = {
+        emitter.emitter_id: localization(mission, home, emitter.emitter_id, closed) for emitter in mission.emitters
+    }
+    return SearchTask(mission, frame, ground, fence, area.no_fly(mission, frame), emitters)

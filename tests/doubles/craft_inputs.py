@@ -82,6 +82,7 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.SearchChanged(),
         inputs.InTheAir(HOME, 40.0),
         inputs.Planned(plan(number + 1)),
+        inputs.Planned(plan(number + 1).model_copy(update={"altitude_amsl_m": 181.0})),
         inputs.Planned(plan(number + 1), (VETO,)),
         inputs.Planned(plan(number + 1), (BATTERY_VETO,)),
         inputs.NothingToPlan(NO_PLACE),

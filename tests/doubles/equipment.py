@@ -74,11 +74,13 @@ TWO_EMITTERS = (EmitterSpec(), EmitterSpec(emitter_id="emitter-2", frequency_hz=
 
 
 class FlatVehicle:
-    """Flies straight at 50 times its speed; every command is noted with its time. `stuck`: commands never finish."""
+    """Flies straight at 50 times its speed; every command is noted with its time. `stuck`: commands never
+    finish. flown: places and altitudes (m AMSL) it went to."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.commands: list[tuple[str, float]] = []
+        self.flown: list[tuple[Place, float]] = []
         self.state = Telemetry(
             connected=True,
             at_s=clock.now(),
@@ -189,7 +191,11 @@ class FlatVehicle:
     async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
         self._order("goto", "flight")
         await self._takes(2.0)
-        self.state = replace(self.state, position=place)
+        self.flown.append((place, altitude_amsl_m))
+        above_home = altitude_amsl_m - (self.state.home_amsl_m or 0.0)
+        self.state = replace(
+            self.state, position=place, altitude_amsl_m=altitude_amsl_m, altitude_relative_m=above_home
+        )
 
     async def turn(self, rate_deg_s: float) -> None:
         self._order("turn", "turn")

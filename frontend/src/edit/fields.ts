@@ -57,6 +57,8 @@ export const sections: readonly Section[] = [
       { kind: "switch", path: "flight.automatic", label: "edit.automatic" },
       number("flight.minimum_altitude_relative_m", "edit.altitude.minimum", "m", { min: 0, max: 500, more: true }),
       number("flight.maximum_altitude_relative_m", "edit.altitude.maximum", "m", { min: 2, max: 1000, more: true }),
+      number("flight.minimum_clearance_m", "edit.clearance", "m", { min: 0, max: 500, more: true }),
+      number("flight.maximum_above_ground_m", "edit.aboveGround", "m", { min: 2, max: 1000, more: true }),
     ],
   },
   {

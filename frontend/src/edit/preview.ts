@@ -42,6 +42,7 @@ export const firstPlan = ({ first_place, start: _start, times_s: _times, ...foun
   place: first_place,
   source: "planner",
   by: null,
+  altitude_amsl_m: null,
 });
 
 /** Counts of `times` in equal classes from the least to the largest. */

@@ -9,6 +9,7 @@ import { recording } from "./german/recording";
 import { safety } from "./german/safety";
 import { server } from "./german/server";
 import { sweep } from "./german/sweep";
+import { terrain } from "./german/terrain";
 import { vehicle } from "./german/vehicle";
 import type { ReasonTable } from "./reasons";
 
@@ -23,5 +24,6 @@ export const reasonsDe: ReasonTable = {
   ...flight,
   ...safety,
   ...maps,
+  ...terrain,
   ...server,
 };

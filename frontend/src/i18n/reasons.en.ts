@@ -1176,7 +1176,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Correct the named fields and send it again.",
   },
   nothing_there: {
-    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
+    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
     remedy: "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
   },
   http_refused: {
@@ -1311,6 +1311,18 @@ export const reasonsEn: ReasonTable = {
     text: "From where the vehicle is no way around the no-fly zones and inside the fence leads home, {distance_m} away.",
     remedy: "Draw the fence and the no-fly zones so that there is one.",
   },
+  ground_unknown: {
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} leads over ground whose height the terrain does not know.",
+    remedy: "Upload terrain for the whole fence, or remove the terrain: the ground then counts as level with home.",
+  },
+  clearance_short: {
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+    remedy: "Choose another place, or allow more altitude above home.",
+  },
+  too_high_above_ground: {
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+    remedy: "Choose a nearer place: the ground falls away below one level way.",
+  },
   area_empty: {
     text: "{what?area=The area|fence=The fence|no_fly=A no-fly zone|confidence_region=The confidence region} is empty.",
     remedy: "Draw at least three corners.",
@@ -1410,6 +1422,56 @@ export const reasonsEn: ReasonTable = {
   foreign_spool: {
     text: "What lies at {path} is not a journal spool.",
     remedy: "Move it away and start again.",
+  },
+  not_terrain: {
+    text: "The file is neither a GeoTIFF nor a PMTiles archive.",
+    remedy: "Upload a GeoTIFF of heights (Copernicus GLO-30, SRTM) or a PMTiles archive of Terrarium tiles.",
+  },
+  geotiff_unusable: {
+    text: "The GeoTIFF cannot be used as terrain: {fault?damaged=it is damaged or cut off|big_endian=it is written in big-endian order|sample_type=its values are neither 16-bit integers nor 32-bit floats|several_bands=it has more than one band|too_many_pixels=it has more than 40 million pixels|too_large_tiles=its tiles are larger than 4096 pixels|no_place=it does not say where on earth it lies|rotated=its rows do not run from west to east|off_earth=its corners are not on the earth|too_coarse=its pixels are larger than a kilometre|ellipsoid=its heights are above the ellipsoid, not above mean sea level|feet=its heights are in feet|no_heights=it holds no height}.",
+    remedy:
+      "{fault?damaged=Copy or download the whole file again.|too_many_pixels=Cut out the part that you fly in, for example with `gdal_translate -projwin`.|ellipsoid=Use heights above the geoid (EGM96 or EGM2008).|no_heights=Use a file that covers the area.|*=Convert it with `gdalwarp -t_srs EPSG:4326 -ot Float32 -co COMPRESS=DEFLATE`.}",
+  },
+  other_coordinate_system: {
+    text: "The GeoTIFF is not in longitude and latitude (EPSG:4326){epsg?none=|*=, but in another system}.",
+    remedy: "Convert it with `gdalwarp -t_srs EPSG:4326`.",
+  },
+  terrarium_unusable: {
+    text: "The PMTiles archive cannot be used as terrain: {fault?vector=it holds vector tiles|picture_type=its tiles are neither PNG nor lossless WebP|tile_size=its tiles are not squares of 256 or 512 pixels|damaged=a tile cannot be read|no_heights=its tiles hold no heights in the Terrarium encoding}.",
+    remedy: "Upload an archive of Terrarium tiles (height = red * 256 + green + blue / 256 - 32768).",
+  },
+  heights_implausible: {
+    text: "The file's heights go from {lowest_m} to {highest_m}, which is nowhere on earth.",
+    remedy: "Check that it holds heights in metres, and names its value for no data.",
+  },
+  terrain_too_large: {
+    text: "The file is larger than {most_bytes}.",
+    remedy: "Cut out the part that you fly in.",
+  },
+  terrain_label_damaged: {
+    text: "{file}: this terrain can no longer be read.",
+    remedy: "Delete it and upload it again.",
+  },
+  no_terrain: {
+    text: "No terrain: the ground is taken to be level with home.",
+    remedy: "Upload terrain of the area, or make sure that nothing in it rises towards the flight altitude.",
+  },
+  terrain_covers: {
+    text: "Terrain covers the fence, a height every {spacing_m}; the highest ground is {highest_above_home_m} above home.",
+    remedy: "",
+  },
+  terrain_partly: {
+    text: "Terrain covers only {known_percent} of the fence; ways over the rest are refused.",
+    remedy: "Upload terrain for all of it, or remove it.",
+  },
+  home_height_differs: {
+    text: "The terrain has home at {terrain_m:0} above sea level, the autopilot at {autopilot_m:0}; each way keeps clear of the ground by either.",
+    remedy:
+      "Wait for a better GPS fix and arm again at the take-off place, or check that the terrain's heights are metres above mean sea level.",
+  },
+  ground_not_kept: {
+    text: "The terrain could not be stored with the mission: {detail}.",
+    remedy: "Make room on the disk, then start again.",
   },
   file_too_heavy: {
     text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",

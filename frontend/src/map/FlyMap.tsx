@@ -34,6 +34,7 @@ import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, type SourceName, SWITCHES, type Switch } from "./layers";
 import { shownOverlays } from "./overlays";
 import { palettes } from "./palette";
+import { addRelief, showRelief } from "./relief";
 import { showVehicle } from "./vehicleMarker";
 
 const hidden = signal<ReadonlySet<Switch>>(new Set());
@@ -133,6 +134,7 @@ function bind(map: GlMap): () => void {
         const by = layer.metadata?.switch;
         if (by) map.setLayoutProperty(layer.id, "visibility", hidden.value.has(by) ? "none" : "visible");
       }
+      showRelief(map, !hidden.value.has("relief"));
     }),
     effect(() => {
       const { at } = vehicle.value;
@@ -262,7 +264,13 @@ export function FlyMap() {
       for (const layer of missionLayers(palettes[theme], basemap.peek() !== null)) created.addLayer(layer);
       addBelief(created);
       unbind = bind(created);
-      void addBasemap(created, theme === "indoor" ? "dark" : "light", "belief").catch(() => undefined);
+      void addBasemap(created, theme === "indoor" ? "dark" : "light", "belief")
+        .catch(() => undefined)
+        .then(() => addRelief(created, palettes[theme], "belief"))
+        .then(
+          () => showRelief(created, !hidden.peek().has("relief")),
+          () => undefined,
+        );
       box.current?.setAttribute("data-ready", "true");
     });
     created.on("click", (event: MapMouseEvent) => {

@@ -19,7 +19,7 @@ export function addSources(map: GlMap): void {
   for (const name of SOURCES) map.addSource(name, { type: "geojson", data: collection([]), maxzoom: MAX_TILE_ZOOM });
 }
 
-export const SWITCHES = ["belief", "candidates", "bearings", "roses", "path", "fence"] as const;
+export const SWITCHES = ["belief", "candidates", "bearings", "roses", "path", "fence", "relief"] as const;
 export type Switch = (typeof SWITCHES)[number];
 
 type Drawn = LayerSpecification & { metadata?: { switch?: Switch } };

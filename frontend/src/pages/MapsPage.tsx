@@ -6,11 +6,13 @@ import { basemap, chooseBasemap } from "../map/basemap";
 import { overlayIds, showOverlay } from "../map/overlays";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as maps from "../sources/mapsApi";
+import { deleteTerrain, listTerrain, type TerrainList } from "../sources/terrainApi";
 import { upload } from "../sources/upload";
-import { formatNumber } from "../units/quantities";
+import { settings } from "../state/settings";
+import { formatLength, formatNumber } from "../units/quantities";
 import type { Problem } from "../wire";
 
-type Target = "maps" | "overlays";
+type Target = "maps" | "overlays" | "terrain";
 
 function Upload({
   target,
@@ -123,15 +125,43 @@ function Overlays({ list, onChange }: { list: maps.OverlayList; onChange: () => 
   );
 }
 
+function Terrain({ list, onChange }: { list: TerrainList; onChange: () => void }) {
+  return (
+    <ul class="cards">
+      {list.terrains.map((one) => (
+        <li class="card" key={one.terrain_id} data-testid="terrain">
+          <strong>{one.name}</strong>
+          <span class="muted">
+            {t("maps.terrainSize", {
+              size: formatNumber(one.size_bytes / 1e6, 1),
+              spacing: formatLength(one.spacing_m, settings.value.units),
+            })}
+          </span>
+          <button type="button" onClick={() => void deleteTerrain(one.terrain_id).then(onChange, onChange)}>
+            {t("maps.remove")}
+          </button>
+        </li>
+      ))}
+      {list.unusable.map((reason, i) => (
+        <li class="refused" key={i}>
+          {reasonText(reason)}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
 export function MapsPage() {
   const [packages, setPackages] = useState<maps.MapList | null>(null);
   const [overlays, setOverlays] = useState<maps.OverlayList | null>(null);
+  const [terrain, setTerrain] = useState<TerrainList | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const read = () => {
-    Promise.all([maps.listMaps(), maps.listOverlays()]).then(
-      ([listed, drawn]) => {
+    Promise.all([maps.listMaps(), maps.listOverlays(), listTerrain()]).then(
+      ([listed, drawn, heights]) => {
         setPackages(listed);
         setOverlays(drawn);
+        setTerrain(heights);
       },
       (error: unknown) => setProblem(asProblem(error)),
     );
@@ -153,6 +183,12 @@ export function MapsPage() {
           {reasonText(reason)}
         </p>
       ))}
+      <div class="page-head">
+        <h1>{t("maps.terrain")}</h1>
+        <Upload target="terrain" accept=".tif,.tiff,.pmtiles" label={t("maps.uploadTerrain")} onDone={read} onProblem={setProblem} />
+      </div>
+      <p>{t("maps.terrainExplain")}</p>
+      {terrain && <Terrain list={terrain} onChange={read} />}
       <div class="page-head">
         <h1>{t("maps.overlays")}</h1>
         <Upload target="overlays" accept=".geojson,.json,.kml,.kmz" label={t("maps.uploadOverlay")} onDone={read} onProblem={setProblem} />

@@ -20,6 +20,7 @@ import { formatBearing, formatDuration, formatLength, formatNumber } from "../un
 import type { CandidateFact, Place, PlanChosen } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { ProblemBox, ProblemNote } from "./ProblemNote";
+import { ProfileCard } from "./ProfileCard";
 import { WhatIfPanel } from "./WhatIfPanel";
 
 const SHOWN = 12;
@@ -226,6 +227,9 @@ export function PlanPanel() {
         </a>
       )}
       {cursor.value !== null && source.value?.keptByServer && <WhatIfPanel />}
+      {missionId && isLive && source.value?.keptByServer && (proposed || fact) && (
+        <ProfileCard missionId={missionId} place={(proposed ?? fact!).place} />
+      )}
       {!fact && <p class="muted">{t("plan.none")}</p>}
       {fact && (
         <>

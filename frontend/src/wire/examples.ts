@@ -86,7 +86,11 @@ export const someStatus = (changes: Partial<StatusMessage> = {}): StatusMessage 
 export const servedStatus = (missionId: string, does: Phase): StatusMessage =>
   someStatus({ mission_id: missionId, phase: does, crafts: [someCraftStatus({ mission_id: missionId, phase: does })] });
 
-export const someSpec = (): MissionSpec => first("mission_drafted").spec;
+/** As the server answers it: the stored one is older than its limits above the ground. */
+export const someSpec = (): MissionSpec => {
+  const { flight, ...rest } = first("mission_drafted").spec;
+  return { ...rest, flight: Object.assign({ minimum_clearance_m: 20, maximum_above_ground_m: 120 }, flight) };
+};
 
 export const CRAFT = first("mission_started").craft_id;
 export const EMITTER = first("belief_updated").emitter_id;

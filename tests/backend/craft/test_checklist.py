@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from equipment import TWO_EMITTERS, spec
 from facts import CHECK
+from relief import hill, level, terrain
 from stage import Stage
 
 from backend.craft import checklist as module
@@ -14,8 +16,10 @@ from backend.craft.checklist import checklist, home_of
 from backend.craft.listening import Listening, channels_of
 from backend.events import CheckFact
 from backend.reasons import checks, refusals, safety, search
+from backend.reasons import terrain as terrain_reasons
 from backend.spec import EmitterSpec, MissionSpec, Polygon
-from hardware.readings import CheckName, ReturnAltitude
+from backend.terrain import Terrain
+from hardware.readings import CheckName, Place, ReturnAltitude
 from hardware.reasons.receiver import ReceiverUnplugged
 from planner.reason import remedy_of, text_of
 
@@ -32,9 +36,9 @@ def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 async def test_a_vehicle_that_stands_ready_passes_every_check() -> None:
     found, task = await checklist(spec(), Stage().craft(), None)
-    assert all(check.ok for check in found)
+    assert [check.name for check in found if not check.ok] == ["terrain"]
     names = {check.name for check in found}
-    assert names == {"vehicle_link", "failsafe", "area", "nets", "safety", "receiver", "pattern"}
+    assert names == {"vehicle_link", "failsafe", "area", "terrain", "nets", "safety", "receiver", "pattern"}
     assert task is not None
 
 
@@ -121,3 +125,51 @@ async def test_the_receiver_of_a_mission_that_flies_is_not_opened_again() -> Non
 def test_home_is_where_the_vehicle_stands_while_the_autopilot_says_none() -> None:
     state = replace(Stage().vehicle.state, home=None, home_amsl_m=None, altitude_amsl_m=140.0, altitude_relative_m=40.0)
     assert home_of(state) == (state.position, 100.0)
+
+
+class Known:
+    """Grounds of one terrain."""
+
+    def __init__(self, found: Terrain | None) -> None:
+        self.found = found
+
+    async def around(self, home: Place) -> Terrain | None:
+        return self.found
+
+    async def keep(self, terrain: Terrain) -> None:
+        pass
+
+    async def kept(self, digest: str) -> Terrain | None:
+        return self.found
+
+
+async def ground_lines(found: Terrain | None) -> list[CheckFact]:
+    lines, _ = await checklist(spec(), Stage().craft(), None, grounds=Known(found))
+    return [line for line in lines if line.name == "terrain"]
+
+
+async def test_without_terrain_it_says_that_the_ground_counts_as_level() -> None:
+    (line,) = await ground_lines(None)
+    assert (line.ok, line.blocking, line.reason) == (False, False, terrain_reasons.NoTerrain())
+    (elsewhere,) = await ground_lines(Terrain(10.0, 10.0, 0.001, 0.001, np.ones((9, 9), np.float32)))
+    assert elsewhere.reason == terrain_reasons.NoTerrain()
+
+
+async def test_terrain_under_the_whole_fence_passes_and_names_the_highest_ground() -> None:
+    (line,) = await ground_lines(terrain(hill(0.0, 60.0, 12.0)))
+    assert line.ok
+    assert isinstance(line.reason, terrain_reasons.TerrainCovers)
+    assert line.reason.highest_above_home_m == pytest.approx(12.0, abs=1.0)
+
+
+async def test_terrain_under_a_part_is_a_caution() -> None:
+    (line,) = await ground_lines(terrain(level(), reach_m=100.0))
+    assert (line.ok, line.blocking) == (False, False)
+    assert isinstance(line.reason, terrain_reasons.TerrainPartly)
+
+
+async def test_a_home_that_terrain_and_autopilot_put_elsewhere_is_a_caution() -> None:
+    covers, differs = await ground_lines(terrain(level(130.0)))
+    assert isinstance(covers.reason, terrain_reasons.TerrainCovers)
+    assert differs.reason == terrain_reasons.HomeHeightDiffers(130.0, 100.0)
+    assert (differs.ok, differs.blocking) == (False, False)

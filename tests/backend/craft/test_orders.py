@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from craft_walk import PHASES, CraftWalk, craft_in, moves, refusal, sent
 from facts import (
@@ -21,7 +23,17 @@ from facts import (
 
 from backend import commands
 from backend.craft import effects, inputs
-from backend.events import AreaChanged, BearingExcluded, Phase, PlanChosen, PreflightChecked, SafetyVetoed
+from backend.events import (
+    AreaChanged,
+    BearingExcluded,
+    FlightStarted,
+    GroundFact,
+    MissionStarted,
+    Phase,
+    PlanChosen,
+    PreflightChecked,
+    SafetyVetoed,
+)
 from backend.reasons import PreflightFailed, refusals
 from backend.reasons.safety import NotGivenBack, PilotControls
 
@@ -110,6 +122,24 @@ def test_an_override_replaces_the_running_flight_and_measurement() -> None:
         chosen = walk.craft.chosen
         assert isinstance(chosen, PlanChosen)
         assert (chosen.source, chosen.by, chosen.emitter_id) == ("operator", "anna", None)
+
+
+def test_a_flight_starts_at_the_altitude_that_was_foreseen_for_its_place_else_at_the_missions() -> None:
+    for foreseen, expected in ((187.5, 187.5), (None, START.home_amsl_m + SPEC.flight.altitude_relative_m)):
+        walk = craft_in("waiting")
+        walk.order(commands.Override(place=HOME), altitude_amsl_m=foreseen)
+        assert walk.of_kind(FlightStarted)[-1].altitude_amsl_m == expected
+        walk = CraftWalk().to("planning")
+        walk.believe()
+        walk.give(inputs.Planned(plan().model_copy(update={"altitude_amsl_m": foreseen})))
+        assert walk.of_kind(FlightStarted)[-1].altitude_amsl_m == expected
+
+
+def test_the_start_names_the_ground_it_is_flown_over() -> None:
+    ground = GroundFact(digest="d", sources=["hills"], spacing_m=30.0, home_m=101.0)
+    walk = CraftWalk()
+    walk.order(commands.Start(), start=replace(START, ground=ground))
+    assert walk.of_kind(MissionStarted)[-1].ground == walk.search.ground == ground
 
 
 def test_an_override_in_hold_waits_for_resume() -> None:

@@ -4,12 +4,14 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from air import still_air
 from airspace import airspace
 from facts import FAILSAFE, GIVEN_BACK, PILOT
 from hypothesis import given
 from hypothesis import strategies as st
+from relief import Shape, hill, level, terrain
 from shapely import box
 
 from backend.craft.endurance import LEG_S, landing_s
@@ -29,6 +31,8 @@ from backend.craft.safety import (
 )
 from backend.reasons import Reason, safety
 from backend.search.area import EDGE_TOLERANCE_M
+from backend.search.ground import Ground
+from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
 from planner.reason import remedy_of
@@ -41,10 +45,8 @@ LIMITS = Limits(
     fence=FENCE,
     no_fly=(ZONE,),
     problem=airspace(FENCE, ZONE),
-    altitude_relative_m=40.0,
-    minimum_altitude_relative_m=10.0,
-    maximum_altitude_relative_m=120.0,
-    home_amsl_m=100.0,
+    ground=Ground(FRAME, 100.0),
+    flight=FlightSpec(),
     reserve_percent=25.0,
     battery_telemetry=True,
     speed_m_s=7.0,
@@ -201,9 +203,8 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
 def test_nothing_takes_off_to_or_flies_at_an_altitude_outside_the_band(
     altitude: float, low: float, high: float
 ) -> None:
-    limits = replace(
-        LIMITS, altitude_relative_m=altitude, minimum_altitude_relative_m=low, maximum_altitude_relative_m=high
-    )
+    band = {"minimum_altitude_relative_m": low, "maximum_altitude_relative_m": high}
+    limits = replace(LIMITS, flight=FlightSpec(altitude_relative_m=altitude, **band))
     outside = not low - 0.5 <= altitude <= high + 0.5
     start = kinds(start_vetoes(limits, situation(in_air=False)))
     place = kinds(place_vetoes(limits, situation(), FRAME.to_geo(50, 100), limits.home_amsl_m + altitude))
@@ -292,3 +293,58 @@ def test_a_battery_is_the_lower_the_less_it_leaves(charge: float, stage: str) ->
 def test_above_home_a_battery_is_never_so_low_that_it_lands_elsewhere() -> None:
     seen = Situation(telemetry(0.0, 2.0, battery_percent=3.0, altitude_relative_m=40.0), 1000.0, still_air(0.07))
     assert battery_stage(LIMITS, seen) == "last"
+
+
+def over(shape: Shape, **flight: object) -> Limits:
+    wide = box(-500, -500, 1500, 500)
+    return replace(
+        LIMITS,
+        fence=wide,
+        no_fly=(),
+        problem=airspace(wide),
+        ground=Ground(FRAME, 100.0, terrain(shape)),
+        flight=FlightSpec(**flight),  # type: ignore[arg-type]
+    )
+
+
+def flown(limits: Limits, east: float, north: float, amsl: float, seen: Situation | None = None) -> list[type]:
+    lasting = replace(seen or situation(), endurance=still_air(0.02))
+    return kinds(place_vetoes(limits, lasting, FRAME.to_geo(east, north), amsl))
+
+
+def test_a_way_over_a_hill_is_refused_below_the_clearance_and_allowed_above() -> None:
+    limits = over(hill(300.0, 0.0, 60.0))
+    assert flown(limits, 600, 0, 140.0) == [safety.ClearanceShort]
+    assert flown(limits, 600, 0, 184.0) == []
+    assert flown(limits, 0, 300, 140.0) == []
+
+
+def test_a_way_over_a_hollow_is_refused_above_the_ceiling() -> None:
+    limits = over(hill(300.0, 0.0, -60.0), maximum_above_ground_m=80.0)
+    assert flown(limits, 600, 0, 140.0) == [safety.TooHighAboveGround]
+
+
+def test_a_way_over_unknown_ground_is_refused() -> None:
+    limits = replace(over(level()), ground=Ground(FRAME, 100.0, terrain(level(), reach_m=300.0)))
+    assert flown(limits, 400, 0, 140.0) == [safety.GroundUnknown]
+
+
+def test_a_place_from_which_no_way_leads_home_is_refused() -> None:
+    """The vehicle is behind the mountain already; a place beside it would be fine, but for the way home."""
+    limits = over(hill(400.0, 0.0, 160.0), maximum_above_ground_m=300.0)
+    behind = replace(situation(east=800.0), endurance=still_air(0.02))
+    (veto,) = place_vetoes(limits, behind, FRAME.to_geo(810, 0), 140.0)
+    assert isinstance(veto, safety.ClearanceShort)
+    assert veto.where == "way_home"
+
+
+def test_a_start_beside_ground_that_rises_at_once_is_refused() -> None:
+    steep = over(lambda east, north: np.where(east > 5.0, 320.0, 100.0))
+    (veto,) = start_vetoes(steep, situation(in_air=False))
+    assert isinstance(veto, safety.TooHighAboveGround)
+    assert veto.where == "take_off"
+
+
+def test_without_terrain_the_band_alone_holds() -> None:
+    low = replace(LIMITS, flight=FlightSpec(altitude_relative_m=12.0))
+    assert kinds(place_vetoes(low, situation(), FRAME.to_geo(50, 100), 112.0)) == []

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from backend.maps import folder as folder_module
+from backend.maps import upload as upload_module
 from backend.maps.folder import MapFolder
 from backend.maps.refusal import MapRefused, NotStored
 from backend.reasons.maps import MapLabelDamaged, NotAnArchive, PutByHand
@@ -135,7 +135,7 @@ async def test_a_part_file_of_a_dead_server_is_removed(folder: MapFolder, make_a
     old, fresh = folder.directory / ".upload-old.part", folder.directory / ".upload-fresh.part"
     old.write_bytes(b"x")
     fresh.write_bytes(b"x")
-    os.utime(old, (NOW.timestamp() - 10 * folder_module.ABANDONED_S,) * 2)
+    os.utime(old, (NOW.timestamp() - 10 * upload_module.ABANDONED_S,) * 2)
     os.utime(fresh, (NOW.timestamp(),) * 2)
     await folder.store(pieces(make_archive().read_bytes()), "m", None, NOW, workers)
     assert not old.exists()

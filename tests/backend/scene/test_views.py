@@ -14,6 +14,7 @@ from backend.ports import TrackPoint
 from backend.scene import views as views_module
 from backend.scene.items import Scene
 from backend.scene.views import MOST_VIEWS, SceneViews, TooManyViews
+from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest
 from hardware.readings import Place, Telemetry
 
@@ -45,6 +46,9 @@ class PaperSource:
     async def read(self, mission_id: str) -> list[Recorded]:
         self.reads += 1
         return list(self.recorded)
+
+    async def ground(self, digest: str) -> Terrain | None:
+        return None
 
     async def track(self, mission_id: str) -> list[TrackPoint]:
         return self.points
