@@ -76,7 +76,7 @@ def test_a_failsafe_that_an_order_has_stopped_leaves_the_craft_in_hold_and_sends
     assert not walk.topics
 
 
-@pytest.mark.parametrize("phase", HOMEWARD)
+@pytest.mark.parametrize("phase", sorted(HOMEWARD))
 def test_a_failsafe_that_ends_on_the_way_home_is_said_and_leaves_everything_as_it_is(phase: Phase) -> None:
     walk = craft_in(phase)
     walk.give(inputs.AuthorityHeard(FAILSAFE))
