@@ -330,6 +330,6 @@ def test_without_a_fix_it_says_so_and_lands_after_a_while(flavour: type[Px4 | Ar
     firmware.navigation.lose_fix(20.0)
     run(firmware, 4.0)
     assert firmware.mode != "LAND"
-    assert (gps_raw_int(firmware).fix_type, firmware.navigation.satellites) == (1, 0)
+    assert (gps_raw_int(firmware).to_dict()["fix_type"], firmware.navigation.satellites) == (1, 0)
     run(firmware, 2.0)
     assert firmware.mode == "LAND"
