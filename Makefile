@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults takeovers codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help
+.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults takeovers battery-home codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -152,6 +152,14 @@ compare-direction-finders: setup-dev ## three direction finders on 2,000 simulat
 
 bench: setup ## the planner's speed on this machine
 	$(BIN)/python -m tests.benchmarks.planner_speed --out $(MEASUREMENTS)
+
+FLAVOUR ?= px4
+STRIKES ?= 96
+fly-real: setup-dev ## a running autopilot, VEHICLE=its address: it takes off, is flown as every vehicle must, and pilots take it over
+	@test -n "$(VEHICLE)" || { echo "Which vehicle? For instance: make fly-real VEHICLE=udpin://127.0.0.1:14540 FLAVOUR=px4"; exit 2; }
+	@CROSSFIX_TEST_VEHICLE=$(VEHICLE) $(BIN)/pytest tests/contracts/vehicle -k real --timeout 900; suite=$$?; \
+	$(BIN)/python -m tests.strikes.steady $(VEHICLE) --flavour $(FLAVOUR) --out $(MEASUREMENTS); steady=$$?; \
+	$(BIN)/python -m tests.strikes $(VEHICLE) --flavour $(FLAVOUR) --times $(STRIKES) --out $(MEASUREMENTS); exit $$((suite + steady + $$?))
 
 figures: setup-dev ## docs/measurements.md and the tables of the pages, from docs/measurements/*.json
 	$(BIN)/python -m tests.benchmarks.figures

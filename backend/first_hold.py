@@ -146,5 +146,7 @@ def _in_flight(connection: sqlite3.Connection) -> LeftInFlight | None:
 
 
 def _authority(body: dict[str, Any]) -> Authority:
-    known = {field.name: body[field.name] for field in fields(Authority) if field.name in body}
-    return Authority(**{name: tuple(value) if isinstance(value, list) else value for name, value in known.items()})
+    known: dict[str, Any] = {field.name: body[field.name] for field in fields(Authority) if field.name in body}
+    for name in ("commanded", "tolerated"):
+        known[name] = tuple(known.get(name, ()))
+    return Authority(**known)

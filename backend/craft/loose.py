@@ -79,10 +79,15 @@ class LooseCraft:
                 self._find(telemetry)
         else:
             self._look()
-            if self.state is not None and self.state.ladder is not None:  # else nothing would be ordered again
+            ordered = self._state_now()
+            if ordered is not None and ordered.ladder is not None:  # else nothing would be ordered again
                 for given in self._links.look(telemetry, self.equipment.clock.now(), None, None):
                     self._give(given)
             self._landed(telemetry)
+
+    def _state_now(self) -> CraftState | None:
+        """A look may have changed it."""
+        return self.state
 
     def order(self, command_id: str, by: str, command: LooseCommand) -> Reason | None:
         """Why it is refused, None when it is on its way. The same id gets the same answer."""

@@ -19,10 +19,12 @@ Outcome = Literal["localized", "not_localized", "aborted", "failed"]
 
 def _with_bounded_timers(spec: object) -> object:
     """Timers had no upper bound at first: a stored mission with a longer one is read with the longest there is now."""
-    stored = cast(dict[str, Any], spec) if isinstance(spec, dict) else {}
+    if not isinstance(spec, dict):
+        return spec
+    stored = cast(dict[str, Any], spec)
     timers = stored.get("timers")
     if not isinstance(timers, dict):
-        return spec
+        return stored
     bounded = {
         name: min(value, LONGEST_S[name]) if name in LONGEST_S and isinstance(value, int | float) else value
         for name, value in cast(dict[str, Any], timers).items()

@@ -28,11 +28,10 @@ from hardware.sim.autopilot.launch import SimulatedAutopilot
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Figure
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
+from tests.strikes.strike import FLIGHT
 from tests.system.console import Console, console, simulated_vehicle
 
 ALLOWED_S = 0.2
-FLIGHT = {16, 20, 21, 22, 115, 176, 178, 192, 400}
-"""MAV_CMD that move the vehicle: waypoint, return, land, take-off, yaw, mode, speed, reposition, arm."""
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 MOMENTS = (("flying", 5.0), ("measuring", 12.0), ("measuring", 12.0), ("planning", 0.3))
 """In which phase the pilot strikes, and how many seconds after its beginning at most: a turn is many commands."""

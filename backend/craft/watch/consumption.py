@@ -97,7 +97,7 @@ class Consumption:
         self._vector = self._vector + flown * lost / READING_PERCENT**2
 
     def _judge(self) -> None:
-        spread = np.linalg.inv(self._precision)
+        spread: FloatArray = np.asarray(np.linalg.inv(self._precision), np.float64)
         take = np.maximum(np.einsum("nij,nj->ni", spread, self._vector), 0.0)
         weight = self._wind.weights() * self._evidence(spread)
         self.endurance = Endurance(*winds(), weight / weight.sum(), take, spread)

@@ -25,5 +25,5 @@ test("the ground is an area, the clearance a line above it and the way a line ab
 
 test("ground that is not known is a gap", () => {
   const { ground } = profilePaths({ ...leg, ground_m: [100, null, 100] });
-  expect(ground).toBe("M0.0 83.3M100.0 83.3");
+  expect(ground).toBe("M0.0 85.7M100.0 85.7");
 });

@@ -3,12 +3,12 @@ import { render } from "preact";
 import { act } from "preact/test-utils";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { watchKeys } from "../app/keys";
-import { HOLD_MS } from "../commands/SlideToConfirm";
 import { landingArmed } from "../commands/landing";
+import { HOLD_MS } from "../commands/SlideToConfirm";
 import { urgent } from "../commands/urgent";
 import { FakeSource } from "../sources/fakeSource";
 import type { SourceMessage } from "../sources/source";
-import { moveClock } from "../state/clock";
+import { moveClock, nowMs } from "../state/clock";
 import { live } from "../state/connection";
 import { NOBODY } from "../state/craft";
 import { emptyLive } from "../state/live";
@@ -54,6 +54,7 @@ const show = (next: FakeSource, ...messages: SourceMessage[]) =>
 
 beforeEach(() => {
   vi.useFakeTimers();
+  nowMs.value = performance.now(); // the test before may have gone on into the future
   act(() => render(<SafetyBar />, document.body));
 });
 afterEach(async () => {
@@ -155,10 +156,10 @@ it("shows an order as not done until the vehicle confirms it, with the reason wh
       vi.advanceTimersByTime(200);
     });
   show(new FakeSource(), ...inPhase("returning"), someTelemetry(), craftStatus({ mission_id: "m", phase: "returning", order }));
-  expect(note()?.dataset["stage"]).toBe("waits");
+  expect(note()?.dataset.stage).toBe("waits");
   expect(note()?.getAttribute("role")).toBe("alert");
   becomes("tried");
-  expect(note()?.dataset["stage"]).toBe("tried");
+  expect(note()?.dataset.stage).toBe("tried");
   becomes("done");
   expect(note()).toBeNull();
 });

@@ -192,7 +192,8 @@ def _estimator_flags(firmware: Firmware) -> int:
 
 def estimator_status(firmware: Firmware) -> Message:
     flags = _estimator_flags(firmware)
-    return mavlink.MAVLink_estimator_status_message(int(firmware.time * 1e6), flags, *[0.1] * 6, 0.8, 1.2)
+    at_us = int(firmware.time * 1e6)
+    return mavlink.MAVLink_estimator_status_message(at_us, flags, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.8, 1.2)
 
 
 def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:

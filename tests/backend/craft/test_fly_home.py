@@ -106,7 +106,7 @@ async def test_a_return_leads_around_a_zone_at_the_missions_altitude_and_lands_a
     assert Point(path.coords[-1]).distance(Point(0, 0)) < 0.1
     assert [amsl for *_, amsl in craft.way] == pytest.approx([140.0] * len(craft.way))
     assert set(craft.vehicle.names) == {"goto", "land"}
-    assert craft.given == []
+    assert craft.given == [inputs.CarriedOut("return")]
 
 
 async def test_a_vehicle_that_is_low_climbs_before_it_goes_anywhere(returning: list[Returning]) -> None:

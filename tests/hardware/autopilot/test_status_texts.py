@@ -26,7 +26,7 @@ def test_a_short_text_is_given_at_once_with_its_severity() -> None:
     ]
 
 
-@pytest.mark.parametrize("order", permutations(range(3)))
+@pytest.mark.parametrize("order", list(permutations(range(3))))
 def test_chunks_are_joined_in_any_order_and_twice_does_no_harm(order: tuple[int, ...]) -> None:
     texts = StatusTexts()
     assert said(texts, {seq: CHUNKS[seq] for seq in order}) == [LONG]

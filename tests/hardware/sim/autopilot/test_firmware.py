@@ -274,13 +274,13 @@ def test_a_gps_jump_moves_the_vehicle_the_other_way_and_passes(flavour: type[Px4
 def test_the_fence_acts_by_its_parameter() -> None:
     for flavour, parameters, mode in (
         (Px4, {"GF_MAX_HOR_DIST": 50, "GF_ACTION": 3}, "RETURN"),
-        (ArduCopter, {"FENCE_RADIUS": 50, "FENCE_ACTION": 1}, "RTL"),
+        (ArduCopter, {"FENCE_RADIUS": 50, "FENCE_ACTION": 1, "FENCE_ENABLE": 1}, "RTL"),
     ):
         firmware = flying(flavour)
+        firmware.command(goto(90.0, 0.0))  # with the fence up PX4 refuses a place beyond it
         for name, value in parameters.items():
             firmware.parameters.set(name, value)
-        firmware.command(goto(90.0, 0.0))
-        run(firmware, 12.0)
+        run(firmware, 15.0)
         assert firmware.mode == mode
 
 
@@ -330,6 +330,6 @@ def test_without_a_fix_it_says_so_and_lands_after_a_while(flavour: type[Px4 | Ar
     firmware.navigation.lose_fix(20.0)
     run(firmware, 4.0)
     assert firmware.mode != "LAND"
-    assert (gps_raw_int(firmware).fix_type, firmware.navigation.satellites) == (1, 0)
+    assert (gps_raw_int(firmware).to_dict()["fix_type"], firmware.navigation.satellites) == (1, 0)
     run(firmware, 2.0)
     assert firmware.mode == "LAND"

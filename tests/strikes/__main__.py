@@ -1,0 +1,104 @@
+"""A pilot strikes at a real autopilot (or its firmware's own simulator) while this program steers it.
+
+    make fly-real VEHICLE=udpin://127.0.0.1:14540
+    python -m tests.strikes udpin://127.0.0.1:14540 --flavour px4 --times 96 --delays 0 80 250
+
+It takes off and flies some 70 m around its home at 12 m. The pilot takes over by mode switch and, where the autopilot
+lets them, by sticks, aimed at the commands that steer: under way on the link, or given before the takeover is known
+here. Prints a line a takeover, then one JSON object; ends with status 1 when one was undone or not noticed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import json
+import math
+import random
+import sys
+import time
+from pathlib import Path
+
+from hardware.autopilot.connect import connect_vehicle
+from hardware.clock import WallClock
+from hardware.ports import VehicleError
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import add_out, write
+from tests.strikes.pilot import piloted
+from tests.strikes.proxy import proxied
+from tests.strikes.scenes import MOMENTS, SCENES, Field, Scene
+from tests.strikes.strike import Means, Outcome
+from tests.strikes.tally import figures, line, summary, table
+
+
+async def run(given: argparse.Namespace) -> list[Outcome]:
+    outcomes, end_s = list[Outcome](), time.monotonic() + 60.0 * given.minutes
+    async with proxied(given.vehicle) as proxy, piloted(proxy, given.flavour) as pilot:
+        vehicle = await connect_vehicle(proxy.url, WallClock())
+        try:
+            field = Field(vehicle, proxy, pilot, random.Random(given.seed))
+            vehicle.take_control()
+            for number, (delay_s, scene, means) in enumerate(_order(given)):
+                if time.monotonic() > end_s:
+                    break
+                proxy.delay_s = delay_s
+                moment = MOMENTS[scene][number // given.mixed % len(MOMENTS[scene])]
+                try:
+                    outcome = await field.strike(scene, moment, means)
+                except (TimeoutError, VehicleError) as error:
+                    print(f"{scene}, {moment}: did not come about: {error}", flush=True)
+                    continue
+                outcomes.append(outcome)
+                print(line(outcome, pilot.flies), flush=True)
+        finally:
+            proxy.delay_s = 0.0
+            with contextlib.suppress(VehicleError):
+                vehicle.take_control()
+                await vehicle.land()
+            await vehicle.close()
+            if given.record is not None:
+                given.record.write_text("".join(f"{json.dumps(vars_of(passed))}\n" for passed in proxy.record))
+    return outcomes
+
+
+def vars_of(passed: object) -> list[object]:
+    return [getattr(passed, name) for name in ("at_s", "way", "number", "fields")]
+
+
+def _order(given: argparse.Namespace) -> list[tuple[float, Scene, Means]]:
+    """Delays, scenes and means mixed evenly, so that a run cut short is still balanced."""
+    mixed = [
+        (delay / 1000.0, scene, means) for scene in given.scenes for means in given.means for delay in given.delays
+    ]
+    given.mixed = len(mixed)
+    return (mixed * (given.times // len(mixed) + 1))[: given.times]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("vehicle", help="its address, as `crossfix serve --vehicle` takes it")
+    parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
+    parser.add_argument("--times", type=int, default=48)
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin no takeover after so long")
+    parser.add_argument("--delays", type=float, nargs="+", default=[0.0, 80.0, 250.0], help="ms each way")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
+    parser.add_argument("--means", nargs="+", choices=("mode", "sticks"), default=None)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--record", type=Path, help="write what passed, a JSON line each")
+    add_out(parser)
+    given = parser.parse_args()
+    given.means = given.means or (["mode", "sticks"] if given.flavour == "px4" else ["mode"])
+    begun = begin(__file__)
+    outcomes = asyncio.run(run(given))
+    print(json.dumps(summary(outcomes), indent=2))
+    title = f"Takeovers of a real autopilot, {given.flavour}"
+    page = "faults-in-flight.md#takeovers"
+    found = figures(outcomes, given.flavour)
+    if outcomes:
+        write(given.out, f"strikes_{given.flavour}", title, begun, found, tables=[table(outcomes)], page=page)
+    sys.exit(any(outcome.counts and (outcome.undone or outcome.noticed_s is None) for outcome in outcomes))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,154 @@
+"""The pilot of a real autopilot: mode switch and sticks, as a second ground station brings them to it.
+
+The pilot's radio has no delay, so it is put in at the vehicle's end of the proxy.
+"""
+
+# pyright: reportMissingTypeStubs=false
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from pymavlink.dialects.v20 import development as mavlink
+
+from hardware.autopilot.messages import SET_MODE
+from tests.strikes.proxy import (
+    COMMAND_ACK,
+    COMMAND_INT,
+    COMMAND_LONG,
+    CURRENT_MODE,
+    HEARTBEAT,
+    STATUS_TEXT,
+    Passed,
+    Proxy,
+)
+
+PILOT_SYSTEM = 254
+NEUTRAL = (0, 0, 500, 0)
+"""Pitch, roll, throttle, yaw of MANUAL_CONTROL: hands off."""
+PUSHED = (700, 0, 500, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Habits:
+    """An autopilot's modes in which the pilot flies, and in which they give the vehicle back.
+
+    flown, given_back: (custom mode as commanded, raw mode as reported). sticks_take: moving them ends an
+    automatic mode.
+    """
+
+    flown: tuple[tuple[float, float], int]
+    given_back: tuple[tuple[float, float], int]
+    sticks_take: bool
+    sticks_text: str = ""
+
+
+HABITS = {
+    "px4": Habits(((3.0, 0.0), 3 << 16), ((4.0, 3.0), 4 << 16 | 3 << 24), True, "Pilot took over"),
+    "ardupilot": Habits(((5.0, 0.0), 5), ((17.0, 0.0), 17), False),
+}
+"""POSCTL and HOLD; LOITER and BRAKE."""
+
+
+class Pilot:
+    """flies: raw modes in which the pilot has the vehicle."""
+
+    def __init__(self, proxy: Proxy, habits: Habits) -> None:
+        self.habits = habits
+        self.flies = habits.flown[1]
+        self._proxy = proxy
+        self._encoder = mavlink.MAVLink(None, PILOT_SYSTEM, 190)
+        self._sticks = NEUTRAL
+
+    def _send(self, message: Any) -> float:
+        return self._proxy.put_in(bytes(message.pack(self._encoder)), message.get_msgId(), message.to_dict())
+
+    def _switch(self, custom: tuple[float, float]) -> float:
+        return self._send(
+            self._encoder.command_long_encode(1, 1, SET_MODE, 0, 1.0, custom[0], custom[1], 0.0, 0.0, 0.0, 0.0)
+        )
+
+    def command(self, number: int, *params: float) -> float:
+        """Any other command of the second station: failures made on purpose, for instance."""
+        given = (*params, *(0.0,) * (7 - len(params)))
+        return self._send(self._encoder.command_long_encode(1, 1, number, 0, *given))
+
+    def take_by_mode(self) -> float:
+        """When, by time.monotonic."""
+        return self._switch(self.habits.flown[0])
+
+    def take_by_sticks(self) -> float:
+        """Push them; `release_sticks` ends it."""
+        self._sticks = PUSHED
+        return self._move()
+
+    def release_sticks(self) -> None:
+        self._sticks = NEUTRAL
+
+    def give_back(self) -> float:
+        self.release_sticks()
+        return self._switch(self.habits.given_back[0])
+
+    def _move(self) -> float:
+        return self._send(self._encoder.manual_control_encode(1, *self._sticks, 0))
+
+    async def hands_on(self) -> None:
+        """The transmitter stays switched on: without it the autopilot refuses the modes that a pilot flies."""
+        while True:
+            self._move()
+            await asyncio.sleep(0.05)
+
+    def took(self, since_s: float) -> float | None:
+        """When the autopilot first said that the pilot has it (its answer, its text or its mode)."""
+        return next((passed.at_s for passed in self._proxy.since(since_s) if self._says_taken(passed)), None)
+
+    def _says_taken(self, passed: Passed) -> bool:
+        fields = passed.fields
+        if passed.way != "from":
+            return False
+        if passed.number == COMMAND_ACK:
+            mine = fields.get("target_system") == PILOT_SYSTEM and fields["command"] == SET_MODE
+            return bool(mine and fields["result"] == mavlink.MAV_RESULT_ACCEPTED)
+        if passed.number == STATUS_TEXT:
+            return bool(self.habits.sticks_text) and str(fields["text"]).startswith(self.habits.sticks_text)
+        return mode_of(passed) == self.flies
+
+
+def mode_of(passed: Passed) -> int | None:
+    """The raw mode, of a message of the vehicle that tells it."""
+    if passed.way != "from" or passed.number not in (HEARTBEAT, CURRENT_MODE):
+        return None
+    if passed.number == HEARTBEAT and passed.fields.get("autopilot") == mavlink.MAV_AUTOPILOT_INVALID:
+        return None
+    mode = passed.fields.get("custom_mode")
+    return None if mode is None else int(mode)
+
+
+@asynccontextmanager
+async def piloted(proxy: Proxy, flavour: str) -> AsyncIterator[Pilot]:
+    """A pilot with the transmitter in their hands, where that is read as MANUAL_CONTROL."""
+    pilot = Pilot(proxy, HABITS[flavour])
+    hands = asyncio.create_task(pilot.hands_on()) if pilot.habits.sticks_take else None
+    try:
+        yield pilot
+    finally:
+        if hands is not None:
+            hands.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await hands
+
+
+def reaching(proxy: Proxy, since_s: float, numbers: frozenset[int]) -> list[float]:
+    """Seconds after `since_s` at which commands of the program under test reached the vehicle."""
+    return [
+        passed.at_s - since_s
+        for passed in proxy.since(since_s)
+        if passed.way == "to"
+        and passed.number in (COMMAND_LONG, COMMAND_INT)
+        and int(passed.fields["command"]) in numbers
+    ]

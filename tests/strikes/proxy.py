@@ -1,0 +1,108 @@
+"""Between the program under test and a real autopilot: delays each way, losses, a record, and a way in for a pilot.
+
+The record is kept at the vehicle's end: when a message left the autopilot and when a command reached it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from hardware.sim.autopilot.launch import free_port
+from tests.strikes.frames import Frame
+from tests.strikes.wire import Send, datagrams, vehicle_end
+
+HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE = 0, 1, 75, 76, 77, 253, 436
+ATTITUDE, GLOBAL_POSITION = 30, 33
+KEPT = frozenset({HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE})
+"""Numbers of the messages in the record, unless a proxy is told others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """at_s: of time.monotonic, at the vehicle's end. way: to the vehicle, from it, or put in by the pilot."""
+
+    at_s: float
+    way: Literal["to", "from", "pilot"]
+    number: int
+    fields: dict[str, Any]
+
+
+@dataclass
+class Proxy:
+    """delay_s: each way. loss: share of frames, each way. url: where the program under test finds the vehicle.
+
+    on_sent(number, fields): a kept message left the program under test and reaches the vehicle `delay_s` later.
+    """
+
+    delay_s: float = 0.0
+    loss: float = 0.0
+    url: str = ""
+    kept: frozenset[int] = KEPT
+    record: list[Passed] = field(default_factory=list[Passed])
+    on_sent: Callable[[int, dict[str, Any]], None] | None = None
+    chance: random.Random = field(default_factory=lambda: random.Random(1))
+    to_vehicle: Send = lambda raw: None
+    to_program: Send = lambda raw: None
+
+    def since(self, at_s: float) -> list[Passed]:
+        """What passed at or after `at_s`."""
+        first = len(self.record)
+        while first and self.record[first - 1].at_s >= at_s:
+            first -= 1
+        return self.record[first:]
+
+    def from_program(self, frame: Frame) -> None:
+        fields = frame.fields() if frame.number in self.kept else None
+        if self.chance.random() < self.loss:
+            return
+        if fields is not None and self.on_sent is not None:
+            self.on_sent(frame.number, fields)
+        self._later(self._reach_vehicle, frame, fields)
+
+    def _reach_vehicle(self, frame: Frame, fields: dict[str, Any] | None) -> None:
+        self.to_vehicle(frame.raw)
+        if fields is not None:
+            self.record.append(Passed(time.monotonic(), "to", frame.number, fields))
+
+    def from_vehicle(self, frame: Frame) -> None:
+        if frame.number in self.kept:
+            self.record.append(Passed(time.monotonic(), "from", frame.number, frame.fields()))
+        if self.chance.random() >= self.loss:
+            self._later(self._reach_program, frame)
+
+    def _reach_program(self, frame: Frame) -> None:
+        self.to_program(frame.raw)
+
+    def put_in(self, raw: bytes, number: int, fields: dict[str, Any]) -> float:
+        """What a pilot's own radio brings to the autopilot: no delay, no loss. Returns when."""
+        self.to_vehicle(raw)
+        now = time.monotonic()
+        if number in self.kept:
+            self.record.append(Passed(now, "pilot", number, fields))
+        return now
+
+    def _later(self, deliver: Callable[..., None], *given: Any) -> None:
+        if self.delay_s > 0.0:
+            asyncio.get_running_loop().call_later(self.delay_s, deliver, *given)
+        else:
+            deliver(*given)
+
+
+@asynccontextmanager
+async def proxied(vehicle_url: str) -> AsyncIterator[Proxy]:
+    """A proxy to the vehicle; the program under test connects to its `url`."""
+    proxy = Proxy()
+    port = free_port()
+    proxy.url = f"udpin://127.0.0.1:{port}"
+    program = ("127.0.0.1", port)
+    async with (
+        vehicle_end(vehicle_url, proxy.from_vehicle) as proxy.to_vehicle,
+        datagrams(proxy.from_program, peer=program) as proxy.to_program,
+    ):
+        yield proxy

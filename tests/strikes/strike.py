@@ -1,0 +1,135 @@
+"""One aimed takeover and what became of it, judged at the vehicle's end of the link."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from hardware.autopilot.vehicle import MavsdkVehicle
+from tests.strikes.pilot import Pilot, mode_of, reaching
+from tests.strikes.proxy import COMMAND_INT, COMMAND_LONG, Proxy
+
+Means = Literal["mode", "sticks"]
+Moment = Literal["crossing", "before", "under way"]
+"""crossing: the command has left us and not reached the vehicle. before: the order is given just after the takeover,
+before its news can be here. under way: at any moment."""
+
+FLIGHT = frozenset({16, 20, 21, 22, 115, 176, 178, 192, 400})
+"""MAV_CMD that move the vehicle: waypoint, return, land, take-off, yaw, mode, speed, reposition, arm."""
+WATCHED_S = 3.0
+NOTICED_S = 1.0
+REPORT_S = 0.12
+"""At most so long after a change the autopilot reports its mode (ten times a second)."""
+STICKS_S = 0.5
+STALE_S = 0.15
+"""A report of the mode that was under way inside the autopilot when the pilot took it may still be of before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """undone: the autopilot left the pilot's mode without them. noticed_s: until we knew; None: not within a second.
+
+    took_s: until the autopilot said so; None: never, the switch did not take. back_to: the raw mode that undid it.
+    last_command_s: the last flight command that reached the vehicle, after the strike; 0 when none did.
+    """
+
+    scene: str
+    moment: Moment
+    means: Means
+    delay_s: float
+    took_s: float | None
+    undone: bool
+    back_to: int | None
+    noticed_s: float | None
+    last_command_s: float
+    commands: int
+
+    @property
+    def counts(self) -> bool:
+        return self.took_s is not None
+
+
+class Aim:
+    """Fires once: at a flight command in the air, or after a time; `at_s` tells when it did."""
+
+    def __init__(self, proxy: Proxy, pilot: Pilot, means: Means, chance: random.Random) -> None:
+        self._proxy = proxy
+        self._pilot = pilot
+        self._means: Means = means
+        self._chance = chance
+        self.fired = asyncio.Event()
+        self.at_s = 0.0
+
+    def at_command(self, numbers: frozenset[int], skip: int) -> None:
+        """While the `skip`-th next command of these numbers is under way to the vehicle."""
+        left = skip
+
+        def sent(number: int, fields: dict[str, object]) -> None:
+            nonlocal left
+            if number not in (COMMAND_INT, COMMAND_LONG) or int(str(fields["command"])) not in numbers:
+                return
+            left -= 1
+            if left < 0:
+                self._proxy.on_sent = None
+                self.after(self._chance.uniform(0.0, self._proxy.delay_s))
+
+        self._proxy.on_sent = sent
+
+    def after(self, seconds: float) -> None:
+        if seconds <= 0.0:
+            self._fire()
+        else:
+            asyncio.get_running_loop().call_later(seconds, self._fire)
+
+    def _fire(self) -> None:
+        if not self.fired.is_set():
+            self.at_s = self._pilot.take_by_sticks() if self._means == "sticks" else self._pilot.take_by_mode()
+            self.fired.set()
+
+
+async def watch(
+    aim: Aim, proxy: Proxy, pilot: Pilot, vehicle: MavsdkVehicle, scene: str, moment: Moment, means: Means
+) -> Outcome:
+    """From the strike on for three seconds and both ways of the link."""
+    end_s = aim.at_s + WATCHED_S + 2.0 * proxy.delay_s
+    noticed_s: float | None = None
+    while (now_s := time.monotonic()) < end_s:
+        if now_s > aim.at_s + STICKS_S:
+            pilot.release_sticks()
+        if noticed_s is None and vehicle.telemetry().authority.taken_by is not None:
+            noticed_s = now_s - aim.at_s
+        await asyncio.sleep(0.01)
+    took_at_s = pilot.took(aim.at_s)
+    back_to = None if took_at_s is None else left_for(proxy, pilot, took_at_s)
+    late = reaching(proxy, aim.at_s, FLIGHT)
+    return Outcome(
+        scene=scene,
+        moment=moment,
+        means=means,
+        delay_s=proxy.delay_s,
+        took_s=None if took_at_s is None else took_at_s - aim.at_s,
+        undone=back_to is not None,
+        back_to=back_to,
+        noticed_s=noticed_s,
+        last_command_s=max(late, default=0.0),
+        commands=len(late),
+    )
+
+
+def left_for(proxy: Proxy, pilot: Pilot, took_at_s: float) -> int | None:
+    """The first mode reported after the takeover that is not the pilot's; sticks that take again do not mend it."""
+    told = [mode_of(passed) for passed in proxy.since(took_at_s + STALE_S)]
+    return next((mode for mode in told if mode is not None and mode != pilot.flies), None)
+
+
+async def until(happened: Callable[[], bool], seconds: float, what: str) -> None:
+    """Raises TimeoutError that says what did not happen."""
+    end_s = time.monotonic() + seconds
+    while not happened():
+        if time.monotonic() > end_s:
+            raise TimeoutError(f"{what}: not within {seconds:g} s")
+        await asyncio.sleep(0.05)

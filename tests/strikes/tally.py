@@ -1,0 +1,84 @@
+"""What the strikes came to: a line each, counts by scene, means and delay, and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tests.benchmarks.figures.record import Column, Figure, Table
+from tests.benchmarks.figures.writer import plain, wanted
+from tests.strikes.strike import NOTICED_S, Outcome
+
+
+def unnoticed(outcome: Outcome) -> bool:
+    return outcome.noticed_s is None or outcome.noticed_s > NOTICED_S
+
+
+def line(outcome: Outcome, flown: int) -> str:
+    """For a person who watches the run."""
+    noticed = "never noticed" if outcome.noticed_s is None else f"noticed {outcome.noticed_s:.2f} s"
+    took = "did not take" if outcome.took_s is None else f"took {outcome.took_s:.3f} s"
+    undone = f"UNDONE to {outcome.back_to:#x} (the pilot's is {flown:#x})" if outcome.back_to is not None else "stays"
+    return (
+        f"{outcome.scene:9} {outcome.moment:10} {outcome.means:6} {outcome.delay_s * 1e3:4.0f} ms: {took}, {undone}, "
+        f"{noticed}, {outcome.commands} commands afterwards, the last {outcome.last_command_s:.2f} s"
+    )
+
+
+def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    counted = [outcome for outcome in outcomes if outcome.counts]
+    return {
+        "struck": len(outcomes),
+        "took": len(counted),
+        "undone": sum(outcome.undone for outcome in counted),
+        "unnoticed": sum(map(unnoticed, counted)),
+        "undone_unnoticed": sum(outcome.undone and unnoticed(outcome) for outcome in counted),
+        "slowest_notice_s": max((o.noticed_s for o in counted if o.noticed_s is not None), default=None),
+        "latest_command_s": max((o.last_command_s for o in counted), default=None),
+        "by": [dict(zip((c.name for c in table(outcomes).columns), row, strict=True)) for row in table(outcomes).rows],
+    }
+
+
+def table(outcomes: Sequence[Outcome]) -> Table:
+    groups: dict[tuple[str, str, float], list[Outcome]] = {}
+    for outcome in outcomes:
+        if outcome.counts:
+            groups.setdefault((outcome.scene, outcome.means, outcome.delay_s), []).append(outcome)
+    rows = [
+        (
+            scene,
+            means,
+            round(delay_s * 1e3),
+            len(group),
+            sum(outcome.undone for outcome in group),
+            sum(map(unnoticed, group)),
+            max((o.noticed_s for o in group if o.noticed_s is not None), default=None),
+            max(outcome.last_command_s for outcome in group),
+        )
+        for (scene, means, delay_s), group in sorted(groups.items())
+    ]
+    columns = (
+        Column(name="while"),
+        Column(name="by"),
+        Column(name="delay each way, ms"),
+        Column(name="takeovers"),
+        Column(name="undone"),
+        Column(name="unnoticed for 1 s"),
+        Column(name="slowest notice, s", decimals=2),
+        Column(name="last command, s after", decimals=2),
+    )
+    return Table(name="runs", columns=columns, rows=tuple(rows))
+
+
+def figures(outcomes: Sequence[Outcome], flavour: str) -> list[Figure]:
+    counted = [outcome for outcome in outcomes if outcome.counts]
+    delays = ", ".join(f"{delay * 1e3:g}" for delay in sorted({outcome.delay_s for outcome in counted}))
+    note = f"of {len(counted)} at {delays} ms each way"
+    return [
+        wanted("takeovers_undone", sum(outcome.undone for outcome in counted), of=flavour, note=note),
+        wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=flavour, note=note),
+        plain("takeovers aimed at real autopilots", len(counted), ""),
+        plain("strikes that did not take", len(outcomes) - len(counted), ""),
+        plain("slowest notice", max((o.noticed_s for o in counted if o.noticed_s is not None), default=0.0), "s"),
+        plain("last flight command after a takeover", max((o.last_command_s for o in counted), default=0.0), "s"),
+    ]

@@ -1,0 +1,76 @@
+"""The judge of takeovers is right about what the record says, and a strike at a simulated autopilot comes about."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+
+import pytest
+
+from hardware.autopilot.connect import connect_vehicle
+from hardware.clock import WallClock
+from hardware.sim.autopilot.launch import Setting, launch_simulated
+from tests.strikes.pilot import HABITS, PILOT_SYSTEM, Pilot, piloted
+from tests.strikes.proxy import COMMAND_ACK, CURRENT_MODE, STATUS_TEXT, Passed, Proxy, proxied
+from tests.strikes.scenes import Field
+from tests.strikes.strike import left_for
+
+POSCTL, HOLD = 3 << 16, 4 << 16 | 3 << 24
+
+
+def said(at_s: float, mode: int) -> Passed:
+    return Passed(at_s, "from", CURRENT_MODE, {"custom_mode": mode})
+
+
+def pilot_of(*passed: Passed) -> tuple[Proxy, Pilot]:
+    proxy = Proxy(record=list(passed))
+    return proxy, Pilot(proxy, HABITS["px4"])
+
+
+def test_a_takeover_that_lasts_is_not_undone_by_a_report_of_the_mode_before() -> None:
+    proxy, pilot = pilot_of(said(9.9, HOLD), said(10.0, POSCTL), said(10.1, HOLD), said(10.3, POSCTL))
+
+    assert pilot.took(9.95) == 10.0
+    assert left_for(proxy, pilot, 10.0) is None
+
+
+def test_a_takeover_undone_is_seen_even_when_sticks_take_again() -> None:
+    answer = {"target_system": PILOT_SYSTEM, "command": 176, "result": 0}
+    proxy, pilot = pilot_of(
+        Passed(10.0, "from", COMMAND_ACK, answer), said(10.05, HOLD), said(10.25, HOLD), said(10.4, POSCTL)
+    )
+
+    assert pilot.took(9.95) == 10.0
+    assert left_for(proxy, pilot, 10.0) == HOLD
+
+
+@pytest.mark.parametrize("fields", [{"target_system": 255, "result": 0}, {"target_system": PILOT_SYSTEM, "result": 2}])
+def test_another_stations_answer_or_a_refusal_is_no_takeover(fields: dict[str, int]) -> None:
+    _, pilot = pilot_of(Passed(10.0, "from", COMMAND_ACK, {"command": 176, **fields}), said(10.1, HOLD))
+
+    assert pilot.took(9.9) is None
+
+
+def test_the_sticks_are_told_by_text() -> None:
+    _, pilot = pilot_of(Passed(10.0, "from", STATUS_TEXT, {"text": "Pilot took over using sticks"}))
+
+    assert pilot.took(9.9) == 10.0
+
+
+@pytest.mark.slow
+async def test_a_strike_at_a_simulated_px4_takes_and_is_noticed() -> None:
+    autopilot = await launch_simulated(Setting(flavour="px4", speedup=1.0, seed=7))
+    async with proxied(autopilot.url) as proxy, piloted(proxy, "px4") as pilot:
+        vehicle = await connect_vehicle(proxy.url, WallClock())
+        try:
+            proxy.delay_s = 0.05
+            outcome = await Field(vehicle, proxy, pilot, random.Random(1)).strike("flight", "under way", "mode")
+        finally:
+            await vehicle.close()
+            await autopilot.stop()
+            await asyncio.sleep(0)
+
+    assert outcome.took_s is not None
+    assert not outcome.undone
+    assert outcome.noticed_s is not None
+    assert 0.05 <= outcome.noticed_s < 1.0
