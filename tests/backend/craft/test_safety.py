@@ -20,6 +20,7 @@ from backend.craft.safety import (
     Situation,
     battery_stage,
     battery_to_return_percent,
+    ground_return_vetoes,
     place_vetoes,
     resume_vetoes,
     return_vetoes,
@@ -343,6 +344,14 @@ def test_a_start_beside_ground_that_rises_at_once_is_refused() -> None:
     (veto,) = start_vetoes(steep, situation(in_air=False))
     assert isinstance(veto, safety.TooHighAboveGround)
     assert veto.where == "take_off"
+
+
+def test_a_way_home_has_to_keep_the_clearance_but_not_the_ceiling() -> None:
+    way = [(600.0, 0.0), (0.0, 0.0)]
+    assert kinds(ground_return_vetoes(over(hill(300.0, 0.0, 60.0)), way, 140.0)) == [safety.ClearanceShort]
+    assert ground_return_vetoes(over(hill(300.0, 0.0, -60.0), maximum_above_ground_m=80.0), way, 140.0) == ()
+    unknown = replace(over(level()), ground=Ground(FRAME, 100.0, terrain(level(), reach_m=300.0)))
+    assert kinds(ground_return_vetoes(unknown, way, 140.0)) == [safety.GroundUnknown]
 
 
 def test_without_terrain_the_band_alone_holds() -> None:
