@@ -112,11 +112,23 @@ def battery_to_return_percent(
     limits: Limits, position: Place, endurance: Endurance, altitude_relative_m: float | None = None
 ) -> float:
     """Charge that the way home from `position` takes, around what may not be flown over, and the landing. The reserve
-    is not included. altitude_relative_m: of the vehicle there, None: the mission's."""
-    legs = legs_home(limits.problem, limits.frame.to_enu(position))
-    height = limits.altitude_relative_m if altitude_relative_m is None else altitude_relative_m
-    climb = limits.altitude_relative_m - height if legs else 0.0
+    is not included. altitude_relative_m: of the vehicle there, None: the one that the way home is flown at."""
+    at = limits.frame.to_enu(position)
+    legs = legs_home(limits.problem, at)
+    returning = _return_altitude_relative_m(limits, at, legs)
+    height = returning if altitude_relative_m is None else altitude_relative_m
+    climb = returning - height if legs else 0.0
     return endurance.way_percent(legs, limits.speed_m_s, landing_s(height + max(climb, 0.0)), climb)
+
+
+def _return_altitude_relative_m(limits: Limits, at: tuple[float, float], legs: Way) -> float:
+    """The mission's, or as high as the ground of the way home asks."""
+    if limits.ground.terrain is None:
+        return limits.altitude_relative_m
+    way = [at]
+    for east, north in legs:
+        way.append((way[-1][0] + east, way[-1][1] + north))
+    return level_altitude(way, limits.ground, limits.flight) - limits.home_amsl_m
 
 
 def limits_of(task: SearchTask) -> Limits:

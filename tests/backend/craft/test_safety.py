@@ -346,6 +346,15 @@ def test_a_start_beside_ground_that_rises_at_once_is_refused() -> None:
     assert veto.where == "take_off"
 
 
+def test_the_climb_that_the_ground_of_the_way_home_asks_for_takes_battery() -> None:
+    place, endurance = FRAME.to_geo(600.0, 0.0), still_air(0.02)
+    flat = battery_to_return_percent(over(level()), place, endurance, 40.0)
+    assert flat == battery_to_return_percent(
+        replace(over(level()), ground=Ground(FRAME, 100.0)), place, endurance, 40.0
+    )
+    assert battery_to_return_percent(over(hill(300.0, 0.0, 60.0)), place, endurance, 40.0) > flat + 1.0
+
+
 def test_a_way_home_has_to_keep_the_clearance_but_not_the_ceiling() -> None:
     way = [(600.0, 0.0), (0.0, 0.0)]
     assert kinds(ground_return_vetoes(over(hill(300.0, 0.0, 60.0)), way, 140.0)) == [safety.ClearanceShort]
