@@ -15,7 +15,7 @@ import sqlite3
 from contextlib import closing, suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from backend.settings import Settings
 from backend.simulation.hangar import Hangar
@@ -147,6 +147,9 @@ def _in_flight(connection: sqlite3.Connection) -> LeftInFlight | None:
 
 def _authority(body: dict[str, Any]) -> Authority:
     known: dict[str, Any] = {field.name: body[field.name] for field in fields(Authority) if field.name in body}
-    for name in ("commanded", "tolerated"):
-        known[name] = tuple(known.get(name, ()))
-    return Authority(**known)
+    return Authority(**{name: _frozen(value) for name, value in known.items()})
+
+
+def _frozen(value: Any) -> Any:
+    """JSON has lists where the fact had tuples."""
+    return tuple(cast(list[Any], value)) if isinstance(value, list) else value

@@ -185,9 +185,9 @@ class Sweep:
     altitude_amsl_m: float
     drift_m: float = 0.0
     clipped_samples: int = 0
-    samples_without_heading: int = 0
     noise_floor_db: float | None = None
     tag: str | None = None
+    samples_without_heading: int = 0
 
 
 @dataclass(frozen=True, slots=True)
