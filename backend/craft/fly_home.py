@@ -14,6 +14,7 @@ import math
 from backend.craft import inputs
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import ground_return_vetoes, return_vetoes
+from backend.craft.under_way import UnderWay
 from backend.craft.way_home import ABOVE_HOME_M, Point2, way_home
 from backend.craft.work import LEVEL_M, Work
 from backend.reasons import Reason, carried, safety
@@ -27,8 +28,9 @@ CLIMB_FIRST_M = 3.0
 """A vehicle that is further than this from the altitude it returns at goes there first, on the spot."""
 
 
-async def fly_home(work: Work) -> inputs.AutopilotReturns | None:
+async def fly_home(work: Work, under_way: UnderWay) -> inputs.AutopilotReturns | None:
     """Returns once the landing at home, or the autopilot's own return, has begun; the latter with its reason.
+    under_way: is told of each leg.
 
     Raises NotInControl when somebody else flies, HardwareError when the autopilot does not return either.
     """
@@ -37,7 +39,7 @@ async def fly_home(work: Work) -> inputs.AutopilotReturns | None:
         await vehicle.return_home()
         return None
     try:
-        because = await _our_way(work)
+        because = await _our_way(work, under_way)
     except (NotInControl, VehicleUnreachable):
         raise
     except HardwareError as error:
@@ -62,7 +64,7 @@ async def _level_off(work: Work) -> None:
         log.warning("%s: no climb before the return: %s", work.equipment.craft_id, error)
 
 
-async def _our_way(work: Work) -> Reason | None:
+async def _our_way(work: Work, under_way: UnderWay) -> Reason | None:
     """Fly it. Why it cannot be flown (any further), None once the vehicle is above its home."""
     now = await recent(work.situation)
     position = now.telemetry.position
@@ -71,7 +73,7 @@ async def _our_way(work: Work) -> Reason | None:
     at = work.task.frame.to_enu(position)
     amsl = now.telemetry.altitude_amsl_m
     if math.hypot(*at) < ABOVE_HOME_M:
-        return await _over_home(work, at, amsl)
+        return await _over_home(work, under_way, at, amsl)
     way = await asyncio.to_thread(way_home, work.limits.problem, at)
     if way is None:
         return safety.NoWayHome(math.hypot(*at))
@@ -81,29 +83,34 @@ async def _our_way(work: Work) -> Reason | None:
         return against[0]
     off_m = CLIMB_FIRST_M if work.task.ground.terrain is None else LEVEL_M
     if amsl is not None and abs(altitude - amsl) > off_m:
-        because = await _leg(work, position, way, altitude)
+        because = await _leg(work, under_way, position, way, altitude)
         if because is not None:
             return because
     for index, point in enumerate(way):
         last = index == len(way) - 1
-        because = await _leg(work, work.task.home if last else work.task.frame.to_geo(*point), way[index:], altitude)
+        to = work.task.home if last else work.task.frame.to_geo(*point)
+        because = await _leg(work, under_way, to, way[index:], altitude)
         if because is not None:
             return because
     return None
 
 
-async def _over_home(work: Work, at: Point2, amsl: float | None) -> Reason | None:
+async def _over_home(work: Work, under_way: UnderWay, at: Point2, amsl: float | None) -> Reason | None:
     """The last metres, as high as it is; a vehicle that is lower than the band lands where it is."""
     low = work.limits.home_amsl_m + work.limits.minimum_altitude_relative_m
     if math.hypot(*at) < AT_HOME_M or amsl is None or amsl < low:
         return None
-    return await _leg(work, work.task.home, ((0.0, 0.0),), amsl)
+    return await _leg(work, under_way, work.task.home, ((0.0, 0.0),), amsl)
 
 
-async def _leg(work: Work, to: Place, way: tuple[Point2, ...], altitude: float) -> Reason | None:
+async def _leg(work: Work, under_way: UnderWay, to: Place, way: tuple[Point2, ...], altitude: float) -> Reason | None:
     """One leg at an altitude (m AMSL), and what safety has against it or against the rest of the way."""
     vetoes = return_vetoes(work.limits, await recent(work.situation), way, altitude)
     if vetoes:
         return vetoes[0]
-    await work.equipment.vehicle.goto(to, altitude, work.task.mission.flight.speed_m_s)
+    under_way.begin(to)
+    try:
+        await work.equipment.vehicle.goto(to, altitude, work.task.mission.flight.speed_m_s)
+    finally:
+        under_way.end()
     return None

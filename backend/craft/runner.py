@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import math
 from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from typing import Literal
@@ -22,6 +21,7 @@ from backend.craft.listening import Listening, channels_of
 from backend.craft.measuring import Measured
 from backend.craft.safety import Limits, battery_vetoes, limits_of, resume_vetoes
 from backend.craft.state import CraftState
+from backend.craft.under_way import UnderWay
 from backend.craft.watch.watch import Watch
 from backend.craft.work import Work
 from backend.ports import TrackPoint
@@ -29,7 +29,6 @@ from backend.reasons import Reason
 from backend.reasons.flight import WatchBroke
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
-from hardware.readings import Telemetry
 from hardware.reasons.vehicle_news import AutopilotSaid
 
 log = logging.getLogger("crossfix.craft")
@@ -37,8 +36,6 @@ log = logging.getLogger("crossfix.craft")
 TRACK_SAVED_S = 2.5
 KEEP_ON_S = 1.0
 UNDER_WAY_LOOK_S = 0.2
-MOVES_M_S = 1.0
-"""Faster than this a vehicle does not hover."""
 
 
 class CraftRunner:
@@ -136,17 +133,18 @@ class CraftRunner:
                 self._hands.carry_out(effect)
 
     async def _return_home(self) -> inputs.CarriedOut | inputs.AutopilotReturns | None:
-        """Around what may not be flown over. That it is done is told as soon as the vehicle is seen to move."""
+        """Around what may not be flown over. It counts as done as soon as the vehicle is seen to fly it."""
         if self._hands.down or self._hands.comes_by_itself:
             return None
-        watching = asyncio.create_task(self._tell_under_way())
+        under_way = UnderWay()
+        watching = asyncio.create_task(self._tell_under_way(under_way))
         try:
-            return await fly_home(self.work) or inputs.CarriedOut("return")
+            return await fly_home(self.work, under_way) or inputs.CarriedOut("return")
         finally:
             watching.cancel()
 
-    async def _tell_under_way(self) -> None:
-        while not _moves(self.equipment.vehicle.telemetry()):
+    async def _tell_under_way(self, under_way: UnderWay) -> None:
+        while not under_way.look(self.equipment.vehicle.telemetry()):
             await self.equipment.clock.sleep(UNDER_WAY_LOOK_S)
         self._give(inputs.CarriedOut("return"))
 
@@ -181,9 +179,3 @@ class CraftRunner:
         points = self.watch.track.take()
         if points:
             self._keep_track(points)
-
-
-def _moves(telemetry: Telemetry) -> bool:
-    """Horizontally or vertically."""
-    north, east, down = telemetry.velocity_north_m_s, telemetry.velocity_east_m_s, telemetry.velocity_down_m_s
-    return math.hypot(north or 0.0, east or 0.0, down or 0.0) > MOVES_M_S
