@@ -1,4 +1,4 @@
-"""A vehicle in the air is told to hold, to return or to land, whether it flies for a mission or not."""
+"""Orders to a vehicle in the air (hold, return, land), whether it flies for a mission or not."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def map_folder(services: ServicesDep) -> MapFolder:
 
 
 def overlay_folder(services: ServicesDep) -> OverlayFolder:
-    """Made anew each request; all of it is on disk."""
+    """One for each request; all of it is on disk."""
     settings = services.settings
     return OverlayFolder(settings.data_dir / "overlays", settings.disk_low_bytes)
 

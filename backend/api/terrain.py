@@ -43,7 +43,7 @@ TILE: dict[int | str, dict[str, object]] = {
 
 
 def terrain_folder(services: ServicesDep) -> TerrainFolder:
-    """Made anew each request; all of it is on disk."""
+    """One for each request; all of it is on disk."""
     return TerrainFolder(services.settings.data_dir / "terrain", services.settings.disk_low_bytes)
 
 

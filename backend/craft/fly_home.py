@@ -30,7 +30,7 @@ CLIMB_FIRST_M = 3.0
 
 async def fly_home(work: Work, under_way: UnderWay) -> inputs.AutopilotReturns | None:
     """Returns once the landing at home, or the autopilot's own return, has begun; the latter with its reason.
-    under_way: is told of each leg.
+    under_way: learns of each leg.
 
     Raises NotInControl when somebody else flies, HardwareError when the autopilot does not return either.
     """

@@ -1,7 +1,7 @@
 """A battery that runs low belongs to somebody: automatic flight returns at once, a held craft after a countdown.
 
 Who holds it may stop the countdown once a flight. Lower still it returns without asking, and when it would not get home
-any more it lands where it is. A pilot is told, and nothing is sent.
+any more it lands where it is. While a pilot flies an alert says so, and nothing is sent.
 """
 
 from __future__ import annotations

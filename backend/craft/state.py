@@ -55,7 +55,7 @@ class CraftState:
     chosen: the place proposed, flown to or measured at, None when the next is still to be planned. avoid: places vetoed
     or without a usable sweep since the last bearing, or since the search area changed. maximum_retakes: of one sweep,
     from the specification. refused: places that the autopilot would not fly to, since the search area changed;
-    refused_in_a_row: the last so many, none reached since. return_reason: why it is on its way home. ladder: of the
+    refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its way home. ladder: of the
     hold, return or landing that was ordered last; None once something else has come of it. counting_down: it returns
     soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a flight.
     """

@@ -111,7 +111,7 @@ class SweepStarted(Fact):
 
 
 class BatteryCountdownStarted(Fact):
-    """The craft holds and its battery runs low: it returns after so many seconds, unless somebody stops that (once)."""
+    """The craft holds and its battery runs low: it returns after `seconds`, unless somebody stops that, once."""
 
     kind: Literal["battery_countdown_started"] = "battery_countdown_started"
     craft_id: Id

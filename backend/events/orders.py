@@ -57,7 +57,7 @@ class AbortOrdered(Fact):
 
 
 class OrderTried(Fact):
-    """The vehicle is told to. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
+    """The rung is commanded. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
     was not done, None of the first try."""
 
     kind: Literal["order_tried"] = "order_tried"

@@ -128,7 +128,7 @@ class TerrainFolder:
         )
 
     def _source(self, terrain_id: str) -> Source:
-        """Opened anew when one of its files was written anew."""
+        """Opened again when one of its files was rewritten."""
         files = [path for path in sorted(self.directory.glob(f"{terrain_id}.*")) if path.suffix != ".part"]
         return _opened(self.directory, terrain_id, tuple(path.stat().st_mtime_ns for path in files))
 

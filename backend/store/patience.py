@@ -13,7 +13,7 @@ LONGEST_LOOK_S = 0.25
 
 @asynccontextmanager
 async def patience(seconds: float) -> AsyncGenerator[None]:
-    """Raises TimeoutError after so many seconds of the wall in which an answer would have been noticed."""
+    """Raises TimeoutError after that many seconds of the wall in which an answer would have been noticed."""
     loop = asyncio.get_running_loop()
     looked, waited = loop.time(), 0.0
 

@@ -116,7 +116,7 @@ class BootClock:
             self._start_again(min(self._late, key=lambda late: late.offset_s))
 
     def _remember(self, point: _Point) -> None:
-        """The lowest point of each BUCKET_S; a full bucket draws the line anew."""
+        """The lowest point of each BUCKET_S; a full bucket redraws the line."""
         points = self._points
         if not points or point.boot_s // BUCKET_S > points[-1].boot_s // BUCKET_S:
             if points:

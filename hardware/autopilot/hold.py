@@ -16,7 +16,7 @@ BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
 SLOWER, NEVER_FAST_M_S = 0.6, 2.0
 """Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
 HOVERS_S, HOVERS_WALL_S = 20.0, 2.0
-"""A vehicle that holds and in all this time does not come to rest is in a strong wind: it is told, and no error."""
+"""A vehicle that holds and in all this time does not come to rest is in a strong wind: that is news, not an error."""
 
 
 async def hold(guidance: Guidance) -> None:

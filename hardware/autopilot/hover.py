@@ -20,7 +20,7 @@ class Hover:
         self._spot: Place | None = None
 
     def see(self, place: Place, speed_m_s: float | None, at_s: float, allowed: bool = True) -> bool:
-        """True once it hovers. at_s: of this position; allowed False: not where it should be, so it starts anew."""
+        """True once it hovers. at_s: of this position; allowed False: not where it should be, so it starts again."""
         moved = self._spot is None or distance_m(self._spot, place) > SPOT_M
         if not allowed or speed_m_s is None or speed_m_s >= SLOW_M_S:
             self._since_s = self._spot = None

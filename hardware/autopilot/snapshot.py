@@ -26,7 +26,7 @@ _PREARM = 0x10000000  # MAV_SYS_STATUS_PREARM_CHECK
 _FIXES: tuple[GpsFixName, ...] = ("no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP")
 _ON_GROUND, _UNDEFINED = 1, 0  # MAV_LANDED_STATE
 _UNKNOWN_COUNT = 255
-"""GPS_RAW_INT: so many satellites are "not known"."""
+"""GPS_RAW_INT: the count that stands for "not known"."""
 _GRAVITY, _STEEPEST = 9.81, 1.2
 
 NAMES = (

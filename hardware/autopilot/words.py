@@ -9,7 +9,7 @@ MOST_CHARACTERS = 400
 
 
 def sanitized(text: str, most: int = MOST_CHARACTERS) -> str:
-    """One line of printable characters, at most so many. Ends at the first NUL, as the wire's strings do.
+    """One line of printable characters, at most `most` of them. Ends at the first NUL, as the wire's strings do.
 
     Control and format characters (line ends, escape sequences, right-to-left overrides) become spaces; those that
     are no character at all become U+FFFD.

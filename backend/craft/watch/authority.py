@@ -17,7 +17,7 @@ class AuthorityWatch:
     known: Authority
 
     def look(self, telemetry: Telemetry) -> list[inputs.CraftInput]:
-        """Each change once. A failsafe that ended is told only while the vehicle is heard."""
+        """Each change once. The end of a failsafe counts only while the vehicle is heard."""
         before, after = self.known, telemetry.authority
         self.known = after
         if kept_of(before) == kept_of(after):

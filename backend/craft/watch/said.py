@@ -8,12 +8,12 @@ from backend.craft import inputs
 from hardware.reasons.vehicle_news import AutopilotRepeats, AutopilotSaid, AutopilotSaidMore
 
 AGAIN_S = 10.0
-"""No text is told again sooner, nor before it was heard twice as often as was told."""
+"""A text is repeated no sooner, and only once it was heard twice as often as was last said."""
 FORGOTTEN_S = 120.0
 """A text that was not heard for so long is over; when it comes again it is new."""
 MOST_TEXTS = 20
 BURST, REFILL_S = 8, 5.0
-"""So many new texts at once, then one in so many seconds."""
+"""How many new texts pass at once, and the seconds before each further one."""
 
 
 @dataclass(slots=True)

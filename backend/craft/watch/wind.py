@@ -39,7 +39,7 @@ class WindBelief:
     _pp: float = 0.0
 
     def see(self, velocity: tuple[float, float], push: tuple[float, float], seconds: float) -> None:
-        """Flown so for so many seconds. (east, north) m/s over the ground; m/s^2."""
+        """A stretch flown at one velocity, `seconds` long. (east, north) m/s over the ground; m/s^2."""
         east, north = winds()
         air_east, air_north = velocity[0] - east, velocity[1] - north
         speed2 = air_east**2 + air_north**2

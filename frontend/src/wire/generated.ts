@@ -1260,7 +1260,7 @@ export interface components {
              */
             code: "battery_charge";
         };
-        /** @description The craft holds and its battery runs low: it returns after so many seconds, unless somebody stops that (once). */
+        /** @description The craft holds and its battery runs low: it returns after `seconds`, unless somebody stops that, once. */
         BatteryCountdownStarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3955,7 +3955,7 @@ export interface components {
             next_in_s: number | null;
         };
         /**
-         * @description The vehicle is told to. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
+         * @description The rung is commanded. rung: index in the order's ladder (backend/craft/ladder.py). because: why the rung before
          *     was not done, None of the first try.
          */
         OrderTried: {
