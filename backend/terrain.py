@@ -134,8 +134,10 @@ def terrain_from(stored: bytes) -> Terrain:
         unpacker = zlib.decompressobj()
         raw = unpacker.decompress(body, 4 * rows * columns)
         heights = np.frombuffer(raw, dtype="<f4").reshape(rows, columns).astype(np.float32)
-        steps = [float(said[name]) for name in ("north_deg", "west_deg", "lat_step_deg", "lon_step_deg")]
-        return Terrain(*steps, heights, tuple(str(name) for name in said["sources"]))
+        north, west, lat_step, lon_step = (
+            float(said[name]) for name in ("north_deg", "west_deg", "lat_step_deg", "lon_step_deg")
+        )
+        return Terrain(north, west, lat_step, lon_step, heights, tuple(str(name) for name in said["sources"]))
     except (ValueError, KeyError, TypeError, zlib.error) as error:
         raise TerrainDamaged(str(error)) from error
 

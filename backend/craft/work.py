@@ -114,7 +114,8 @@ class Work:
         if position is None:
             raise VehicleError(PositionLost())
         here, avoid, closed = self.task.frame.to_enu(position), effect.avoid, None
-        for _ in range(PLACES_TRIED):
+        tried = 0
+        while True:
             wanted = replace(effect, avoid=avoid)
             try:
                 choice = await asyncio.to_thread(self._choose, self.search(), here, wanted, closed)
@@ -122,7 +123,8 @@ class Work:
                 return inputs.NothingToPlan(carried(error.reason))
             await recent(self.situation)
             vetoes = self.vetoes_against(choice.place)
-            if not vetoes or not all(isinstance(veto, safety.GROUND) for veto in vetoes):
+            tried += 1
+            if tried == PLACES_TRIED or not vetoes or not all(isinstance(veto, safety.GROUND) for veto in vetoes):
                 break
             task, avoid = self.task, (*avoid, choice.place)
             closed = await asyncio.to_thread(closed_by_ground, task.ground, task.mission.flight, task.fence, here)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from io import BytesIO
+from typing import Any, cast
 
 import numpy as np
 from contourpy import LineType, contour_generator
@@ -70,14 +71,15 @@ def contours(terrain: Terrain) -> dict[str, object]:
     every = max(1, round((terrain.heights.size / MOST_CONTOUR_NODES) ** 0.5))
     heights = terrain.heights[::every, ::every].astype(float)
     rows, columns = heights.shape
-    lat = terrain.north_deg - np.arange(rows) * terrain.lat_step_deg * every
-    lon = terrain.west_deg + np.arange(columns) * terrain.lon_step_deg * every
+    lat: Numbers = terrain.north_deg - np.arange(rows, dtype=np.float64) * terrain.lat_step_deg * every
+    lon: Numbers = terrain.west_deg + np.arange(columns, dtype=np.float64) * terrain.lon_step_deg * every
     lowest, highest = float(np.nanmin(heights)), float(np.nanmax(heights))
     step = next((s for s in STEPS_M if (highest - lowest) / s <= MOST_LINES_ABOVE_ONE_ANOTHER), STEPS_M[-1])
     generator = contour_generator(lon, lat, np.ma.masked_invalid(heights), line_type=LineType.Separate)
     features: list[dict[str, object]] = []
     for number in range(int(np.ceil(lowest / step)), int(np.floor(highest / step)) + 1):
-        lines = [np.round(line, 5).tolist() for line in generator.lines(number * step) if len(line) > 3]
+        found = cast(list[Numbers], generator.lines(number * step))  # one array a line: LineType.Separate
+        lines: list[Any] = [np.round(line, 5).tolist() for line in found if len(line) > 3]
         if lines:
             features.append(
                 {

@@ -50,7 +50,8 @@ def around(place: Place, sources: Sequence[Source]) -> Terrain | None:
             lat = north - np.arange(first, min(first + ROWS_AT_ONCE, rows)) * lat_step
             part = heights[first : first + len(lat)]
             try:
-                found = source.at(*(axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij")))
+                rows_of, columns_of = np.meshgrid(lat, lon, indexing="ij")
+                found = source.at(np.asarray(rows_of.ravel(), np.float64), np.asarray(columns_of.ravel(), np.float64))
             except (OSError, ValueError, MapRefused) as error:  # deleted meanwhile, or damaged: the others still count
                 log.warning("terrain %s cannot be read: %s", source, error)
                 break

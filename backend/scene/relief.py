@@ -45,7 +45,7 @@ def relief_surface(relief: Relief, palette: Palette) -> Surface:
     known = np.isfinite(relief.heights)
     z = np.where(known, relief.heights, 0.0)
     vertices = np.stack((*np.meshgrid(relief.x, relief.y), z), axis=-1).reshape(-1, 3).astype(np.float32)
-    number = np.arange(rows * columns).reshape(rows, columns)
+    number: NDArray[np.int64] = np.arange(rows * columns, dtype=np.int64).reshape(rows, columns)
     corners = (number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1])
     whole = known[:-1, :-1] & known[:-1, 1:] & known[1:, 1:] & known[1:, :-1]
     a, b, c, d = (corner[whole] for corner in corners)

@@ -93,7 +93,7 @@ class Ground:
         """Distances along a way (m) and the ground's heights below it (m AMSL, NaN unknown), straight below."""
         line = np.asarray(way, dtype=float)
         lengths = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-        along = np.linspace(0.0, lengths[-1], points)
+        along: Points = np.linspace(0.0, float(lengths[-1]), points)
         at = np.column_stack([np.interp(along, lengths, line[:, axis]) for axis in (0, 1)])
         return along, self.heights_at(at)
 

@@ -26,7 +26,7 @@ def terrain(shape: Shape, spacing_m: float = 20.0, reach_m: float = 3000.0, name
     count = round(2 * reach_m / spacing_m) + 1
     along = (np.arange(count) - count // 2) * spacing_m
     east, north = np.meshgrid(along, along[::-1])
-    heights = shape(east, north).astype(np.float32)
+    heights = shape(np.asarray(east, np.float64), np.asarray(north, np.float64)).astype(np.float32)
     lat, lon = spacing_m / M_LAT, spacing_m / M_LON
     first = count // 2
     return Terrain(HOME.lat + first * lat, HOME.lon - first * lon, lat, lon, heights, (name,))
