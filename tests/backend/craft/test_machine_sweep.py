@@ -29,6 +29,8 @@ from backend.search.machine import transition as transition_search
 from backend.search.state import SearchState, Stage
 from backend.search.state import evolve as evolve_search
 
+pytestmark = pytest.mark.timeout(900)  # the first test of a worker makes all steps; minutes beside others on two cores
+
 STAGES: tuple[Stage, ...] = get_args(Stage)
 
 
