@@ -11,7 +11,7 @@ from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
 from backend.search.errors import MissionNotFound
-from backend.spec import MissionSpec
+from backend.spec import MissionSpec, with_todays_errors
 from backend.store.digest import MissionDigest
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
 
@@ -40,7 +40,7 @@ async def list_missions(services: ServicesDep) -> MissionList:
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
+    return await _mission(services, await services.missions.drafts.create(with_todays_errors(spec), principal.name))
 
 
 @router.get("/{mission_id}")
@@ -54,7 +54,7 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, spec, principal.name)
+    await services.missions.drafts.edit(mission_id, with_todays_errors(spec), principal.name)
     return await _mission(services, mission_id)
 
 

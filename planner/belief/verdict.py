@@ -8,6 +8,7 @@ import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
+from planner.belief.joint import corrected
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
 from planner.reasons import (
@@ -28,11 +29,13 @@ def verdict(
 ) -> Verdict:
     """Localized, or why not yet. belief: None when the bearings are inconsistent.
 
+    With a joint belief the bearings are judged as it reads them, freed of the bias of their source.
     Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
     """
-    consistent = belief is not None and wedges_meet(problem.area, bearings)
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
+    bearings = corrected(belief, bearings)
+    consistent = wedges_meet(problem.area, bearings)
     spread = estimate(belief, problem.estimator)
     if not bearings:
         return Verdict(False, consistent, (NoBearingYet(),), spread)
