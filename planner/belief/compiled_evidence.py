@@ -33,13 +33,12 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
         np.empty((cells, len(nodes.scale))),
         np.empty((cells, len(nodes.rate))),
     )
-    spacing = float(nodes.bias[1] - nodes.bias[0]) if len(nodes.bias) > 1 else 1.0
     _evidence(
         np.ascontiguousarray(x, dtype=float),
         np.ascontiguousarray(y, dtype=float),
         seen,
         nodes.bias,
-        spacing,
+        nodes.spacing,
         nodes.bias_weight,
         nodes.scale,
         nodes.scale_weight,

@@ -59,7 +59,7 @@ class ErrorPrior:
 class Nodes:
     """The grid on which a source's errors are marginalized: values and weights of bias (b,), scale (k,), rate (e,).
 
-    The bias' values are equally spaced.
+    The bias' values are equally spaced; spacing: rad, of one that stands alone, too.
     """
 
     bias: FloatArray
@@ -68,6 +68,7 @@ class Nodes:
     scale_weight: FloatArray
     rate: FloatArray
     rate_weight: FloatArray
+    spacing: float
 
 
 def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
@@ -91,6 +92,7 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
         prior.scale_weight,
         prior.rate,
         prior.rate_weight,
+        spacing,
     )
 
 

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from planner.belief.estimate import estimate
+from planner.belief.estimate import estimate, mass_within
 from planner.belief.grid import GridBelief
-from planner.belief.joint import corrected
+from planner.belief.joint import JointBelief, corrected
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
 from planner.reasons import (
     CrossingAngleTooSmall,
+    ErrorMayBeFarLarger,
     EstimateContradicted,
     ExpectedErrorTooLarge,
     NoBearingYet,
@@ -21,7 +22,13 @@ from planner.reasons import (
     TooFewPlacesAgree,
     disagreement,
 )
-from planner.types import Bearing, FloatArray, LocalizationRule, Problem, Region, Verdict
+from planner.types import Bearing, Estimate, FloatArray, LocalizationRule, Problem, Region, Verdict
+
+FAR_ERRORS = 3.0
+"""Times the expected error."""
+MOST_BEYOND = 0.02
+"""Probability that the error is larger than that, at a claim by a joint belief. Twice what outliers at their usual rate
+leave of a belief of a few bearings, so that it only stops what is not yet settled."""
 
 
 def verdict(
@@ -51,7 +58,16 @@ def verdict(
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
         reasons.append(ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold))
+    elif isinstance(belief, JointBelief):
+        reasons.extend(_tail_reasons(belief, spread))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
+
+
+def _tail_reasons(belief: JointBelief, spread: Estimate) -> list[NotYetReason]:
+    """Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean error says too little."""
+    far = FAR_ERRORS * spread.expected_rmse
+    beyond = 1.0 - mass_within(belief, spread.x, spread.y, far)
+    return [] if beyond <= MOST_BEYOND else [ErrorMayBeFarLarger(100.0 * beyond, 100.0 * MOST_BEYOND, far)]
 
 
 def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:

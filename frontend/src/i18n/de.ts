@@ -132,6 +132,11 @@ export const de: Record<MessageKey, string> = {
   "estimate.battery.enough": "Heimweg und Reserve brauchen {kept} %",
   "estimate.battery.tight": "könnte nicht reichen: Heimweg und Reserve brauchen {kept} %",
   "estimate.battery.short": "reicht nicht: Heimweg und Reserve brauchen {kept} %",
+  "estimate.source.craft": "Kompass",
+  "estimate.source.named": "Kompass, {name}",
+  "estimate.source.import": "Kompass der Aufzeichnung",
+  "estimate.bias": "{bias}° ± {error}°",
+  "estimate.biasUsed": "im Uhrzeigersinn verdreht, berücksichtigt; Fehler das {scale}-Fache der Angabe",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Peilung",

@@ -131,6 +131,11 @@ export const en = {
   "estimate.battery.enough": "way home and reserve take {kept} %",
   "estimate.battery.tight": "may not last: way home and reserve take {kept} %",
   "estimate.battery.short": "will not last: way home and reserve take {kept} %",
+  "estimate.source.craft": "compass",
+  "estimate.source.named": "compass, {name}",
+  "estimate.source.import": "compass of the recording",
+  "estimate.bias": "{bias}° ± {error}°",
+  "estimate.biasUsed": "turned clockwise, taken into account; errors {scale} × as stated",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Bearing",

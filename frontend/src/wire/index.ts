@@ -29,6 +29,7 @@ export type BearingMeasured = Schemas["BearingMeasured"];
 export type SweepRejected = Schemas["SweepRejected"];
 export type BeliefUpdated = Schemas["BeliefUpdated"];
 export type MissionEnded = Schemas["MissionEnded"];
+export type SourceErrors = Schemas["SourceErrorsFact"];
 export type LinkName = Schemas["LinkLost"]["link"];
 export type AlertLevel = Schemas["AlertRaised"]["level"];
 export type AlertTopic = Schemas["AlertRaised"]["topic"];
