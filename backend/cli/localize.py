@@ -11,6 +11,8 @@ import numpy as np
 import typer
 
 from backend.cli.edge import print_json, remark, stop
+from backend.search.localization import error_prior
+from backend.spec import ErrorModel
 from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
 from hardware.direction_finding.table_file import RecordingError
 from hardware.frame import LocalFrame, compass_to_angle
@@ -18,7 +20,9 @@ from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
-from planner.belief.verdict import verdict
+from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
+from planner.belief.source_errors import SourceErrors
+from planner.belief.verdict import points_at, verdict
 from planner.geometry import convex_hull
 from planner.options import Estimator
 from planner.reason import sentence_of, text_of
@@ -64,7 +68,14 @@ def localize(
     ] = DEFAULT_SIGMA_DEG,
     outliers: Annotated[
         float, typer.Option(min=0.0, max=0.5, help="Probability that a bearing is wrong altogether (0: none may be).")
-    ] = 0.0,
+    ] = 0.1,
+    errors: Annotated[
+        str,
+        typer.Option(
+            help="joint: all bearings may be turned by one angle, which is estimated with the place, as are the scale "
+            "of their sigmas and the rate of outliers. independent: each has an error of its own."
+        ),
+    ] = "joint",
     threshold: Annotated[
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
@@ -88,7 +99,7 @@ def localize(
         chosen = _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
-        answer = _localize(chosen, frame, region, outliers, threshold, _known_estimator(estimator))
+        answer = _localize(chosen, frame, region, outliers, threshold, _known_estimator(estimator), _joint(errors))
     except (RecordingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
@@ -102,6 +113,12 @@ def _known_estimator(name: str) -> Estimator:
         if name == known:
             return known
     raise ValueError(f'"{name}" is no estimator: choose one of {", ".join(ESTIMATORS)}')
+
+
+def _joint(errors: str) -> bool:
+    if errors not in get_args(ErrorModel):
+        raise ValueError(f'"{errors}" is no model of errors: choose one of {", ".join(get_args(ErrorModel))}')
+    return errors == "joint"
 
 
 def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) -> list[RecordedBearing]:
@@ -168,16 +185,14 @@ def _localize(
     outliers: float,
     threshold: float,
     estimator: Estimator,
+    joint: bool,
 ) -> dict[str, Any]:
     bearings: list[Bearing] = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
         bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
     problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
-    try:
-        belief: GridBelief | None = fold(problem, bearings)
-    except InconsistentBearings:
-        belief = None
+    belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings)
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
     answer: dict[str, Any] = {
         "estimate": None,
@@ -188,6 +203,7 @@ def _localize(
         "localized": judged.localized,
         "not_yet": [text_of(reason) for reason in judged.reasons],
         "bearings": len(bearings),
+        "sources": [_source(one) for one in belief.errors] if isinstance(belief, JointBelief) else [],
     }
     if belief is not None:
         spread = estimate(belief, problem.estimator)
@@ -200,6 +216,33 @@ def _localize(
     return answer
 
 
+def _fold(problem: Problem, bearings: list[Bearing]) -> GridBelief | None:
+    try:
+        return fold(problem, bearings)
+    except InconsistentBearings:
+        return None
+
+
+def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
+    """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
+    belief = joint_prior(problem, otherwise=error_prior(outliers))
+    for bearing in bearings:
+        belief = update_joint(belief, bearing)
+    found = estimate(belief, problem.estimator)
+    agreeing = sum(points_at(bearing, found.x, found.y) for bearing in corrected(belief, bearings))
+    return None if agreeing < min(2, len(bearings)) else belief
+
+
+def _source(errors: SourceErrors) -> dict[str, float | int]:
+    return {
+        "bearings": errors.bearings,
+        "bias_deg": round(-math.degrees(errors.bias), 2),
+        "bias_std_error_deg": round(math.degrees(errors.bias_sd), 2),
+        "sigma_scale": round(errors.scale, 3),
+        "outlier_rate": round(errors.outlier_rate, 3),
+    }
+
+
 def _text(answer: dict[str, Any]) -> str:
     if answer["estimate"] is None:
         return (
@@ -210,6 +253,11 @@ def _text(answer: dict[str, Any]) -> str:
     lines = [
         f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.0f} m, "
         f"from {answer['bearings']} bearings"
+    ]
+    lines += [
+        f"all bearings turned clockwise by {one['bias_deg']:+.0f} ± {one['bias_std_error_deg']:.0f} degrees, "
+        f"which is taken into account; their errors are {one['sigma_scale']:.1f} times what was stated"
+        for one in answer["sources"]
     ]
     lines.append("localized" if answer["localized"] else f"not yet localized: {' '.join(answer['not_yet'])}")
     return "\n".join(lines)

@@ -245,9 +245,11 @@ def localization(
         min_place_distance=wanted.minimum_place_distance_m,
         min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
     )
-    joint = sensor.bearing_errors == "joint"
+    joint, known = sensor.bearing_errors == "joint", error_prior(sensor.outlier_probability)
     try:
-        prior = joint_prior(problem, otherwise=error_prior(sensor)) if joint else prior_belief(problem)
+        prior = (
+            joint_prior(problem, otherwise=error_prior(sensor.outlier_probability)) if joint else prior_belief(problem)
+        )
     except PlannerError as error:
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
@@ -266,11 +268,11 @@ def source_name(source: BearingSource) -> str:
             return f"{source.kind}:{name}"
 
 
-def error_prior(sensor: spec.SensorSpec) -> ErrorPrior:
+def error_prior(outlier_probability: float) -> ErrorPrior:
     """What is assumed of a source of which nothing is known: outliers are half or twice as frequent as specified."""
-    if sensor.outlier_probability == 0.0:
+    if outlier_probability == 0.0:
         return replace(UNKNOWN_SOURCE, rate=np.array([FEWEST_OUTLIERS]), rate_weight=np.ones(1))
-    rate = np.clip(sensor.outlier_probability * np.array([0.5, 2.0]), FEWEST_OUTLIERS, MOST_OUTLIERS)
+    rate = np.clip(outlier_probability * np.array([0.5, 2.0]), FEWEST_OUTLIERS, MOST_OUTLIERS)
     return replace(UNKNOWN_SOURCE, rate=rate)
 
 

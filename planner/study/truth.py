@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any, Literal
 
 import numpy as np
@@ -72,8 +73,8 @@ class Truth:
     bias_inside: float
 
     def as_json(self) -> dict[str, Any]:
-        """Shares and times rounded to what the missions can tell."""
-        return {name: round(value, 4) if isinstance(value, float) else value for name, value in asdict(self).items()}
+        """Shares and times rounded to what the missions can tell; None: no mission told."""
+        return {name: _rounded(value) for name, value in asdict(self).items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +153,12 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim]) -> Truth:
         stated_mean_m=float(np.mean([c.stated_m for c in claimed])) if claimed else nothing,
         bias_inside=float(np.mean([abs(c.bias_off_deg) <= 2.0 * c.bias_sd_deg for c in known])) if known else nothing,
     )
+
+
+def _rounded(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return round(value, 4) if isfinite(value) else None
 
 
 def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
