@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults takeovers battery-home codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -120,6 +120,9 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 
 sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
 	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
+
+truth: setup-dev ## a thousand simulated missions for each way in which bearings are wrong: is what is claimed true? An hour
+	$(BIN)/python -m tests.benchmarks.truth --missions 1000 --out $(MEASUREMENTS)
 
 takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simulated autopilot, and headings in time: half an hour
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour px4 --times 200 --out $(MEASUREMENTS)

@@ -245,11 +245,8 @@ def localization(
         min_place_distance=wanted.minimum_place_distance_m,
         min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
     )
-    joint, known = sensor.bearing_errors == "joint", error_prior(sensor.outlier_probability)
     try:
-        prior = (
-            joint_prior(problem, otherwise=error_prior(sensor.outlier_probability)) if joint else prior_belief(problem)
-        )
+        prior = _prior_belief(problem, sensor)
     except PlannerError as error:
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
@@ -266,6 +263,14 @@ def source_name(source: BearingSource) -> str:
     match source:
         case CraftSource(craft_id=name) | PersonSource(name=name) | ImportSource(recording_id=name):
             return f"{source.kind}:{name}"
+
+
+def _prior_belief(problem: Problem, sensor: spec.SensorSpec) -> GridBelief:
+    match sensor.bearing_errors:
+        case "joint":
+            return joint_prior(problem, otherwise=error_prior(sensor.outlier_probability))
+        case "independent":
+            return prior_belief(problem)
 
 
 def error_prior(outlier_probability: float) -> ErrorPrior:
