@@ -11,12 +11,14 @@ from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import error_prior, localization
 from hardware.readings import Place
 from planner.study.errors import StudyError
-from planner.study.truth import Claim, Model, Search, Truth, missions, row_named, truth_of
+from planner.study.truth import Claim, Model, Search, Truth, learn, missions, row_named, truth_of
 
 HOME = Place(50.6234, 7.2046)
 """Anywhere: the worlds are flat."""
 MODELS: tuple[Model, ...] = ("joint", "independent")
 REMARK_EVERY = 50
+FIRST_LESSON = 1_000_000
+"""Seed of the first flight that is only learned from."""
 
 
 def truth(
@@ -31,6 +33,13 @@ def truth(
     model: Annotated[
         str, typer.Option(help="What the search believes of the errors: joint (new missions) or independent.")
     ] = "joint",
+    flights: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            help="joint: flights before these, of the same sensor, from whose bearings alone it learns.",
+        ),
+    ] = 0,
     seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -39,7 +48,7 @@ def truth(
     Example: crossfix study truth --row bias5 --missions 200 --json
     """
     try:
-        found = study_row(row, missions_, model, seed)
+        found = study_row(row, missions_, model, seed, flights)
     except StudyError as error:
         if json_:
             print_json({"error": str(error)})
@@ -50,8 +59,8 @@ def truth(
         typer.echo(sentence(found))
 
 
-def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1) -> Truth:
-    """Raises StudyError for names and numbers that make no sense."""
+def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0) -> Truth:
+    """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before."""
     wanted = row_named(row)
     known = next((one for one in MODELS if one == model), None)
     if known is None:
@@ -62,6 +71,9 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1) -
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
     prior = error_prior(mission.sensor.outlier_probability)
+    if flights and known == "joint":
+        prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
+        remark(f"{row}: learned from {flights} flights")
     claims: list[Claim] = []
     for claim in missions(search, wanted, range(first_seed, first_seed + count), known, prior):
         claims.append(claim)

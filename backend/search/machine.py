@@ -121,10 +121,11 @@ def _belief(step: SearchStep, given: BeliefReady) -> None:
     if emitter is None or given.bearing_ids != emitter.bearing_ids or emitter.belief_current:
         return
     step.record(given.fact)
-    _doubt_headings(step, given.fact)
+    doubt_headings(step, given.fact)
 
 
-def _doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
+def doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
+    """Bearings that are turned together are a caution, whether that stops the claim or is taken into account."""
     askew = next((reason for reason in belief.not_yet if isinstance(reason, search.HeadingsAskew)), None)
     askew = askew or next((_corrected(one) for one in belief.sources if _turned(one)), None)
     if askew is None:

@@ -80,8 +80,7 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
     spacing = float(np.clip(NODE_SIGMAS * error, FINEST_SPACING, COARSEST_SPACING))
     side = int(np.ceil(LARGEST_BIAS / spacing))
     bias = spacing * np.arange(-side, side + 1)
-    edges = spacing * (np.arange(-side, side + 2) - 0.5)
-    weight = np.diff(ndtr(edges[:, None] / prior.spread), axis=0) @ prior.spread_weight
+    weight = bias_weights(bias, spacing, prior.spread) @ prior.spread_weight
     weight = weight / weight.sum()
     kept = np.flatnonzero(weight > NEGLIGIBLE_WEIGHT)
     where = slice(int(kept[0]), int(kept[-1]) + 1)
@@ -94,6 +93,12 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
         prior.rate_weight,
         spacing,
     )
+
+
+def bias_weights(bias: FloatArray, spacing: float, spread: FloatArray) -> FloatArray:
+    """(b, t) probability of the surroundings of each node, half a spacing to each side, under N(0, spread^2)."""
+    above, below = (ndtr((bias[:, None] + half) / spread) for half in (0.5 * spacing, -0.5 * spacing))
+    return np.asarray(above - below, dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,6 +17,7 @@ import numpy as np
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
+from planner.belief.learning import FlightEvidence, flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.geometry import bounds, contains, distance_to_convex
@@ -97,6 +98,25 @@ def missions(
 
 def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: ErrorPrior | None = None) -> Claim:
     """One mission."""
+    return _flown(search, row, seed, model, prior)[0]
+
+
+def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -> ErrorPrior:
+    """What flights of the row teach of its sensor, one after the other, each with what was learned before it.
+
+    Only bearings are learned from: where the emitter was, nobody says.
+    """
+    found: list[FlightEvidence] = []
+    prior = unknown
+    for seed in seeds:
+        _, belief = _flown(search, row, seed, "joint", prior)
+        assert isinstance(belief, JointBelief)
+        found.append(flight_evidence(belief.errors[0]))
+        prior = learned(found, unknown)
+    return prior
+
+
+def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior | None) -> tuple[Claim, GridBelief]:
     problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
     target = _anywhere(problem, rng)
     sensor = row.sensor(target, rng)
@@ -115,7 +135,7 @@ def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: Erro
             break
     spread = estimate(belief, problem.estimator)
     errors = belief.errors[0] if isinstance(belief, JointBelief) else None
-    return Claim(
+    claim = Claim(
         claimed=said.localized,
         in_c95=bool(distance_to_convex(target[None], confidence_region(belief))[0] <= 0.0),
         error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
@@ -125,6 +145,7 @@ def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: Erro
         bias_off_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias - sensor.bias)),
         bias_sd_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias_sd)),
     )
+    return claim, belief
 
 
 ROWS_SEED = 14
