@@ -1,4 +1,4 @@
-"""What took its time is told from what only this program kept waiting."""
+"""A slow database is kept apart from one that only this program kept waiting."""
 
 from __future__ import annotations
 
