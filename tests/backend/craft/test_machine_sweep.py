@@ -19,8 +19,9 @@ from backend.craft import effects, inputs
 from backend.craft.effects import CraftEffect
 from backend.craft.ladder import Ladder
 from backend.craft.low_battery import COUNTDOWN_S
-from backend.craft.machine import kept_of, transition
+from backend.craft.machine import transition
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
+from backend.craft.who_flies import kept_of
 from backend.events import MissionEnded, OrderDone, OrderNotDone, PreflightChecked
 from backend.reasons.flight import OrderName
 from backend.reasons.search import Localized
