@@ -62,6 +62,19 @@ def gain_beside_bias(
     return np.einsum("ni,ij,nj->n", u, np.linalg.inv(covariance), u) / variance
 
 
+def telling_places(problem: Problem, belief: GridBelief, places: FloatArray, share: float) -> FloatArray:
+    """Those of the places (n, 2) that gain at least `share` of the best one's, an uncertain bias counted in.
+
+    All of them for a belief that knows no bias. Rollouts take the bearings to come as independent: among these places
+    they may choose, since each of them tells the bias from the place.
+    """
+    if not isinstance(belief, JointBelief) or len(belief.errors) != 1:
+        return places
+    estimated = estimate(belief, problem.estimator)
+    gains = gain_beside_bias(estimated, places, belief.errors[0], problem.sigma, nearest=belief.h)
+    return places[gains >= share * gains.max()]
+
+
 def first_best(gains: FloatArray, margin: float = 1e-9) -> int:
     """Index of the first of (n,) values >= 0 that is the largest, up to a relative `margin`."""
     return int(np.argmax(gains >= gains.max() * (1.0 - margin)))
