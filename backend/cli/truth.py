@@ -25,8 +25,8 @@ def truth(
     row: Annotated[
         str,
         typer.Option(
-            help="independent, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, walls or "
-            "walls_bias5: how the bearings are wrong (degrees of compass bias, percent of outliers)."
+            help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
+            "walls or walls_bias5: how the bearings are wrong (degrees of compass bias, percent of outliers)."
         ),
     ],
     missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,

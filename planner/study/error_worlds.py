@@ -155,7 +155,8 @@ ROWS = Rows(
     {
         row.name: row
         for row in (
-            Row("independent", own_sd=_degrees(6.6)),
+            Row("independent", own_sd=_degrees(6.6), stated_sd=_degrees(6.6), heading_sigma=0.0),
+            Row("scattered", own_sd=_degrees(6.6)),
             Row("bias5", bias_sd=_degrees(5.3)),
             Row("bias10", bias_sd=_degrees(10.0)),
             Row("bias5_outliers8", bias_sd=_degrees(5.3), outliers=0.08),
