@@ -12,9 +12,9 @@ compass that reads too large has a negative b.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import erf, sqrt
 
 import numpy as np
-from scipy.special import ndtr
 
 from planner.types import FloatArray
 
@@ -97,8 +97,9 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
 
 def bias_weights(bias: FloatArray, spacing: float, spread: FloatArray) -> FloatArray:
     """(b, t) probability of the surroundings of each node, half a spacing to each side, under N(0, spread^2)."""
-    above, below = (ndtr((bias[:, None] + half) / spread) for half in (0.5 * spacing, -0.5 * spacing))
-    return np.asarray(above - below, dtype=np.float64)
+    edges = np.append(bias - 0.5 * spacing, bias[-1] + 0.5 * spacing)
+    below = [[0.5 * (1.0 + erf(edge / (sqrt(2.0) * tau))) for tau in spread] for edge in edges]
+    return np.diff(np.array(below), axis=0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
