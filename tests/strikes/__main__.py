@@ -31,7 +31,7 @@ from tests.benchmarks.figures.writer import add_out, write
 from tests.strikes.pilot import piloted
 from tests.strikes.proxy import proxied
 from tests.strikes.scenes import MANOEUVRES, MOMENTS, ORDERS, SCENES, Field, Scene
-from tests.strikes.strike import Means, Outcome
+from tests.strikes.strike import Means, Outcome, ready
 from tests.strikes.tally import figures, line, summary, table, unnoticed
 
 
@@ -42,6 +42,7 @@ async def run(given: argparse.Namespace) -> tuple[list[Outcome], list[str]]:
         vehicle = await connect_vehicle(proxy.url, WallClock())
         field = Field(vehicle, proxy, pilot, random.Random(given.seed))
         try:
+            await ready(vehicle)
             vehicle.take_control()
             for number, (delay_s, scene, means) in enumerate(_order(given)):
                 if time.monotonic() > end_s:

@@ -25,6 +25,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import websockets
+
 from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import summary
 from backend.cli.running import running_server
@@ -137,7 +139,13 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
     with tempfile.TemporaryDirectory(prefix="crossfix-mission-") as folder:
         async with proxied(url) as proxy:
             proxy.kept, proxy.delay_s = KEPT | {ATTITUDE, GLOBAL_POSITION}, delay_s
-            settings = Settings(port=0, data_dir=Path(folder), vehicle_url=proxy.url, seed=seed)
+            settings = Settings(
+                port=0,
+                data_dir=Path(folder),
+                vehicle_url=proxy.url,
+                seed=seed,
+                live_ping_timeout_s=60.0,  # the console that watches is in this process, too
+            )
             async with running_server(settings) as running:
                 assert running.receiver is not None
                 running.receiver.pose = witness(proxy)
@@ -147,7 +155,7 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 try:
                     log = await fly(running, settings)
                     found = summary(log, settings, running.receiver.truth)
-                except DemoFailed as error:
+                except (DemoFailed, websockets.ConnectionClosed) as error:
                     failed = str(error)
                     await _land(vehicle)
                 took_s = time.monotonic() - began_s
