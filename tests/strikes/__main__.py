@@ -31,24 +31,42 @@ from tests.benchmarks.figures.writer import add_out, write
 from tests.strikes.pilot import piloted
 from tests.strikes.proxy import proxied
 from tests.strikes.scenes import MANOEUVRES, MOMENTS, ORDERS, SCENES, Field, Scene
-from tests.strikes.strike import Means, Outcome, ready
+from tests.strikes.strike import Means, Moment, Outcome, ready
 from tests.strikes.tally import figures, line, summary, table, unnoticed
+
+Planned = tuple[float, Scene, Moment, Means]
 
 
 async def run(given: argparse.Namespace) -> tuple[list[Outcome], list[str]]:
-    """The outcomes; and takeovers that were told though nobody struck."""
-    outcomes, end_s = list[Outcome](), time.monotonic() + 60.0 * given.minutes
-    async with proxied(given.vehicle) as proxy, piloted(proxy, given.flavour) as pilot:
+    """The outcomes; and takeovers that were told though nobody struck. Several vehicles fly at once, a share each."""
+    planned = _order(given)
+    outcomes, by_nobody = list[Outcome](), list[str]()
+    async with asyncio.TaskGroup() as flying:
+        for number, url in enumerate(given.vehicle):
+            share = planned[number :: len(given.vehicle)]
+            flying.create_task(_fly(given, number, url, share, outcomes, by_nobody))
+    return outcomes, by_nobody
+
+
+async def _fly(
+    given: argparse.Namespace,
+    number: int,
+    url: str,
+    share: list[Planned],
+    outcomes: list[Outcome],
+    by_nobody: list[str],
+) -> None:
+    end_s = time.monotonic() + 60.0 * given.minutes
+    async with proxied(url) as proxy, piloted(proxy, given.flavour) as pilot:
         vehicle = await connect_vehicle(proxy.url, WallClock())
-        field = Field(vehicle, proxy, pilot, random.Random(given.seed))
+        field = Field(vehicle, proxy, pilot, random.Random(given.seed + number))
         try:
             await ready(vehicle)
             vehicle.take_control()
-            for number, (delay_s, scene, means) in enumerate(_order(given)):
+            for delay_s, scene, moment, means in share:
                 if time.monotonic() > end_s:
                     break
                 proxy.delay_s = delay_s
-                moment = MOMENTS[scene][number // given.mixed % len(MOMENTS[scene])]
                 try:
                     outcome = await field.strike(scene, moment, means)
                 except (TimeoutError, VehicleError) as error:
@@ -58,31 +76,36 @@ async def run(given: argparse.Namespace) -> tuple[list[Outcome], list[str]]:
                 print(line(outcome, pilot.flies), flush=True)
         finally:
             proxy.delay_s = 0.0
+            by_nobody += field.by_nobody
             with contextlib.suppress(VehicleError):
                 vehicle.take_control()
                 await vehicle.land()
             await vehicle.close()
             if given.record is not None:
-                given.record.write_text("".join(f"{json.dumps(vars_of(passed))}\n" for passed in proxy.record))
-    return outcomes, field.by_nobody
+                with given.record.open("a") as record:
+                    record.writelines(f"{json.dumps(vars_of(passed))}\n" for passed in proxy.record)
 
 
 def vars_of(passed: object) -> list[object]:
     return [getattr(passed, name) for name in ("at_s", "way", "number", "fields")]
 
 
-def _order(given: argparse.Namespace) -> list[tuple[float, Scene, Means]]:
-    """Delays, scenes and means mixed evenly, so that a run cut short is still balanced."""
-    mixed = [
+def _order(given: argparse.Namespace) -> list[Planned]:
+    """Delays, scenes and means mixed evenly, so that a run cut short is still balanced; moments taken in turn."""
+    mixed: list[tuple[float, Scene, Means]] = [
         (delay / 1000.0, scene, means) for scene in given.scenes for means in given.means for delay in given.delays
     ]
-    given.mixed = len(mixed)
-    return (mixed * (given.times // len(mixed) + 1))[: given.times]
+    rounds = [
+        (delay_s, scene, MOMENTS[scene][number % len(MOMENTS[scene])], means)
+        for number in range(given.times // len(mixed) + 1)
+        for delay_s, scene, means in mixed
+    ]
+    return rounds[: given.times]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("vehicle", help="its address, as `crossfix serve --vehicle` takes it")
+    parser.add_argument("vehicle", nargs="+", help="its address, as `crossfix serve --vehicle` takes it")
     parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
     parser.add_argument("--times", type=int, default=48)
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no takeover after so long")

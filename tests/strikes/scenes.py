@@ -37,7 +37,7 @@ COMMANDS: dict[Scene, frozenset[int]] = {
     "flight": frozenset({REPOSITION}),
     "take_off": frozenset({TAKE_OFF}),
     "return": frozenset({SET_MODE}),
-    "hold ordered": frozenset({SET_MODE}),
+    "hold ordered": frozenset({SET_MODE, REPOSITION}),
     "return ordered": frozenset({SET_MODE}),
     "landing ordered": frozenset({SET_MODE}),
 }
