@@ -95,7 +95,7 @@ def _order(given: argparse.Namespace) -> list[Planned]:
     mixed: list[tuple[float, Scene, Means]] = [
         (delay / 1000.0, scene, means) for scene in given.scenes for means in given.means for delay in given.delays
     ]
-    rounds = [
+    rounds: list[Planned] = [
         (delay_s, scene, MOMENTS[scene][number % len(MOMENTS[scene])], means)
         for number in range(given.times // len(mixed) + 1)
         for delay_s, scene, means in mixed
