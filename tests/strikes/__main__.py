@@ -7,7 +7,8 @@ It takes off and flies some 70 m around its home at 12 m. The pilot takes over b
 lets them, by sticks, aimed at the commands that steer: under way on the link, or given before the takeover is known
 here. Prints a line a takeover, then one JSON object; ends with status 1 when one was undone or not noticed.
 
---orders aims at what has to select a mode (hold out of a return, return, landing) instead. No autopilot carries that
+--orders aims at what has to select a mode (hold out of a return, return, landing; ArduCopter's steering after a hold)
+instead. No autopilot carries that
 out on the condition that nobody switched: such a takeover may be undone, and must be noticed within a second.
 """
 
@@ -119,7 +120,7 @@ def main() -> None:
     given = parser.parse_args()
     given.means = given.means or (["mode", "sticks"] if given.flavour == "px4" else ["mode"])
     if given.orders:
-        given.scenes = list(ORDERS)
+        given.scenes = [scene for scene in ORDERS if given.flavour == "ardupilot" or scene != "steering ordered"]
     begun = begin(__file__)
     outcomes, by_nobody = asyncio.run(run(given))
     print(json.dumps(summary(outcomes) | {"by_nobody": by_nobody}, indent=2))

@@ -16,9 +16,11 @@ from tests.strikes.pilot import Pilot
 from tests.strikes.proxy import Proxy
 from tests.strikes.strike import REPORT_S, Aim, Means, Moment, Outcome, until, watch
 
-Scene = Literal["turn", "flight", "take_off", "return", "hold ordered", "return ordered", "landing ordered"]
+Scene = Literal[
+    "turn", "flight", "take_off", "return", "hold ordered", "return ordered", "landing ordered", "steering ordered"
+]
 SCENES: tuple[Scene, ...] = get_args(Scene)
-ORDERS: tuple[Scene, ...] = ("hold ordered", "return ordered", "landing ordered")
+ORDERS: tuple[Scene, ...] = ("hold ordered", "return ordered", "landing ordered", "steering ordered")
 """The strike meets an order that has to select a mode. It is obeyed in every mode, the last one wins: it may undo the
 pilot's, and then must be noticed."""
 MANOEUVRES: tuple[Scene, ...] = tuple(scene for scene in SCENES if scene not in ORDERS)
@@ -30,6 +32,7 @@ MOMENTS: dict[Scene, tuple[Moment, ...]] = {
     "hold ordered": ("crossing",),
     "return ordered": ("crossing",),
     "landing ordered": ("crossing",),
+    "steering ordered": ("crossing",),
 }
 """Taken in turn."""
 COMMANDS: dict[Scene, frozenset[int]] = {
@@ -40,6 +43,7 @@ COMMANDS: dict[Scene, frozenset[int]] = {
     "hold ordered": frozenset({SET_MODE, REPOSITION}),
     "return ordered": frozenset({SET_MODE}),
     "landing ordered": frozenset({SET_MODE}),
+    "steering ordered": frozenset({SET_MODE}),
 }
 HEIGHT_M = 12.0
 SPEED_M_S = 5.0
@@ -71,7 +75,7 @@ class Field:
             aim.after(0.0)
             await asyncio.sleep(self.chance.uniform(0.0, self.proxy.delay_s + REPORT_S))
         elif moment == "crossing":
-            aim.at_command(COMMANDS[scene], self.chance.randrange(6) if scene == "turn" else 0)
+            aim.at_command(COMMANDS[scene], self.chance.randrange(4) if scene == "turn" else 0)
         doing = asyncio.create_task(self._do(scene))
         try:
             if moment == "under way":
@@ -90,6 +94,9 @@ class Field:
         """The pilot gives the vehicle back, the operator takes it: it hovers, or stands."""
         telemetry = self.vehicle.telemetry
         self.pilot.release_sticks()
+        if telemetry().authority.undone:  # it shows the waiting mode already: that gives nothing back
+            self.pilot.take_by_mode()
+            await asyncio.sleep(2.0 * self.proxy.delay_s + 2.0)
         await asyncio.sleep(0.3)
         self.pilot.give_back()
         await asyncio.sleep(2.0 * self.proxy.delay_s + 0.5)
@@ -106,10 +113,13 @@ class Field:
             return
         if not telemetry().in_air:
             await self.vehicle.take_off(HEIGHT_M)
-        if scene == "hold ordered":
-            await self.vehicle.return_home()
-        elif scene != "flight":
-            await self.vehicle.hold()
+        match scene:
+            case "hold ordered":
+                await self.vehicle.return_home()
+            case "flight" | "turn":  # in the mode that steers: ArduCopter has another one to hold
+                await self.vehicle.goto(self._spot(), self._amsl(), SPEED_M_S)
+            case _:
+                await self.vehicle.hold()
 
     def _do(self, scene: Scene) -> Coroutine[Any, Any, None]:
         orders = {
@@ -120,6 +130,7 @@ class Field:
             "return ordered": self.vehicle.return_home(),
             "hold ordered": self.vehicle.hold(),
             "landing ordered": self.vehicle.land(),
+            "steering ordered": self.vehicle.goto(self._place(), self._amsl(), SPEED_M_S),
         }
         for other, order in orders.items():
             if other != scene:
@@ -153,6 +164,12 @@ class Field:
         assert home is not None
         self.flown += 1
         return LocalFrame(home).to_geo(60.0 if self.flown % 2 else -60.0, 20.0)
+
+    def _spot(self) -> Place:
+        """Where it is."""
+        position = self.vehicle.telemetry().position
+        assert position is not None
+        return position
 
     def _amsl(self) -> float:
         home = self.vehicle.telemetry().home_amsl_m

@@ -73,6 +73,8 @@ class Faults:
     ignore_goto: int = 0
     ignore_all: int = 0
     silent: int = 0
+    unanswered: int = 0
+    """Obeyed, but their acknowledgements get lost."""
     link_lost_until: float = -1.0
     link_delay: float = 0.0
     """Seconds each way."""
@@ -200,7 +202,11 @@ class Firmware(ABC):
         if faults.ignore_all > 0:
             faults.ignore_all -= 1
             return ACCEPTED
-        return self.carry_out(command)
+        result = self.carry_out(command)
+        if faults.unanswered > 0:
+            faults.unanswered -= 1
+            return None
+        return result
 
     @abstractmethod
     def carry_out(self, command: Command) -> int:
