@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import httpx
 import websockets
 
 from backend.cli.demo_flight import DemoFailed, fly
@@ -155,8 +156,8 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 try:
                     log = await fly(running, settings)
                     found = summary(log, settings, running.receiver.truth)
-                except (DemoFailed, websockets.ConnectionClosed) as error:
-                    failed = str(error)
+                except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
+                    failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
                 took_s = time.monotonic() - began_s
                 home, truth = vehicle.telemetry().home, next(iter(running.receiver.truth.values()), None)
