@@ -71,9 +71,10 @@ class SweepLikelihood:
         try:
             unpack = zlib.decompressobj()
             raw = unpack.decompress(base64.b64decode(text, validate=True), DIRECTIONS + 1)
+            whole = unpack.eof
         except (binascii.Error, zlib.error, ValueError) as error:
             raise LikelihoodError(f"a sweep's likelihood is damaged ({error}); take the bearing as it is") from error
-        if len(raw) != DIRECTIONS:
+        if len(raw) != DIRECTIONS or not whole:
             raise LikelihoodError(f"a sweep's likelihood has {len(raw)} directions; {DIRECTIONS} were packed")
         return cls(-_STEP * np.frombuffer(raw, dtype=np.uint8).astype(np.float64))
 

@@ -38,6 +38,7 @@ ALIKE_DEG = 20.0
 REACH_DEG = 60.0
 STEP_DEG = 5.0
 KNOWN_REACH_DEG = 40.0
+AXIS_WITHIN_DEG = 10.0
 FITS_DB = 0.8
 """A sweep that some shape of the pattern fits so well needs no other antenna."""
 _NOISE_DB = np.array([0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
@@ -107,8 +108,23 @@ def other_antenna(
     mass = np.exp(log_density - log_density.max())
     mass /= mass.sum()
     mean = float(mass @ bearing)
+    # half way to the principal axis, which errs otherwise: strong readings only, and no lobe's shape at all
+    axis = (_principal_axis_deg(slices, noise_db) - mean + 180.0) % 360.0 - 180.0
+    mean += 0.5 * min(max(axis, -AXIS_WITHIN_DEG), AXIS_WITHIN_DEG)
     sigma = math.hypot(math.sqrt(float(mass @ (bearing - mean) ** 2)), STEP_DEG / math.sqrt(12.0))
     return OtherAntenna(float(evidence - known), mean % 360.0, sigma, bearing - mean, log_density)
+
+
+def _principal_axis_deg(slices: _Slices, noise_db: float | None) -> float:
+    """First principal component of the linear powers as vectors, not centred, towards their sum."""
+    top_db = float(slices.power_db.max())
+    noise = 0.0 if noise_db is None else 10.0 ** ((noise_db - top_db) / 10.0)
+    power = np.maximum(10.0 ** ((slices.power_db - top_db) / 10.0) - noise, 0.0)
+    heading = np.radians(slices.heading_deg)
+    vectors = power[:, None] * np.column_stack([np.sin(heading), np.cos(heading)])
+    axis = np.linalg.eigh(vectors.T @ vectors)[1][:, -1]
+    east, north = axis if float(vectors.sum(axis=0) @ axis) >= 0.0 else -axis
+    return math.degrees(math.atan2(east, north)) % 360.0
 
 
 def _slices(binned: BinnedSweep, bin_db: NDArray[np.float64]) -> _Slices:
