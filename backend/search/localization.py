@@ -254,8 +254,8 @@ def localization(
 
 
 def own_sigma_deg(fact: BearingMeasured) -> float:
-    """Of what differs from bearing to bearing: the heading's share is the same for all of a source."""
-    return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2, 0.0))
+    """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source."""
+    return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2, 0.0))
 
 
 def source_name(source: BearingSource) -> str:

@@ -105,6 +105,10 @@ class Snapshot:
         """A TIMESYNC, see BootClock."""
         self._boot_clock.exchanged(sent_at_s, boot_s, heard_at_s)
 
+    def went_round(self, sent_at_s: float, heard_at_s: float) -> None:
+        """A PING, see BootClock."""
+        self._boot_clock.went_round(sent_at_s, heard_at_s)
+
     @property
     def disarmed(self) -> bool:
         """Certainly: a heartbeat of once a second does not yet know that the autopilot has just agreed to arm."""
