@@ -5476,7 +5476,7 @@ export interface components {
              */
             code: "server_is_ending";
         };
-        /** @description From here on beliefs are computed anew; a craft that we flew is held until an operator resumes. */
+        /** @description From here on beliefs are computed afresh; a craft that we flew is held until an operator resumes. */
         ServerRestarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
