@@ -1,6 +1,7 @@
 // REST, one function an endpoint. Every failure becomes a RequestFailed with a problem to show.
 import { t } from "../i18n";
 import type {
+  AntennaReview,
   AreaImport,
   AreaOutlook,
   CheckFact,
@@ -126,6 +127,7 @@ export const importRecording = (id: string, form: FormData) =>
 export const readExported = (text: string) =>
   json<ExportedMission>("/recordings/read", { method: "POST", headers: { "content-type": "application/json" }, body: text }, LONG_MS);
 
+export const antennaReview = (id: string) => json<AntennaReview>(`${missionPath(id)}/antenna`);
 export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
 export const importArea = (text: string, filename: string) => json<AreaImport>("/areas", withBody("POST", { text, filename }));

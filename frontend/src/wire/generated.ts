@@ -313,6 +313,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions/{mission_id}/antenna": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Antenna
+         * @description Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show.
+         */
+        get: operations["get_antenna"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/sweeps/{sweep_id}": {
         parameters: {
             query?: never;
@@ -968,6 +988,17 @@ export interface components {
             pointing_sigma_deg: number | null;
             /** @default false */
             borrowed: boolean;
+        };
+        /**
+         * @description What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
+         *     what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
+         *     measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is.
+         */
+        AntennaReview: {
+            sweeps: number;
+            repeats_db: number | null;
+            doubt: components["schemas"]["Reason"] | null;
+            proposed: components["schemas"]["PatternUpload"] | null;
         };
         AntennaUnlikePattern: {
             because: components["schemas"]["NothingHeardInTurn"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"];
@@ -6988,6 +7019,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["WhatIf"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_antenna: {
+        parameters: {
+            query?: {
+                emitter?: string | null;
+            };
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AntennaReview"];
                 };
             };
             /** @description What went wrong and how to mend it */
