@@ -32,15 +32,18 @@ class DatabaseUnusable(ReasonedError, RuntimeError):
 async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
     """`now`: UTC epoch seconds of the mission's clock, stamped on every event. Raises DatabaseUnusable."""
     url = settings.async_database_url
-    with _claimed(url):
+    with claimed(url):
         async with _opened(settings, url, now) as journal:
             yield journal
 
 
 @contextmanager
-def _claimed(url: str) -> Generator[None]:
-    """One server an SQLite file: two would fly and record the same mission. (A stale lock in PostgreSQL could keep a
-    server out that restarts in flight; there the journal finds a second writer by its sequence numbers.)"""
+def claimed(url: str) -> Generator[None]:
+    """One server an SQLite file: two would fly and record the same mission. Raises DatabaseUnusable.
+
+    (A stale lock in PostgreSQL could keep a server out that restarts in flight; there the journal finds a second writer
+    by its sequence numbers.)
+    """
     database = make_url(url).database
     if make_url(url).get_backend_name() != "sqlite" or not database or database == ":memory:":
         yield
