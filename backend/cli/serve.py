@@ -97,7 +97,7 @@ def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:
     """Raises what nobody foresaw."""
     from backend.cli.running import CannotServe
     from backend.ports import JournalUnavailable
-    from backend.store.journal import DatabaseAway
+    from backend.store.delivery import DatabaseAway
 
     match error:
         case DatabaseAway() | JournalUnavailable():
