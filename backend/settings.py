@@ -32,8 +32,19 @@ class Settings(BaseSettings):
     """Disk blocks taken in advance, so that a full disk does not stop the journal."""
     disk_low_bytes: int = Field(default=200 * 2**20, ge=0)
 
+    keep_sweeps_days: Annotated[float, Field(ge=0, le=36_500)] | None = None
+    """Raw sweeps of missions that ended longer ago are taken; None: kept for ever."""
+
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
+
+    log_level: Literal["debug", "info", "warning", "error"] = "warning"
+    """Of what goes to the standard error; the file has everything from info on."""
+    log_format: Literal["text", "json"] = "text"
+    log_file: Path | None = None
+    log_file_bytes: int = Field(default=10 * 2**20, ge=2**16)
+    """A file of this size is put away, and `log_files_kept` of those are kept."""
+    log_files_kept: int = Field(default=9, ge=0, le=1000)
 
     receiver: str | None = None
     """"simulated", "payload", or a device: soapy:driver=NAME, rtl_tcp://HOST[:PORT], sigmf:FILE, recording:FILE. None:

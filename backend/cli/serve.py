@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+import logging
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
 from backend.cli.edge import print_json, remark, stop
+from backend.logs import configure
 from backend.settings import Settings, settings_of
 from planner.reason import ReasonedError
 
@@ -64,8 +66,11 @@ def serve(
             seed=seed,
             world=world,
         )
+        configure(settings, verbose=logging.getLogger().isEnabledFor(logging.INFO))
     except ValueError as error:
         stop(error)
+    except OSError as error:
+        stop(f"the log file {error.filename} cannot be written: {error.strerror}")
     if settings.reachable_from_outside:
         remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:

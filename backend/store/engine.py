@@ -73,6 +73,14 @@ async def migrate(url: str, timeout_s: float = 30.0, revision: str = "head") -> 
     await asyncio.to_thread(_migrate_in_thread, url, timeout_s, revision)
 
 
+async def shrink(engine: AsyncEngine) -> None:
+    """Give the file's unused pages back to the disk. SQLite only; nobody else may use the file."""
+    async with engine.connect() as connection:
+        driver = (await connection.get_raw_connection()).driver_connection
+        assert driver is not None
+        await driver.execute("VACUUM")  # allowed outside a transaction only
+
+
 def known_revisions() -> frozenset[str]:
     """Of the schemas that this version can bring up to date."""
     return frozenset(script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions())

@@ -15,6 +15,7 @@ from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.reading import why
+from backend.store.retention import keep_thin
 from backend.store.spool import Spool, SpoolForeign, SpoolTaken, claim
 from planner.reason import ReasonedError
 
@@ -74,21 +75,24 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
         raise DatabaseUnusable(ForeignSpool(str(settings.spool_path))) from error
     except (DBAPIError, OSError, ValueError) as error:
         raise DatabaseUnusable(DatabaseUnfit(shown, why(error))) from error
+    engine = make_engine(url, settings.database_timeout_s)
     journal = SqlJournal(
-        make_engine(url, settings.database_timeout_s),
+        engine,
         spool,
         now,
         timeout_s=settings.database_timeout_s,
         slow_s=settings.database_slow_s,
         disk_low_bytes=settings.disk_low_bytes,
     )
-    watch: asyncio.Task[None] | None = None
+    beside: list[asyncio.Task[None]] = []
     try:
         await journal.start_up()
-        watch = asyncio.create_task(journal.run())
+        beside.append(asyncio.create_task(journal.run()))
+        if settings.keep_sweeps_days is not None:
+            beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days)))
         yield journal
     finally:
-        if watch is not None:
-            watch.cancel()
-            await asyncio.gather(watch, return_exceptions=True)
+        for task in beside:
+            task.cancel()
+        await asyncio.gather(*beside, return_exceptions=True)
         await journal.close()
