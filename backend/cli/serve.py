@@ -92,7 +92,7 @@ async def _serve(settings: Settings, json_: bool) -> None:
         server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         if json_:
-            print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})
+            print_json({"url": running.url, "vehicle": what, "database": settings.shown_database})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
         await running.gone
