@@ -5,7 +5,9 @@ WORKDIR /page
 COPY frontend/package.json frontend/package-lock.json ./
 RUN npm ci --no-audit --no-fund --loglevel=error
 COPY frontend/ ./
-RUN npm run --silent build && npm sbom --sbom-format=cyclonedx --omit=dev > /page.cdx.json
+RUN npm run --silent build
+# a bill of materials names a version; the page itself has none
+RUN npm pkg set version=0.0.0 && npm sbom --sbom-format=cyclonedx --omit=dev > /page.cdx.json
 
 FROM python:3.11-slim-bookworm AS environment
 RUN python3 -m venv /opt/crossfix && python3 -m venv /opt/bill
