@@ -14,6 +14,7 @@ import type {
   EventPage,
   ExpectedTime,
   ExportedMission,
+  Health,
   Mission,
   MissionList,
   MissionSpec,
@@ -87,9 +88,13 @@ export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" |
 
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 
+export const health = () => json<Health>("/health");
+
 export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
-export const missions = () => json<MissionList>("/missions");
+/** A page of the list. after: `next` of the page before. */
+export const missions = (named: string, after: string | null) =>
+  json<MissionList>(`/missions?${new URLSearchParams(after === null ? { named } : { named, after })}`);
 export const mission = (id: string) => json<Mission>(missionPath(id));
 export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", withBody("POST", spec));
 export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));

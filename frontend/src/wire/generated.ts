@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * List Missions
-         * @description All missions, newest first.
+         * @description Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name.
          */
         get: operations["list_missions"];
         put?: never;
@@ -1764,7 +1764,10 @@ export interface components {
              */
             code: "crossing_angle_too_small";
         };
-        /** @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. */
+        /**
+         * @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. `refused`: entries
+         *     that it will never take, kept in a file.
+         */
         DatabaseHealth: {
             /** @enum {string} */
             state: "ok" | "slow" | "lost";
@@ -1772,6 +1775,7 @@ export interface components {
             kind: "sqlite" | "postgresql";
             reason: components["schemas"]["Reason"] | null;
             spooled: number;
+            refused: number;
         };
         /** @description detail: what its driver says. */
         DatabaseSilent: {
@@ -2554,7 +2558,10 @@ export interface components {
              */
             code: "headings_of_other_length";
         };
-        /** @description ok: everything answers; degraded: the server works, a part it needs does not. */
+        /**
+         * @description ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
+         *     system does not say. keep_sweeps_days: of missions that are over; None for ever.
+         */
         Health: {
             /** @enum {string} */
             state: "ok" | "degraded";
@@ -2563,6 +2570,8 @@ export interface components {
             database: components["schemas"]["DatabaseHealth"];
             vehicles: components["schemas"]["VehicleHealth"][];
             viewers: number;
+            disk_free_bytes: number | null;
+            keep_sweeps_days: number | null;
             simulated: boolean;
             time_factor: number;
         };
@@ -3179,9 +3188,10 @@ export interface components {
              */
             code: "mission_flies";
         };
-        /** @description Newest first. */
+        /** @description Newest first. next: what `after` asks for the missions that follow, None when these are the last. */
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
+            next: string | null;
         };
         MissionOver: {
             /**
@@ -6612,7 +6622,11 @@ export interface operations {
     };
     list_missions: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+                after?: string | null;
+                named?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
