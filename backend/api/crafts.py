@@ -22,4 +22,4 @@ async def order_craft(
     flights = services.missions.flights
     if craft_id not in flights.loose:
         raise not_found("craft", craft_id)
-    return await flights.command_craft(craft_id, request.command_id, request.command, principal.name)
+    return await flights.command_craft(craft_id, request, principal.author)

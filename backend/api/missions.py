@@ -63,7 +63,7 @@ async def send_command(
     mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep
 ) -> CommandReply:
     """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
-    return await services.missions.flights.command(mission_id, request, principal.name)
+    return await services.missions.flights.command(mission_id, request, principal.author)
 
 
 @router.post("/{mission_id}/preflight")

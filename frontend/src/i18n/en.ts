@@ -695,6 +695,15 @@ export const en = {
   "event.control_taken_back": "Control taken back by {by}",
   "event.command_accepted": "{command} accepted from {by}",
   "event.command_refused": "{command} refused: {reason}",
+  "event.control_changed.free": "{name} controls the search",
+  "event.control_changed.again": "{name} controls the search from another device",
+  "event.control_changed.given": "{by} gave control to {name}",
+  "event.control_changed.unanswered": "{name} took control: nobody answered",
+  "event.control_changed.gone": "{name} took control: whoever had it may no longer operate",
+  "event.control_changed.pilot": "The pilot {name} took control",
+  "event.control_changed.released": "{by} gave up control",
+  "event.control_asked": "{by} asks for control",
+  "event.control_kept": "{by} keeps control",
   "event.safety_vetoed": "Safety: {reason}",
   "event.link_lost": "{link} link lost: {reason}",
   "event.link_restored": "{link} link back after {time}",
@@ -724,6 +733,11 @@ export const en = {
   "command.change_area": "Another search area",
   "command.exclude_bearing": "Leaving out a bearing",
   "command.acknowledge_alert": "Acknowledge",
+  "command.take_control": "Take control",
+  "command.ask_control": "Ask for control",
+  "command.give_control": "Give control",
+  "command.keep_control": "Keep control",
+  "command.release_control": "Give up control",
 };
 
 export type MessageKey = keyof typeof en;

@@ -74,7 +74,9 @@ async def test_no_mission_starts_with_a_vehicle_in_the_air(stage: Stage) -> None
 async def test_one_door_reaches_a_craft_with_a_mission_and_without(stage: Stage) -> None:
     flights = stage.room.flights
     mission_id = await flying(stage)
-    held = await flights.command_craft(FIRST_CRAFT, uuid4(), commands.Hold(), "anna")
+    held = await flights.command_craft(
+        FIRST_CRAFT, commands.CraftRequest(command_id=uuid4(), command=commands.Hold()), commands.Author("anna")
+    )
     assert held.accepted
     await stage.until_phase(mission_id, "hold")
     other = await stage.room.drafts.create(spec(), "anna")
@@ -84,6 +86,8 @@ async def test_one_door_reaches_a_craft_with_a_mission_and_without(stage: Stage)
 
 async def test_the_same_door_reaches_a_craft_in_no_mission(stage: Stage) -> None:
     stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, altitude_relative_m=40.0)
-    landed = await stage.room.flights.command_craft(FIRST_CRAFT, uuid4(), commands.Land(), "anna")
+    landed = await stage.room.flights.command_craft(
+        FIRST_CRAFT, commands.CraftRequest(command_id=uuid4(), command=commands.Land()), commands.Author("anna")
+    )
     assert landed.accepted
     await stage.until_true(lambda: stage.vehicle.names == ["land"])
