@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 
 from backend.api import live, payload, problems, scene
+from backend.api.dependencies import passed_the_gate
+from backend.api.gate import Gate
 from backend.api.guard import Guard
 from backend.api.page import Page
 from backend.api.schema import ROUTERS, operation_id
@@ -28,6 +30,7 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
         openapi_url=None,
         redirect_slashes=False,
         generate_unique_id_function=operation_id,
+        dependencies=[Depends(passed_the_gate)],
     )
     problems.install(app)
     for router in ROUTERS:
@@ -36,5 +39,6 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     app.include_router(payload.router)
     app.include_router(scene.pages)
     app.router.default = Page(settings.page_dir)
+    app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))
     return app

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from backend.api import summary
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
+from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
@@ -60,10 +61,14 @@ async def edit_mission(
 
 @router.post("/{mission_id}/commands")
 async def send_command(
-    mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep
+    mission_id: MissionId, request: CommandRequest, http: Request, services: ServicesDep, principal: PrincipalDep
 ) -> CommandReply:
-    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
-    return await services.missions.flights.command(mission_id, request, principal.author)
+    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false. Where there
+    are accounts, what steers needs the control lease and its `fence`; hold, abort, return and landing never do."""
+    access, flights = services.access, services.missions.flights
+    permit(access, principal, request)
+    answer = flights.command(mission_id, request, principal.author, access.operates)
+    return await ordered(access, principal, http, request, answer)
 
 
 @router.post("/{mission_id}/preflight")

@@ -19,6 +19,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "study": ("backend.cli.study:app", "Compare planners by Monte Carlo."),
     "bench": ("backend.cli.bench:bench", "Measure the planner's speed on this machine."),
     "calibrate": ("backend.cli.calibrate:calibrate", "Measure an antenna pattern from a flight around an emitter."),
+    "audit": ("backend.cli.audit:app", "Check the audit log: who did what, and whether it is whole."),
     "payload": ("backend.cli.payload:payload", "Run the companion computer's agent."),
 }
 """Name -> where it is (module:function or module:app), one line of help."""

@@ -5,17 +5,21 @@ import { t } from "../i18n";
 import { SafetyBar } from "../panels/SafetyBar";
 import { overlay } from "../state/overlay";
 import { type Route, route } from "../state/route";
+import { entered } from "../state/session";
 
 type Page = ComponentType<Record<string, unknown>>;
 type Loader = () => Promise<unknown>;
 
-const loaders: Record<Route["page"] | "sheets", Loader> = {
+const loaders: Record<Route["page"] | "sheets" | "signIn", Loader> = {
   missions: () => import("../pages/MissionsPage").then((m) => m.MissionsPage),
   new: () => import("../pages/EditPage").then((m) => m.EditPage),
   edit: () => import("../pages/EditPage").then((m) => m.EditPage),
   mission: () => import("../pages/FlyPage").then((m) => m.FlyPage),
   area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
+  people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
+  join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
+  signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),
   sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
 };
 
@@ -54,6 +58,14 @@ function Sheets() {
 
 export function App() {
   const current = route.value;
+  if (entered.value === "out" || current.page === "join") {
+    const name = current.page === "join" ? "join" : "signIn";
+    return (
+      <main>
+        <Lazy name={name} route={current} key={name} />
+      </main>
+    );
+  }
   return (
     <>
       <SafetyBar />

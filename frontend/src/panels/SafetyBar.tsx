@@ -21,6 +21,7 @@ import { vehicle } from "../state/vehicle";
 import { reviewWords, stateWords, waitsWords, whoFlies } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
+import { ControlNote, WhoSteers } from "./ControlNote";
 import { Menu } from "./Menu";
 import { ProblemNote } from "./ProblemNote";
 
@@ -252,6 +253,7 @@ function Words() {
       </div>
       <div class="state-more">
         <span data-testid="control">{controlWords()}</span>
+        <WhoSteers />
         {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
         {startedMs !== null && (
           <span data-testid="mission-time" title={shown.spec?.name}>
@@ -341,9 +343,11 @@ export function SafetyBar() {
         <Menu />
       </div>
       <div class="bar-notes">
+        <ControlNote />
         <Countdown />
         <UrgentNote />
         <ProblemNote desk="bar" />
+        <ProblemNote desk="control" />
       </div>
     </header>
   );

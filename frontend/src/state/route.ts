@@ -7,13 +7,17 @@ export type Route =
   | { page: "edit"; missionId: string }
   | { page: "mission"; missionId: string }
   | { page: "area"; missionId: string }
-  | { page: "maps" };
+  | { page: "maps" }
+  | { page: "people" }
+  | { page: "join"; code: string };
 
 export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
   if (parts[0] === "maps") return { page: "maps" };
+  if (parts[0] === "people") return { page: "people" };
+  if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {
     return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };
   }
