@@ -94,7 +94,9 @@ async def get_session(request: Request, services: ServicesDep) -> SessionState:
 async def sign_in(asked: SignIn, request: Request, response: Response, services: ServicesDep) -> SessionState:
     """A new session, in a cookie. 403: name or password is wrong; 429: too many tries."""
     _require_encryption(request, services)
-    address = address_of(request.scope)
+    address, account = address_of(request.scope), services.access.named(asked.name)
+    if account is not None:  # another name may be a password in the wrong field
+        request.state.audit["account"] = account.name
     secret = await services.access.sign_in(asked.name, asked.password, address, device_of(request))
     return await _entered(request, response, services, secret)
 

@@ -117,7 +117,12 @@ class Gate:
                 _note(access, scope, name, visitor.principal, address, 101)
             await self._watched(access, visitor, scope, receive, send)
         else:
-            await self._app(scope, receive, _noting(access, scope, name, visitor.principal, address, need, send))
+            try:
+                await self._app(scope, receive, _noting(access, scope, name, visitor.principal, address, need, send))
+            except Exception:
+                if need.audited:
+                    _note(access, scope, name, visitor.principal, address, 500, detail=dict(state["audit"]))
+                raise
 
     def _call(self, scope: Scope) -> str | None:
         if not self._calls:

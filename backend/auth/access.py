@@ -167,6 +167,10 @@ class Access:
             raise Denied(404, NothingThere("person", person_id))
         return found
 
+    def named(self, name: str) -> Person | None:
+        """None: nobody is called so."""
+        return next((person for person in self._people.values() if person.name_key == key_of(name)), None)
+
     def operates(self, person_id: str) -> bool:
         """May this person give commands now?"""
         person = self._people.get(person_id)
@@ -256,8 +260,10 @@ class Access:
 
     async def sign_in(self, name: str, password: str, address: str, device: str) -> str:
         """The new session's secret: never one that was there before. Raises Denied, JournalUnavailable."""
+        if self.mode == "alone":
+            raise Denied(409, NoPeopleHere())
         now_s, key = self._monotonic_s(), key_of(name)
-        person = next((one for one in self._people.values() if one.name_key == key), None)
+        person = self.named(name)
         wait_s = self.limits.names.wait_s(key, now_s)
         if wait_s > 0 or self._signing_in >= WAITING_SIGN_INS:
             raise Denied(429, TooManyTries(max(wait_s, 1.0)))

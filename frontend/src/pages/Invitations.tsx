@@ -2,7 +2,6 @@
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
 import * as access from "../sources/accessApi";
-import { formatDuration } from "../units/quantities";
 import type { Try } from "./PeoplePage";
 import { RolePick } from "./RolePick";
 
@@ -72,7 +71,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
               <span class="muted">
                 {t("people.invitedBy", {
                   name: one.made_by,
-                  time: formatDuration(Math.max(0, (Date.parse(one.expires_utc) - Date.now()) / 1000)),
+                  time: `${one.expires_utc.slice(0, 16).replace("T", " ")} UTC`,
                 })}
               </span>
             </span>

@@ -5,11 +5,32 @@ import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import * as access from "../sources/accessApi";
 import { me, refreshSession, session } from "../state/session";
-import { formatDuration } from "../units/quantities";
+import { formatAge } from "../units/quantities";
 import type { Problem } from "../wire";
 import { Invitations } from "./Invitations";
 import { Machines } from "./Machines";
 import { RolePick } from "./RolePick";
+
+const named = (words: string, names: readonly [RegExp, string][]) => names.find(([pattern]) => pattern.test(words))?.[1];
+
+/** Browser and system as they name themselves, as far as it is of use to somebody who looks for a lost phone. */
+function deviceName(words: string): string {
+  const browser = named(words, [
+    [/Edg/, "Edge"],
+    [/Firefox|FxiOS/, "Firefox"],
+    [/Chrome|CriOS/, "Chrome"],
+    [/Safari/, "Safari"],
+  ]);
+  const system = named(words, [
+    [/Android/, "Android"],
+    [/iPhone/, "iPhone"],
+    [/iPad/, "iPad"],
+    [/Windows/, "Windows"],
+    [/Mac OS/, "Mac"],
+    [/Linux/, "Linux"],
+  ]);
+  return browser && system ? `${browser}, ${system}` : words.slice(0, 60);
+}
 
 export type Try = (doing: Promise<unknown>) => void;
 
@@ -32,7 +53,7 @@ function OwnSessions({ attempt, list }: { attempt: Try; list: access.OpenSession
             <div>
               <strong>{one.own ? t("people.thisDevice") : one.address}</strong>
               <div class="muted">
-                {one.device} · {t("people.idle", { time: formatDuration(one.idle_s) })}
+                {deviceName(one.device)} · {t("people.idle", { time: formatAge(one.idle_s) })}
               </div>
             </div>
             {!one.own && (
@@ -118,7 +139,7 @@ export function PeoplePage() {
   }, [admin, alone]);
   if (alone) return session.value === null ? null : <Alone />;
   return (
-    <div class="page" data-testid="people-page">
+    <div class="page people" data-testid="people-page">
       {problem && <ProblemBox problem={problem} />}
       {listed && admin && (
         <>

@@ -21,7 +21,7 @@ import { vehicle } from "../state/vehicle";
 import { reviewWords, stateWords, waitsWords, whoFlies } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
-import { ControlNote, WhoSteers } from "./ControlNote";
+import { ControlAsked, ControlButton } from "./ControlButton";
 import { Menu } from "./Menu";
 import { ProblemNote } from "./ProblemNote";
 
@@ -253,7 +253,6 @@ function Words() {
       </div>
       <div class="state-more">
         <span data-testid="control">{controlWords()}</span>
-        <WhoSteers />
         {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
         {startedMs !== null && (
           <span data-testid="mission-time" title={shown.spec?.name}>
@@ -339,15 +338,15 @@ export function SafetyBar() {
         <Resume />
         <Words />
         <Indicators />
+        <ControlButton />
         <AlertsButton />
         <Menu />
       </div>
       <div class="bar-notes">
-        <ControlNote />
+        <ControlAsked />
         <Countdown />
         <UrgentNote />
         <ProblemNote desk="bar" />
-        <ProblemNote desk="control" />
       </div>
     </header>
   );
