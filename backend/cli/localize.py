@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, get_args
 
@@ -11,7 +12,9 @@ import numpy as np
 import typer
 
 from backend.cli.edge import print_json, remark, stop
-from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
+from backend.settings import settings_of
+from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
+from hardware.direction_finding.bearings_file import RecordedBearing, read_bearings
 from hardware.direction_finding.table_file import RecordingError
 from hardware.frame import LocalFrame, compass_to_angle
 from hardware.readings import Place
@@ -60,11 +63,23 @@ def localize(
         ),
     ] = None,
     sigma: Annotated[
-        float, typer.Option(min=0.1, max=60.0, help="Standard deviation in degrees of bearings without their own.")
-    ] = DEFAULT_SIGMA_DEG,
+        float | None,
+        typer.Option(
+            min=0.1,
+            max=60.0,
+            help="Standard deviation in degrees of bearings without their own. Default: estimated from how they miss "
+            "one another, and CROSSFIX_HEADING_SIGMA_DEG.",
+        ),
+    ] = None,
     outliers: Annotated[
-        float, typer.Option(min=0.0, max=0.5, help="Probability that a bearing is wrong altogether (0: none may be).")
-    ] = 0.0,
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=0.5,
+            help="Probability that a bearing is wrong altogether (0: none may be). Default: 0 where the file states "
+            "sigmas, else estimated.",
+        ),
+    ] = None,
     threshold: Annotated[
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
@@ -82,13 +97,18 @@ def localize(
     Example: crossfix localize bearings.csv --range 800 --json
     """
     try:
-        recorded = read_bearings(file, sigma)
+        recorded = read_bearings(file) if sigma is None else read_bearings(file, sigma)
         for reason in recorded.remarks:
             remark(sentence_of(reason))
         chosen = _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
-        answer = _localize(chosen, frame, region, outliers, threshold, _known_estimator(estimator))
+        expected = 0.0
+        if sigma is None and not all(b.stated for b in chosen):
+            scatter = _scatter(chosen, frame, region)
+            chosen, expected = _with_sigma(chosen, scatter.sigma_deg), scatter.outlier_probability
+        rate = expected if outliers is None else outliers
+        answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator))
     except (RecordingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
@@ -112,6 +132,20 @@ def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) 
     if not chosen:
         raise ValueError(f"{file} holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
     return chosen
+
+
+def _scatter(bearings: list[RecordedBearing], frame: LocalFrame, region: Region) -> BearingScatter:
+    """Of those without a sigma; what all of them share, the compass', shows in no scatter and is added."""
+    open_ = [b for b in bearings if not b.stated]
+    corners = np.concatenate(region)
+    places = np.array([frame.to_enu(b.place) for b in open_])
+    degrees = np.array([b.bearing_deg for b in open_])
+    found = bearing_scatter(places, degrees, corners.min(axis=0), corners.max(axis=0))
+    return replace(found, sigma_deg=math.hypot(found.sigma_deg, settings_of().heading_sigma_deg))
+
+
+def _with_sigma(bearings: list[RecordedBearing], sigma_deg: float) -> list[RecordedBearing]:
+    return [b if b.stated else replace(b, sigma_deg=sigma_deg) for b in bearings]
 
 
 def _middle(bearings: list[RecordedBearing]) -> Place:
@@ -188,6 +222,8 @@ def _localize(
         "localized": judged.localized,
         "not_yet": [text_of(reason) for reason in judged.reasons],
         "bearings": len(bearings),
+        "sigma_deg": round(max(b.sigma_deg for b in recorded), 2),
+        "outlier_probability": round(outliers, 3),
     }
     if belief is not None:
         spread = estimate(belief, problem.estimator)

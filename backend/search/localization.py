@@ -153,7 +153,8 @@ class Localization:
         """What the bearings are off by together, judged by what their sigmas hold besides the heading's share."""
         places = np.array([self.frame.to_enu(b.place) for b in measured]).reshape(-1, 2)
         bearing = np.array([b.bearing_deg for b in measured])
-        own = np.sqrt([max(b.sigma_deg**2 - b.heading_sigma_deg**2, 0.0) for b in measured])
+        common = [b.heading_sigma_deg**2 + b.pattern_sigma_deg**2 for b in measured]
+        own = np.sqrt([max(b.sigma_deg**2 - c, 0.0) for b, c in zip(measured, common, strict=True)])
         return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
 
     def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:

@@ -752,7 +752,7 @@ export const en = {
   "event.resume_ordered": "Resume by {by}",
   "event.return_ordered": "Return by {by}",
   "event.land_ordered": "Landing ordered by {by}",
-  "event.order_tried": "{order}: the vehicle is told to {way}",
+  "event.order_tried": "{order}: the vehicle is ordered to {way}",
   "event.order_not_done": "{order} is not done: {reason} Next: {way}",
   "event.order_done": "{order}: confirmed by the vehicle ({way})",
   "event.abort_ordered": "Abort by {by}",

@@ -400,9 +400,21 @@ export const reasonsEn: ReasonTable = {
     text: "The strongest direction lies in a gap of {gap_deg} where the receiver did not listen.",
     remedy: "",
   },
+  pattern_borrowed: {
+    text: "The bearing was found with the pattern of another antenna ({name}), so it is less certain.",
+    remedy: "Measure the pattern of the antenna that flies: crossfix calibrate.",
+  },
+  likely_other_antenna: {
+    text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
+    remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
+  },
   antenna_agrees: {
     text: "Measured {measured_deg}, true {true_deg}, quality {quality:2}.",
     remedy: "",
+  },
+  not_the_measured_antenna: {
+    text: "This is not the antenna that was measured: {sweeps} sweeps deviate from the pattern {name} by {repeats_db:1} in the same way.",
+    remedy: "Check which antenna is mounted and how, or take over the proposed pattern.",
   },
   emitter_too_near: {
     text: "The emitter is only {distance_m} away.",

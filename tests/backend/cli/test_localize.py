@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ def bearing_to(x: float, y: float, east: float, north: float) -> float:
     return math.degrees(math.atan2(east - x, north - y)) % 360.0
 
 
-def written(tmp_path: Path, rows: list[tuple[float, float, float]], sigma: float = 4.0) -> Path:
+def written(tmp_path: Path, rows: Sequence[tuple[float, float, float]], sigma: float = 4.0) -> Path:
     """rows: east, north, bearing."""
     lines = ["lat,lon,bearing_deg,sigma_deg"]
     for east, north, bearing in rows:
