@@ -105,6 +105,7 @@ ENDPOINTS: Mapping[str, Need] = {
     "GET /api/missions/{mission_id}/sweeps/{sweep_id}": EXPORT,
     "GET /api/missions/{mission_id}/track": EXPORT,
     "GET /api/missions/{mission_id}/export/{format}": EXPORT,
+    "GET /api/missions/{mission_id}/antenna": WATCH,
     "GET /api/missions/{mission_id}/profile": WATCH,
     "POST /api/recordings/read": WATCH,
     # maps and terrain
