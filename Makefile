@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -31,14 +31,18 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[server,study]'
+# Every package is compared with the hash that stands beside its version; what builds them is among them.
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check
+
+$(VENV)/.installed: pyproject.toml setup.py requirements/run.txt | $(VENV)/bin/python
+	$(PIP) --require-hashes -r requirements/run.txt
+	$(PIP) --no-build-isolation --no-deps -e .
 	@touch $@
 
 setup-dev: $(VENV)/.installed-dev
 
-$(VENV)/.installed-dev: $(VENV)/.installed
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+$(VENV)/.installed-dev: $(VENV)/.installed requirements/development.txt
+	$(PIP) --require-hashes -r requirements/development.txt
 	@touch $@
 
 frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
@@ -147,9 +151,30 @@ architecture: setup-dev ## the picture of docs/architecture.md, from the imports
 	$(BIN)/python -m docs.drawing
 
 COMPOSE ?= docker compose
+HTTPS_PORT ?= 443
 containers: setup-dev ## build the image, fly one mission in the containers of docker-compose.yml, take them down again
-	SPEEDUP=5 $(COMPOSE) up --build --detach
-	$(BIN)/python -m tests.containers.fly http://127.0.0.1:8600; flown=$$?; $(COMPOSE) down; exit $$flown
+	SPEEDUP=5 HTTPS_PORT=$(HTTPS_PORT) $(COMPOSE) --profile simulated up --build --detach
+	$(BIN)/python -m tests.containers.fly https://localhost:$(HTTPS_PORT); flown=$$?; $(COMPOSE) --profile simulated down; exit $$flown
+
+wheel: setup-dev build ## dist/crossfix-VERSION.whl with the page inside: pipx install it, then crossfix serve
+	$(BIN)/pip wheel --quiet --no-deps --no-build-isolation -w dist .
+	@ls dist/crossfix-*.whl
+
+requirements: ## requirements/*.txt with the hashes of what constraints.txt pins; after each change there
+	$(PYTHON) -m venv $(STAMPS)/uv && $(STAMPS)/uv/bin/pip install --quiet uv
+	cd requirements && ./compile.sh $(abspath $(STAMPS)/uv/bin/uv)
+
+audit: setup-dev ## known vulnerabilities of the packages that are installed, of Python and of the page
+	$(PYTHON) -m venv $(STAMPS)/audit && $(STAMPS)/audit/bin/pip install --quiet --require-hashes -r requirements/audit.txt
+	$(STAMPS)/audit/bin/pip-audit --disable-pip --require-hashes -r requirements/run.txt
+	cd frontend && npm audit --omit=dev
+
+SCALE ?= 1
+soak: setup-dev build ## a hundred viewers for ten minutes, aborts under load, files of 50 MB: figures 6, 7 and 20; SCALE=0.1 for a short one
+	$(BIN)/python -m tests.benchmarks.campaign soak --scale $(SCALE) $(if $(OUT),--out $(OUT))
+
+chaos: setup-dev build kernel ## kills, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13 and 15; hours, SCALE=0.01 for a short one
+	$(BIN)/python -m tests.benchmarks.campaign chaos --scale $(SCALE) $(if $(OUT),--out $(OUT))
 
 example: setup-dev ## the flight that the page plays as its example, recorded again: after each change of the wire
 	$(BIN)/python frontend/scripts/record_example.py

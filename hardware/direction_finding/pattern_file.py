@@ -165,8 +165,8 @@ def _to_db(filename: str, gain: NDArray[np.float64], unit: str) -> NDArray[np.fl
     raise PatternError(PatternUnitUnknown(filename, unit))
 
 
-def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
-    """Write the JSON format above, unit dB."""
+def pattern_json(pattern: AntennaPattern) -> str:
+    """The JSON format above, unit dB."""
     data = {
         "format": FORMAT,
         "name": pattern.name,
@@ -180,7 +180,12 @@ def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
         "gain": [round(float(g), 3) for g in pattern.gain_db],
     }
     rows = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items())
-    Path(path).write_text("{\n" + rows + "\n}\n", encoding="utf-8")
+    return "{\n" + rows + "\n}\n"
+
+
+def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
+    """Write `pattern_json` to a file."""
+    Path(path).write_text(pattern_json(pattern), encoding="utf-8")
 
 
 def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float = 0.0) -> AntennaPattern:

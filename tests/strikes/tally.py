@@ -81,10 +81,11 @@ def figures(outcomes: Sequence[Outcome], flavour: str, by_nobody: int, orders: b
     counted = [outcome for outcome in outcomes if outcome.counts]
     delays = ", ".join(f"{delay * 1e3:g}" for delay in sorted({outcome.delay_s for outcome in counted}))
     note = f"of {len(counted)} at {delays} ms each way"
+    of = f"{flavour}, meeting orders of a mode" if orders else flavour
     undone = sum(outcome.undone for outcome in counted)
     return [
-        plain("undone", undone, "", note=note) if orders else wanted("takeovers_undone", undone, of=flavour, note=note),
-        wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=flavour, note=note),
+        plain("undone", undone, "", note=note) if orders else wanted("takeovers_undone", undone, of=of, note=note),
+        wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=of, note=note),
         plain("followed by a flight command later than 1 s", sum(map(spoke_late, counted)), "", note=note),
         plain("takeovers aimed at real autopilots", len(counted), ""),
         plain("strikes that did not take", len(outcomes) - len(counted), ""),

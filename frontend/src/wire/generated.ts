@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * List Missions
-         * @description All missions, newest first.
+         * @description Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name.
          */
         get: operations["list_missions"];
         put?: never;
@@ -307,6 +307,26 @@ export interface paths {
          * @description What would have been believed and chosen with another sensor model, antenna or planner. Nothing is recorded.
          */
         post: operations["ask_what_if"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/antenna": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Antenna
+         * @description Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show.
+         */
+        get: operations["get_antenna"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -968,6 +988,17 @@ export interface components {
             pointing_sigma_deg: number | null;
             /** @default false */
             borrowed: boolean;
+        };
+        /**
+         * @description What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
+         *     what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
+         *     measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is.
+         */
+        AntennaReview: {
+            sweeps: number;
+            repeats_db: number | null;
+            doubt: components["schemas"]["Reason"] | null;
+            proposed: components["schemas"]["PatternUpload"] | null;
         };
         AntennaUnlikePattern: {
             because: components["schemas"]["NothingHeardInTurn"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"];
@@ -1745,7 +1776,10 @@ export interface components {
              */
             code: "crossing_angle_too_small";
         };
-        /** @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. */
+        /**
+         * @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. `refused`: entries
+         *     that it will never take, kept in a file.
+         */
         DatabaseHealth: {
             /** @enum {string} */
             state: "ok" | "slow" | "lost";
@@ -1753,6 +1787,7 @@ export interface components {
             kind: "sqlite" | "postgresql";
             reason: components["schemas"]["Reason"] | null;
             spooled: number;
+            refused: number;
         };
         /** @description detail: what its driver says. */
         DatabaseSilent: {
@@ -2546,7 +2581,10 @@ export interface components {
              */
             code: "headings_of_other_length";
         };
-        /** @description ok: everything answers; degraded: the server works, a part it needs does not. */
+        /**
+         * @description ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
+         *     system does not say. keep_sweeps_days: of missions that are over; None for ever.
+         */
         Health: {
             /** @enum {string} */
             state: "ok" | "degraded";
@@ -2555,6 +2593,8 @@ export interface components {
             database: components["schemas"]["DatabaseHealth"];
             vehicles: components["schemas"]["VehicleHealth"][];
             viewers: number;
+            disk_free_bytes: number | null;
+            keep_sweeps_days: number | null;
             simulated: boolean;
             time_factor: number;
         };
@@ -3171,9 +3211,10 @@ export interface components {
              */
             code: "mission_flies";
         };
-        /** @description Newest first. */
+        /** @description Newest first. next: what `after` asks for the missions that follow, None when these are the last. */
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
+            next: string | null;
         };
         MissionOver: {
             /**
@@ -6637,7 +6678,11 @@ export interface operations {
     };
     list_missions: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+                after?: string | null;
+                named?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -7044,6 +7089,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["WhatIf"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_antenna: {
+        parameters: {
+            query?: {
+                emitter?: string | null;
+            };
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AntennaReview"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -62,6 +62,7 @@ export type TrackFact = Schemas["TrackFact"];
 export type ExportedMission = Schemas["ExportedMission"];
 export type ExpectedTime = Schemas["ExpectedTime"];
 export type Preview = Schemas["Preview"];
+export type AntennaReview = Schemas["AntennaReview"];
 export type WhatIf = Schemas["WhatIf"];
 export type WhatIfRequest = Schemas["WhatIfRequest"];
 export type SearchArea = Schemas["SearchArea"];

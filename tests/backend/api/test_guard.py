@@ -38,7 +38,7 @@ async def test_a_rebound_name_is_refused(client, host):
 async def test_a_foreign_page_changes_nothing(client, origin):
     reply = await client.post("/api/areas", json={"text": "{}"}, headers={"origin": origin})
     assert reply.status_code == 403
-    assert (await client.get("/api/missions")).json() == {"missions": []}
+    assert (await client.get("/api/missions")).json() == {"missions": [], "next": None}
 
 
 async def test_our_own_page_and_programs_may_write(client):
