@@ -62,9 +62,7 @@ def truth(
 def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0) -> Truth:
     """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before."""
     wanted = row_named(row)
-    known = next((one for one in MODELS if one == model), None)
-    if known is None:
-        raise StudyError(f"there is no model {model!r}: choose one of {', '.join(MODELS)}")
+    known = _model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
     mission = suggested_mission(HOME)
@@ -80,6 +78,13 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, f
         if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
             remark(f"{row}: {len(claims)} of {count} missions")
     return truth_of(row, known, claims)
+
+
+def _model(name: str) -> Model:
+    for one in MODELS:
+        if one == name:
+            return one
+    raise StudyError(f"there is no model {name!r}: choose one of {', '.join(MODELS)}")
 
 
 def sentence(found: Truth) -> str:

@@ -79,7 +79,7 @@ def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
     error = NARROWEST_SCALE * sigma / np.sqrt(max(bearings, 1))
     spacing = float(np.clip(NODE_SIGMAS * error, FINEST_SPACING, COARSEST_SPACING))
     side = int(np.ceil(LARGEST_BIAS / spacing))
-    bias = spacing * np.arange(-side, side + 1)
+    bias = np.asarray(spacing * np.arange(-side, side + 1), dtype=np.float64)
     weight = bias_weights(bias, spacing, prior.spread) @ prior.spread_weight
     weight = weight / weight.sum()
     kept = np.flatnonzero(weight > NEGLIGIBLE_WEIGHT)
