@@ -52,7 +52,7 @@ class MissionTooHeavy:
     code: Literal["mission_too_heavy"] = "mission_too_heavy"
     english: ClassVar[Words] = Words(
         "This was not worked out: {limit?time=it took too long|memory=it took too much memory"
-        "|depth=it is nested too deep|process=the process that worked on it ended|busy=too much else is being worked on} "
+        "|depth=it is nested too deep|process=the process that worked on it ended|busy=too much else is worked on} "
         "(a mission may take {most_s} and {most_bytes} of memory). Nothing is lost, and the flight goes on.",
         "{limit?busy=Wait a moment, then ask again.|*=Ask for less of it: one format, or an earlier belief.}",
     )
