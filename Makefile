@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -73,6 +73,9 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page
+
+check-python:
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
@@ -81,9 +84,11 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json
 	$(BIN)/python -m tests.benchmarks.figures --check
-	cd frontend && npm run --silent codegen -- --check
 	$(BIN)/python -m docs.drawing --check
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+
+check-page:
+	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
 kernel: setup-dev ## compiled once here, not by each test worker
@@ -97,7 +102,7 @@ unit-and-system: # missions wait for the wall's clock, and the unit tests fill t
 	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
 
 unit: kernel ## tests without a vehicle or a browser, and how much of the code they run
-	nice -n 10 $(BIN)/pytest -n 2 --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
+	nice -n 10 $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets
@@ -124,6 +129,9 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 
 sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
 	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
+
+truth: setup-dev ## a thousand simulated missions for each way in which bearings are wrong: is what is claimed true? An hour
+	$(BIN)/python -m tests.benchmarks.truth --missions 1000 --out $(MEASUREMENTS)
 
 takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simulated autopilot, and headings in time: half an hour
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour px4 --times 200 --out $(MEASUREMENTS)

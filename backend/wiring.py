@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
 
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
+from backend.auth.access import Access
+from backend.auth.audit import AUDIT_FILE, AuditLog
+from backend.auth.records import Records
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
@@ -22,20 +26,23 @@ from backend.settings import Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
+from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
 from backend.version import VERSION
 from hardware.autopilot.link import check_url
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
+from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.direction_finding.pattern_file import borrowed_pattern, load_pattern
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.ports import Receiver, ReceiverError, Vehicle
 from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
+from hardware.sim.turntable import simulated_antenna
 
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
@@ -63,7 +70,7 @@ def _receiver(
     emitters: Sequence[SimulatedEmitter],
 ) -> Receiver:
     """Raises ReceiverError for a device of no known form."""
-    named = settings.receiver or ("simulated" if payload is None else "payload")
+    named = _receiver_name(settings)
     if named == "simulated":
         return EmittersAroundHome(vehicle, clock, settings.seed, settings.world, emitters)
     if named == "payload":
@@ -71,6 +78,38 @@ def _receiver(
             raise ReceiverError(PayloadTokensMissing())
         return PayloadReceiver(payload)
     return receiver_from(named, clock)
+
+
+def _pattern(settings: Settings) -> AntennaPattern:
+    """The one that was set; else the simulated antenna's for the simulated receiver, and a borrowed one for any other.
+
+    Raises PatternError.
+    """
+    if settings.antenna_pattern is not None:
+        return load_pattern(settings.antenna_pattern)
+    return simulated_antenna() if _receiver_name(settings) == "simulated" else borrowed_pattern()
+
+
+def _receiver_name(settings: Settings) -> str:
+    return settings.receiver or ("payload" if settings.payload_tokens else "simulated")
+
+
+@asynccontextmanager
+async def open_access(settings: Settings) -> AsyncGenerator[Access]:
+    """Who may enter, read from the migrated database. Raises JournalUnavailable."""
+    timeout_s = settings.database_timeout_s
+    records = Records(make_engine(settings.async_database_url, timeout_s), timeout_s)
+    access = Access(
+        records,
+        AuditLog(settings.data_dir / AUDIT_FILE, time.time),
+        people_expected=settings.people_expected,
+        payload_tokens=settings.payload_tokens,
+    )
+    try:
+        await access.load()
+        yield access
+    finally:
+        await access.close()
 
 
 @asynccontextmanager
@@ -97,12 +136,12 @@ async def open_simulation(
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
-    pattern = load_pattern(settings.antenna_pattern or SMALL_YAGI)
+    pattern = _pattern(settings)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
     warming: asyncio.Task[None] | None = None
-    async with open_journal(settings, lambda: clock.now()) as journal:
+    async with open_journal(settings, lambda: clock.now()) as journal, open_access(settings) as access:
         unfinished = await journal.unfinished()
         if first is None:
             latest = await _latest_utc_s(journal)
@@ -120,7 +159,8 @@ async def open_simulation(
                 await first.vehicle.close()
             vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
             hub = Hub(journal.read, clock.now)
-            payload = PayloadHub(settings.payload_tokens, clock.now) if settings.payload_tokens else None
+            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.tokens)
+            payload = PayloadHub(settings.payload_tokens, clock.now) if expected else None
             receiver = _receiver(settings, vehicle, clock, payload, emitters)
             finder = SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg)
             craft = CraftEquipment(
@@ -150,7 +190,9 @@ async def open_simulation(
                 warming = _warming()
             else:
                 await warming
-            services = Services(missions, journal, hub, settings, clock.now, payload, finder=finder, pattern=pattern)
+            services = Services(
+                missions, journal, hub, settings, clock.now, payload, access=access, finder=finder, pattern=pattern
+            )
             try:
                 yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 
 from backend.api import summary
 from backend.api.dependencies import MetersDep, MissionId, PrincipalDep, ServicesDep
+from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
 from backend.logs import about
 from backend.search.errors import MissionNotFound
-from backend.spec import MissionSpec
+from backend.spec import MissionSpec, with_todays_errors
 from backend.store.digest import MissionDigest
 from backend.store.reading import PlaceInList
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
@@ -57,7 +58,7 @@ def _place(after: str) -> PlaceInList:
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
+    return await _mission(services, await services.missions.drafts.create(with_todays_errors(spec), principal.name))
 
 
 @router.get("/{mission_id}")
@@ -71,17 +72,26 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, spec, principal.name)
+    await services.missions.drafts.edit(mission_id, with_todays_errors(spec), principal.name)
     return await _mission(services, mission_id)
 
 
 @router.post("/{mission_id}/commands")
 async def send_command(
-    mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep, meters: MetersDep
+    mission_id: MissionId,
+    request: CommandRequest,
+    http: Request,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    meters: MetersDep,
 ) -> CommandReply:
-    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
+    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false. Where there
+    are accounts, what steers needs the control lease and its `fence`; hold, abort, return and landing never do."""
+    access, flights = services.access, services.missions.flights
+    permit(access, principal, request)
     with about(mission=mission_id, command=str(request.command_id)):
-        reply = await services.missions.flights.command(mission_id, request, principal.name)
+        answer = flights.command(mission_id, request, principal.author, access.operates)
+        reply = await ordered(access, principal, http, request, answer)
         meters.told(request.command.kind, reply)
     return reply
 

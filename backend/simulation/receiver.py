@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from typing import Literal
 
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter, emitter_places
 from backend.simulation.walls import walls
 from hardware.clock import ScaledClock
 from hardware.ports import ReceiverError, Vehicle
-from hardware.readings import Channel, Place, PowerSample
+from hardware.readings import Channel, Place, PowerSample, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.reasons.simulation import HomeNotKnown
 from hardware.sim.receiver import SimulatedReceiver
@@ -22,7 +22,8 @@ TELEMETRY_HELD_WALL_S = 0.25
 class EmittersAroundHome:
     """The Receiver port.
 
-    truth: where each simulated emitter stands, by its frequency; empty until the home is known.
+    truth: where each simulated emitter stands, by its frequency; empty until the home is known. pose: what tells where
+    the antenna is; whoever knows it better than the vehicle's link sets another before the receiver is first opened.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class EmittersAroundHome:
         self._emitters = emitters
         self._receiver: SimulatedReceiver | None = None
         self.truth: Mapping[float, Place] = {}
+        self.pose: Callable[[], Telemetry] = vehicle.telemetry
 
     async def open(self, channels: Sequence[Channel]) -> None:
         """See the Receiver port. Raises ReceiverError also while the home is not known."""
@@ -59,7 +61,7 @@ class EmittersAroundHome:
         reflectors = walls(self._seed, home) if self._world == "multipath" else ()
         return SimulatedReceiver(
             World(emitters, reflectors=reflectors, seed=self._seed),
-            self._vehicle.telemetry,
+            self.pose,
             self._clock,
             ground_amsl_m=telemetry.home_amsl_m or 0.0,
             telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),

@@ -327,6 +327,17 @@ class PatternUpload(Model):
     filename: str = Field(min_length=1, max_length=255)
 
 
+class AntennaReview(Model):
+    """What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
+    what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
+    measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is."""
+
+    sweeps: int
+    repeats_db: float | None
+    doubt: Reason | None
+    proposed: PatternUpload | None
+
+
 class WhatIfRequest(Model):
     """A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
     `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`

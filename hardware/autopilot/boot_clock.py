@@ -2,7 +2,8 @@
 
 What is heard of boot time x at UTC t is late by the link's delay, never early, so t - x lies on or above a line over x,
 whose slope is the rate of the two clocks: a crystal's, or that of a simulator that does not keep up. The height of the
-line is the offset and the least delay; TIMESYNC exchanges tell the two apart. Without answers to them the delay stays.
+line is the offset and the least delay; TIMESYNC exchanges tell the two apart. Where they are not answered half of the
+shortest round trip is taken for the least delay (both ways take as long); without either the delay stays.
 """
 
 from __future__ import annotations
@@ -51,6 +52,8 @@ class BootClock:
         self._points: deque[_Point] = deque()
         self._exchanges: deque[_Exchange] = deque()
         self._best: _Exchange | None = None
+        self._round_trips: deque[tuple[float, float]] = deque()
+        """(boot time, seconds)"""
         self._slope = 0.0
         self._through: _Point | None = None
         self._boot_s = 0.0
@@ -76,7 +79,7 @@ class BootClock:
         else:
             self._judge_step(point)
         self._remember(point)
-        offset_s = self._line(boot_s) if self._best is None else self._offset_by(self._best, boot_s)
+        offset_s = self._least_offset(boot_s) if self._best is None else self._offset_by(self._best, boot_s)
         return boot_s + min(offset_s, point.offset_s)
 
     def exchanged(self, sent_at_s: float, boot_s: float, heard_at_s: float) -> None:
@@ -92,6 +95,19 @@ class BootClock:
             self._exchanges.popleft()
         self._best = min(self._exchanges, key=lambda one: 0.5 * one.round_trip_s + AGEING * (boot_s - one.boot_s))
 
+    def went_round(self, sent_at_s: float, heard_at_s: float) -> None:
+        """A PING: asked at `sent_at_s`, its answer, which tells no time, heard at `heard_at_s` (UTC)."""
+        round_trip_s = heard_at_s - sent_at_s
+        if 0.0 <= round_trip_s <= LONGEST_ROUND_TRIP_S:
+            self._round_trips.append((self._boot_s, round_trip_s))
+
+    def _least_offset(self, boot_s: float) -> float:
+        """The line, less the least delay."""
+        trips = self._round_trips
+        while trips and boot_s - trips[0][0] > WINDOW_S:
+            trips.popleft()
+        return self._line(boot_s) - 0.5 * min((seconds for _, seconds in trips), default=0.0)
+
     def _offset_by(self, exchange: _Exchange, boot_s: float) -> float:
         return exchange.offset_s + self._slope * (boot_s - exchange.boot_s)
 
@@ -103,6 +119,7 @@ class BootClock:
         """From a step on; the rate is that of before."""
         self._points.clear()
         self._exchanges.clear()
+        self._round_trips.clear()
         self._best = None
         self._late.clear()
         self._through = point

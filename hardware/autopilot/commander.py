@@ -93,7 +93,8 @@ class Commander:
         """Send a flight command until it is acknowledged. modes: the raw modes that are ours after it.
 
         One that changes the mode goes right after the vehicle's own word of its mode: sent blindly, it would undo a
-        pilot's switch. Any other goes only while the vehicle is in one of `modes`.
+        pilot's switch; and not again once its mode shows, though its answer got lost. Any other goes only while the
+        vehicle is in one of `modes`.
         Raises CommandDenied, OutOfMode, NotInControl, ManoeuvreSuperseded, VehicleError (no answer).
         """
 
@@ -102,6 +103,7 @@ class Commander:
             in_mode = outgoing.changes_mode or authority.heard in modes
             return authority.who == "ours" and in_mode and manoeuvre.superseded_by is None
 
+        in_mode_before = self._control.authority.heard in modes
         for attempt in range(1, ATTEMPTS + 1):
             if outgoing.changes_mode:
                 await self._mode_heard()
@@ -116,6 +118,9 @@ class Commander:
                 return
             if result is not None:
                 raise CommandDenied(AutopilotRefused(command, result))
+            if outgoing.changes_mode and not in_mode_before and self._control.authority.heard in modes:
+                self._control.see(CommandAcknowledged())
+                return
             if attempt < ATTEMPTS:
                 self._announce(TriedAgain(CommandUnanswered(command, attempt), attempt + 1))
         raise VehicleError(CommandUnanswered(command, ATTEMPTS))

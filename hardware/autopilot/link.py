@@ -166,10 +166,11 @@ class MavlinkLink:
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
         """Send one message to the autopilot; `allowed` is asked in the instant before, False sends nothing.
 
-        None among the fields is sent as NaN. Returns whether it was sent.
+        None among the fields is sent as NaN; a target among them is kept. Returns whether it was sent.
         """
-        addressed = fields | {"target_system": self.system_id, "target_component": AUTOPILOT_COMPONENT}
-        message = MavlinkMessage(name, 0, 0, self.system_id, AUTOPILOT_COMPONENT, json.dumps(addressed))
+        addressed = {"target_system": self.system_id, "target_component": AUTOPILOT_COMPONENT} | fields
+        target = addressed["target_system"], addressed["target_component"]
+        message = MavlinkMessage(name, 0, 0, *target, json.dumps(addressed))
         return await asyncio.get_running_loop().run_in_executor(self._sender, self._send_now, message, allowed)
 
     def _send_now(self, message: MavlinkMessage, allowed: Callable[[], bool]) -> bool:

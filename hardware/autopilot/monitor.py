@@ -53,7 +53,7 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (30, 20.0),  # ATTITUDE
     (33, 10.0),  # GLOBAL_POSITION_INT
     (245, 5.0),  # EXTENDED_SYS_STATE
-    (24, 5.0),  # GPS_RAW_INT: a lost fix is told within half a second
+    (24, 5.0),  # GPS_RAW_INT: a lost fix is noticed within half a second
     (1, 2.0),  # SYS_STATUS
     (230, 2.0),  # ESTIMATOR_STATUS (PX4)
     (193, 2.0),  # EKF_STATUS_REPORT (ArduPilot)
@@ -77,7 +77,7 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.clock = clock
-        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", ARM_STATUS)
+        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", ARM_STATUS)
         self.link = MavlinkLink(url, listened, self._on_message)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
@@ -90,7 +90,7 @@ class Monitor:
         self._announcer = Announcer()
         self.control = Control(self._on_authority)
         self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
-        self.timesync = Timesync(self.link, clock, self.snapshot.exchanged)
+        self.timesync = Timesync(self.link, clock, self.snapshot)
         self.silence = Silence()
         self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
@@ -199,6 +199,8 @@ class Monitor:
             self.commander.acknowledged(fields)
         elif name == "TIMESYNC":
             self.timesync.heard(fields, now)
+        elif name == "PING":
+            self.timesync.came_back(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(fields, now)
         elif name == ARM_STATUS:

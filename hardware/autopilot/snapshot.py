@@ -88,7 +88,7 @@ class Snapshot:
 
     @property
     def reboots(self) -> int:
-        """How often the autopilot's time since boot began anew while we listened."""
+        """How often the autopilot's time since boot started again while we listened."""
         return self._boot_clock.reboots
 
     @property
@@ -104,6 +104,10 @@ class Snapshot:
     def exchanged(self, sent_at_s: float, boot_s: float, heard_at_s: float) -> None:
         """A TIMESYNC, see BootClock."""
         self._boot_clock.exchanged(sent_at_s, boot_s, heard_at_s)
+
+    def went_round(self, sent_at_s: float, heard_at_s: float) -> None:
+        """A PING, see BootClock."""
+        self._boot_clock.went_round(sent_at_s, heard_at_s)
 
     @property
     def disarmed(self) -> bool:

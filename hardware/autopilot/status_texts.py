@@ -1,7 +1,8 @@
 """STATUSTEXT: what the autopilot says, its chunks of 50 bytes joined by their id. Pure; the bytes are anybody's.
 
-A text of id 0 is whole. Of any other id the chunks are numbered from 0, and the last is the first that does not fill
-its 50 bytes. Each text is given once: when it is whole, or with a gap when the rest of it does not come.
+The chunks of an id are numbered from 0, and the last is the first that does not fill its 50 bytes. Id 0 stands for a
+text that is whole, but PX4 counts its first text after a start as 0, too: one that fills its bytes may go on. Each text
+is given once: when it is whole, or with a gap when the rest of it does not come.
 """
 
 from __future__ import annotations
@@ -58,8 +59,11 @@ class StatusTexts:
         """severity: MAV_SEVERITY. What is complete now."""
         named = severity_of(severity)
         found = self.overdue(now_s)
-        if text_id == 0:
-            return found + _given(named, text)
+        if text_id == 0 and chunk == 0:
+            found += self._give(0) if 0 in self._coming else []
+            self._coming.pop(0, None)
+            if len(text.encode(errors="replace")) < CHUNK_BYTES:
+                return found + _given(named, text)
         coming = self._coming.get(text_id)
         if coming is None:
             if len(self._coming) >= MOST_WAITING:
@@ -91,6 +95,8 @@ class StatusTexts:
         if coming.given or not coming.chunks:
             return []
         coming.given = True
+        if text_id == 0 and coming.chunks.keys() == {0}:
+            coming.final = 0
         return _given(coming.severity, coming.text)
 
 

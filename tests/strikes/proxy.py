@@ -5,7 +5,6 @@ The record is kept at the vehicle's end: when a message left the autopilot and w
 
 from __future__ import annotations
 
-import asyncio
 import random
 import time
 from collections.abc import AsyncIterator, Callable
@@ -15,12 +14,13 @@ from typing import Any, Literal
 
 from hardware.sim.autopilot.launch import free_port
 from tests.strikes.frames import Frame
+from tests.strikes.lane import Lane
 from tests.strikes.wire import Send, datagrams, vehicle_end
 
 HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE = 0, 1, 75, 76, 77, 253, 436
 ATTITUDE, GLOBAL_POSITION = 30, 33
 KEPT = frozenset({HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE})
-"""Numbers of the messages in the record, unless a proxy is told others."""
+"""Numbers of the messages in the record, unless a proxy is given others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +49,8 @@ class Proxy:
     chance: random.Random = field(default_factory=lambda: random.Random(1))
     to_vehicle: Send = lambda raw: None
     to_program: Send = lambda raw: None
+    _to_lane: Lane = field(default_factory=Lane)
+    _from_lane: Lane = field(default_factory=Lane)
 
     def since(self, at_s: float) -> list[Passed]:
         """What passed at or after `at_s`."""
@@ -63,7 +65,7 @@ class Proxy:
             return
         if fields is not None and self.on_sent is not None:
             self.on_sent(frame.number, fields)
-        self._later(self._reach_vehicle, frame, fields)
+        self._to_lane.put(lambda: self._reach_vehicle(frame, fields), self.delay_s)
 
     def _reach_vehicle(self, frame: Frame, fields: dict[str, Any] | None) -> None:
         self.to_vehicle(frame.raw)
@@ -74,10 +76,7 @@ class Proxy:
         if frame.number in self.kept:
             self.record.append(Passed(time.monotonic(), "from", frame.number, frame.fields()))
         if self.chance.random() >= self.loss:
-            self._later(self._reach_program, frame)
-
-    def _reach_program(self, frame: Frame) -> None:
-        self.to_program(frame.raw)
+            self._from_lane.put(lambda: self.to_program(frame.raw), self.delay_s)
 
     def put_in(self, raw: bytes, number: int, fields: dict[str, Any]) -> float:
         """What a pilot's own radio brings to the autopilot: no delay, no loss. Returns when."""
@@ -86,12 +85,6 @@ class Proxy:
         if number in self.kept:
             self.record.append(Passed(now, "pilot", number, fields))
         return now
-
-    def _later(self, deliver: Callable[..., None], *given: Any) -> None:
-        if self.delay_s > 0.0:
-            asyncio.get_running_loop().call_later(self.delay_s, deliver, *given)
-        else:
-            deliver(*given)
 
 
 @asynccontextmanager

@@ -30,7 +30,7 @@ from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.strikes.proxy import ATTITUDE, GLOBAL_POSITION, KEPT, Proxy, proxied
-from tests.strikes.strike import until
+from tests.strikes.strike import ready, until
 
 SPEED_M_S, RATE_DEG_S, HEIGHT_M = 7.0, 30.0, 12.0
 AFTERWARDS_S = 8.0
@@ -143,6 +143,7 @@ async def run(url: str, times: int, delays_ms: list[float]) -> list[Round]:
         proxy.kept = KEPT | {ATTITUDE, GLOBAL_POSITION}
         vehicle = await connect_vehicle(proxy.url, clock)
         try:
+            await ready(vehicle)
             vehicle.take_control()
             await vehicle.take_off(HEIGHT_M)
             for _ in range(times):

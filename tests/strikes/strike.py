@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hardware.autopilot.vehicle import MavsdkVehicle
+from planner.reason import text_of
 from tests.strikes.pilot import Pilot, mode_of, reaching
 from tests.strikes.proxy import COMMAND_INT, COMMAND_LONG, Proxy
 
@@ -25,6 +26,7 @@ NOTICED_S = 1.0
 REPORT_S = 0.12
 """At most so long after a change the autopilot reports its mode (ten times a second)."""
 STICKS_S = 0.5
+READY_S = 120.0
 STALE_S = 0.15
 """A report of the mode that was under way inside the autopilot when the pilot took it may still be of before."""
 
@@ -124,6 +126,19 @@ def left_for(proxy: Proxy, pilot: Pilot, took_at_s: float) -> int | None:
     """The first mode reported after the takeover that is not the pilot's; sticks that take again do not mend it."""
     told = [mode_of(passed) for passed in proxy.since(took_at_s + STALE_S)]
     return next((mode for mode in told if mode is not None and mode != pilot.flies), None)
+
+
+async def ready(vehicle: MavsdkVehicle) -> None:
+    """Waits as an operator would for an autopilot that was just started; raises TimeoutError with what stays wrong."""
+    wrong, end_s = "", time.monotonic() + READY_S
+    while time.monotonic() < end_s:
+        checks = await vehicle.preflight()
+        found = [text_of(check.reason) for check in checks if check.blocking and not check.ok]
+        if not found:
+            return
+        wrong = " / ".join(found)
+        await asyncio.sleep(1.0)
+    raise TimeoutError(f"the vehicle is not ready: {wrong}")
 
 
 async def until(happened: Callable[[], bool], seconds: float, what: str) -> None:

@@ -14,6 +14,11 @@ def unnoticed(outcome: Outcome) -> bool:
     return outcome.noticed_s is None or outcome.noticed_s > NOTICED_S
 
 
+def spoke_late(outcome: Outcome) -> bool:
+    """A flight command reached the vehicle later than a second after the strike, and what the link takes."""
+    return outcome.last_command_s > NOTICED_S + outcome.delay_s
+
+
 def line(outcome: Outcome, flown: int) -> str:
     """For a person who watches the run."""
     noticed = "never noticed" if outcome.noticed_s is None else f"noticed {outcome.noticed_s:.2f} s"
@@ -33,6 +38,7 @@ def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "undone": sum(outcome.undone for outcome in counted),
         "unnoticed": sum(map(unnoticed, counted)),
         "undone_unnoticed": sum(outcome.undone and unnoticed(outcome) for outcome in counted),
+        "late_commands": sum(map(spoke_late, counted)),
         "slowest_notice_s": max((o.noticed_s for o in counted if o.noticed_s is not None), default=None),
         "latest_command_s": max((o.last_command_s for o in counted), default=None),
         "by": [dict(zip((c.name for c in table(outcomes).columns), row, strict=True)) for row in table(outcomes).rows],
@@ -70,15 +76,20 @@ def table(outcomes: Sequence[Outcome]) -> Table:
     return Table(name="runs", columns=columns, rows=tuple(rows))
 
 
-def figures(outcomes: Sequence[Outcome], flavour: str) -> list[Figure]:
+def figures(outcomes: Sequence[Outcome], flavour: str, by_nobody: int, orders: bool) -> list[Figure]:
+    """orders: the strikes met orders that select a mode, which may undo them; by_nobody: takeovers told without one."""
     counted = [outcome for outcome in outcomes if outcome.counts]
     delays = ", ".join(f"{delay * 1e3:g}" for delay in sorted({outcome.delay_s for outcome in counted}))
     note = f"of {len(counted)} at {delays} ms each way"
+    of = f"{flavour}, meeting orders of a mode" if orders else flavour
+    undone = sum(outcome.undone for outcome in counted)
     return [
-        wanted("takeovers_undone", sum(outcome.undone for outcome in counted), of=flavour, note=note),
-        wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=flavour, note=note),
+        plain("undone", undone, "", note=note) if orders else wanted("takeovers_undone", undone, of=of, note=note),
+        wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=of, note=note),
+        plain("followed by a flight command later than 1 s", sum(map(spoke_late, counted)), "", note=note),
         plain("takeovers aimed at real autopilots", len(counted), ""),
         plain("strikes that did not take", len(outcomes) - len(counted), ""),
+        plain("takeovers told though nobody struck", by_nobody, ""),
         plain("slowest notice", max((o.noticed_s for o in counted if o.noticed_s is not None), default=0.0), "s"),
         plain("last flight command after a takeover", max((o.last_command_s for o in counted), default=0.0), "s"),
     ]

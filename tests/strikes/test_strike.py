@@ -9,7 +9,7 @@ import pytest
 
 from hardware.autopilot.connect import connect_vehicle
 from hardware.clock import WallClock
-from hardware.sim.autopilot.launch import Setting, launch_simulated
+from hardware.sim.autopilot.launch import Setting, free_port, launch_simulated
 from tests.strikes.pilot import HABITS, PILOT_SYSTEM, Pilot, piloted
 from tests.strikes.proxy import COMMAND_ACK, CURRENT_MODE, STATUS_TEXT, Passed, Proxy, proxied
 from tests.strikes.scenes import Field
@@ -74,3 +74,10 @@ async def test_a_strike_at_a_simulated_px4_takes_and_is_noticed() -> None:
     assert not outcome.undone
     assert outcome.noticed_s is not None
     assert 0.05 <= outcome.noticed_s < 1.0
+
+
+async def test_a_proxy_leaves_its_address_to_the_next_one() -> None:
+    url = f"udpin://127.0.0.1:{free_port()}"
+    for _ in range(3):
+        async with proxied(url):
+            pass

@@ -24,6 +24,7 @@ class _Datagrams(asyncio.DatagramProtocol):
         self._peer = peer
         self._framer = Framer()
         self._transport: asyncio.DatagramTransport | None = None
+        self.closed = asyncio.Event()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         self._transport = cast(asyncio.DatagramTransport, transport)
@@ -32,6 +33,9 @@ class _Datagrams(asyncio.DatagramProtocol):
         self._peer = addr
         for frame in self._framer.cut(data):
             self._heard(frame)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self.closed.set()
 
     def error_received(self, exc: Exception) -> None:
         """Nobody listens yet: as on the air."""
@@ -51,6 +55,7 @@ async def datagrams(heard: Heard, *, bind: Address | None = None, peer: Address 
         yield protocol.send
     finally:
         transport.close()
+        await protocol.closed.wait()  # its port is free for the next one
 
 
 @asynccontextmanager

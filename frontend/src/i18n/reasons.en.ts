@@ -66,6 +66,10 @@ export const reasonsEn: ReasonTable = {
     text: "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
     remedy: "Take another bearing.",
   },
+  error_may_be_far_larger: {
+    text: "With {beyond_percent} probability the emitter is more than {far_m} from the estimate, if bearings are wrong altogether or by the same angle; at most {most_percent} is tolerated.",
+    remedy: "Take another bearing, best from the other side.",
+  },
   no_place_to_fly: {
     text: "The vehicle has nowhere to fly: the fence and the no-fly areas leave no room.",
     remedy: "Enlarge the fence.",
@@ -400,9 +404,21 @@ export const reasonsEn: ReasonTable = {
     text: "The strongest direction lies in a gap of {gap_deg} where the receiver did not listen.",
     remedy: "",
   },
+  pattern_borrowed: {
+    text: "The bearing was found with the pattern of another antenna ({name}), so it is less certain.",
+    remedy: "Measure the pattern of the antenna that flies: crossfix calibrate.",
+  },
+  likely_other_antenna: {
+    text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
+    remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
+  },
   antenna_agrees: {
     text: "Measured {measured_deg}, true {true_deg}, quality {quality:2}.",
     remedy: "",
+  },
+  not_the_measured_antenna: {
+    text: "This is not the antenna that was measured: {sweeps} sweeps deviate from the pattern {name} by {repeats_db:1} in the same way.",
+    remedy: "Check which antenna is mounted and how, or take over the proposed pattern.",
   },
   emitter_too_near: {
     text: "The emitter is only {distance_m} away.",
@@ -839,6 +855,98 @@ export const reasonsEn: ReasonTable = {
     text: "The autopilot's fence cannot be judged: {parameter} could not be read.",
     remedy: "Check the link and try again.",
   },
+  sign_in_needed: {
+    text: "Nobody is signed in here, or the session has ended.",
+    remedy: "Sign in.",
+  },
+  first_admin_needed: {
+    text: "This server has no people yet, so it does nothing for anybody.",
+    remedy: "Open its page and make the first admin with the code that the server printed when it started.",
+  },
+  first_admin_exists: {
+    text: "The first admin has been made; the code works once.",
+    remedy: "Sign in, or ask an admin for an invitation.",
+  },
+  no_people_here: {
+    text: "This server listens to this machine only and has no accounts.",
+    remedy: "To let others in, start it with --users, or with --host and an address of this machine.",
+  },
+  behind_proxy: {
+    text: "The request came through a proxy, and this server has no accounts.",
+    remedy: "Start it with --users, and name the proxy in CROSSFIX_TRUSTED_PROXIES.",
+  },
+  role_too_low: {
+    text: "This takes {needed?viewer=a signed-in person|operator=an operator|pilot=a pilot|admin=an admin}; {role?viewer=a viewer|operator=an operator|pilot=a pilot|none=a machine's token} may not do it.",
+    remedy: "Ask an admin for another role.",
+  },
+  call_not_listed: {
+    text: "Nobody may make this call: it is missing from the table of permissions.",
+    remedy: "Report it; this is a fault of ours.",
+  },
+  origin_missing: {
+    text: "A signed-in page must say where it comes from, and this request did not.",
+    remedy: "Use the page that this server serves; programs use a machine's token.",
+  },
+  not_encrypted: {
+    text: "The connection is not encrypted: others on the network could read the password.",
+    remedy: "Open the page by https:// through the proxy. On a network that encrypts by itself, set CROSSFIX_PLAIN_HTTP.",
+  },
+  wrong_name_or_password: {
+    text: "Name or password is wrong.",
+    remedy: "Try again, or ask an admin for an invitation.",
+  },
+  too_many_tries: {
+    text: "There were too many tries.",
+    remedy: "Try again in {wait_s}.",
+  },
+  code_unusable: {
+    text: "This code {fault?unknown=is not known|used=has been used; each works once|expired=has expired}.",
+    remedy: "{fault?unknown=Look whether it was copied whole.|*=Ask an admin for a new invitation.}",
+  },
+  name_taken: {
+    text: "Somebody here is called {name} already.",
+    remedy: "Choose another name.",
+  },
+  password_weak: {
+    text: "The password {fault?short=is too short|simple=uses too few different characters|name=holds the name}.",
+    remedy: "Take at least {least} characters; a few words that only you put together are best.",
+  },
+  last_admin: {
+    text: "This is the last admin.",
+    remedy: "Make somebody else admin first.",
+  },
+  command_id_reused: {
+    text: 'This command id belongs to another order ("{command}") already; nothing was done.',
+    remedy: "Send each order with an id of its own.",
+  },
+  control_free: {
+    text: "Nobody controls this search.",
+    remedy: "Take control first.",
+  },
+  control_held: {
+    text: "{name} controls this search.",
+    remedy: "Ask for control; a pilot can take it at once. Hold and abort need none.",
+  },
+  control_stale: {
+    text: "This order was given before control changed hands; nothing was done.",
+    remedy: "Look at what is so now, then order again.",
+  },
+  control_asked_already: {
+    text: "{name} has asked for control already.",
+    remedy: "Wait for the answer.",
+  },
+  control_not_asked: {
+    text: "Nobody asks for control.",
+    remedy: "",
+  },
+  control_not_yours: {
+    text: "You do not control this search.",
+    remedy: "",
+  },
+  control_needless: {
+    text: "This server has no accounts: whoever sits before it controls every search.",
+    remedy: "",
+  },
   return_altitude_checked: {
     text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).",
     remedy:
@@ -1176,7 +1284,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Correct the named fields and send it again.",
   },
   nothing_there: {
-    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
+    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view|person=person|session=session|invitation=invitation|token=token} {which}.",
     remedy: "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
   },
   http_refused: {
@@ -1354,6 +1462,10 @@ export const reasonsEn: ReasonTable = {
   headings_askew: {
     text: "All bearings seem to be off by the same angle, about {offset_deg} ± {std_error_deg}: the place found may be wrong.",
     remedy: "Check compass and antenna mounting; a single wrong place can look the same.",
+  },
+  bearings_corrected: {
+    text: "All bearings are turned by about {bias_deg} ± {std_error_deg}; the belief takes that into account.",
+    remedy: "Check compass and antenna mounting before the next flight.",
   },
   localized: {
     text: "Localized: the expected error is below the threshold.",

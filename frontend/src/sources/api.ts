@@ -1,6 +1,7 @@
 // REST, one function an endpoint. Every failure becomes a RequestFailed with a problem to show.
 import { t } from "../i18n";
 import type {
+  AntennaReview,
   AreaImport,
   AreaOutlook,
   CheckFact,
@@ -104,13 +105,18 @@ export const track = (id: string, craftId: string) => json<Track>(`${missionPath
 /** Where a file of the mission can be fetched from. */
 export const exportAddress = (id: string, format: ExportFormat) => `/api${missionPath(id)}/export/${format}`;
 
-export const sendCommand = (id: string, command: Command, commandId = newCommandId()): Promise<CommandReply> => {
-  const body: CommandRequest = { command_id: commandId, command };
+export const sendCommand = (
+  id: string,
+  command: Command,
+  commandId = newCommandId(),
+  fence: number | null = null,
+): Promise<CommandReply> => {
+  const body: CommandRequest = { command_id: commandId, command, fence };
   return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
 };
 
 export const orderCraft = (craftId: string, command: CraftCommand, commandId = newCommandId()): Promise<CommandReply> => {
-  const body: CraftRequest = { command_id: commandId, command };
+  const body: CraftRequest = { command_id: commandId, command, fence: null };
   return json<CommandReply>(`/crafts/${encodeURIComponent(craftId)}/commands`, withBody("POST", body));
 };
 
@@ -131,6 +137,7 @@ export const importRecording = (id: string, form: FormData) =>
 export const readExported = (text: string) =>
   json<ExportedMission>("/recordings/read", { method: "POST", headers: { "content-type": "application/json" }, body: text }, LONG_MS);
 
+export const antennaReview = (id: string) => json<AntennaReview>(`${missionPath(id)}/antenna`);
 export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
 export const importArea = (text: string, filename: string) => json<AreaImport>("/areas", withBody("POST", { text, filename }));

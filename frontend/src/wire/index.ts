@@ -29,6 +29,7 @@ export type BearingMeasured = Schemas["BearingMeasured"];
 export type SweepRejected = Schemas["SweepRejected"];
 export type BeliefUpdated = Schemas["BeliefUpdated"];
 export type MissionEnded = Schemas["MissionEnded"];
+export type SourceErrors = Schemas["SourceErrorsFact"];
 export type LinkName = Schemas["LinkLost"]["link"];
 export type AlertLevel = Schemas["AlertRaised"]["level"];
 export type AlertTopic = Schemas["AlertRaised"]["topic"];
@@ -46,6 +47,7 @@ export type Command = CommandRequest["command"];
 /** To a craft in the air, in a mission or in none. */
 export type CraftRequest = Schemas["CraftRequest"];
 export type CraftCommand = CraftRequest["command"];
+export type Holder = Schemas["Holder"];
 export type CommandReply = Schemas["CommandReply"];
 
 /** reason null: found by the page itself, and said in its own words. */
@@ -61,6 +63,7 @@ export type TrackFact = Schemas["TrackFact"];
 export type ExportedMission = Schemas["ExportedMission"];
 export type ExpectedTime = Schemas["ExpectedTime"];
 export type Preview = Schemas["Preview"];
+export type AntennaReview = Schemas["AntennaReview"];
 export type WhatIf = Schemas["WhatIf"];
 export type WhatIfRequest = Schemas["WhatIfRequest"];
 export type SearchArea = Schemas["SearchArea"];

@@ -73,14 +73,16 @@ class Faults:
     ignore_goto: int = 0
     ignore_all: int = 0
     silent: int = 0
+    unanswered: int = 0
+    """Obeyed, but their acknowledgements get lost."""
     link_lost_until: float = -1.0
     link_delay: float = 0.0
     """Seconds each way."""
     no_prearm: bool = False
     fence_mute: int = 0
-    """So many answers about the fence get lost."""
+    """Number of answers about the fence that get lost."""
     fence_deaf_after: int = -1
-    """After so many messages about the fence every other gets lost; -1: none."""
+    """After this number of messages about the fence every other one gets lost; -1: none."""
     fence_altered: bool = False
     """It keeps another fence than it is sent."""
 
@@ -140,7 +142,7 @@ class Firmware(ABC):
         self.heartbeat_due = False
         self.rebooted = False
         """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
-        self._text_id = 0
+        self._text_id = 0 if self.name == "px4" else 1  # PX4 counts from the one that means "whole"
         self._armed_at = 0.0
         self._battery_failsafe = False
 
@@ -172,12 +174,12 @@ class Firmware(ABC):
         if len(words) <= _CHUNK:
             self.outbox.append(mavlink.MAVLink_statustext_message(severity, words))
             return
-        self._text_id = self._text_id % 65_535 + 1
         ends = len(words) // _CHUNK + 1  # one that is full is not the last
         for seq in range(ends):
             chunk = words[seq * _CHUNK : (seq + 1) * _CHUNK]
             if seq not in lost:
                 self.outbox.append(mavlink.MAVLink_statustext_message(severity, chunk, self._text_id, seq))
+        self._text_id = self._text_id % 65_535 + 1
 
     def report_remote_id(self, problem: str) -> None:
         """What a Remote ID transmitter would say now; no problem: the vehicle may arm."""
@@ -200,7 +202,11 @@ class Firmware(ABC):
         if faults.ignore_all > 0:
             faults.ignore_all -= 1
             return ACCEPTED
-        return self.carry_out(command)
+        result = self.carry_out(command)
+        if faults.unanswered > 0:
+            faults.unanswered -= 1
+            return None
+        return result
 
     @abstractmethod
     def carry_out(self, command: Command) -> int:

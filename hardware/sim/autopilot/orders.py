@@ -10,7 +10,8 @@
     {"do": "heading_error", "degrees": 15}
     {"do": "battery", "percent": 15}
     {"do": "set_param", "name": "NAV_DLL_ACT", "value": 0}
-    {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent", "count": 1}
+    {"do": "fault", "kind": "refuse" | "ignore_yaw" | "ignore_goto" | "ignore_all" | "silent"
+     | "unanswered", "count": 1}
     {"do": "prearm", "ok": false}
     {"do": "say", "text": "", "severity": 2, "lost": []}   a STATUSTEXT, its lost chunks left out; "hex" for any bytes
     {"do": "fence_fault", "mute": 0, "deaf_after": -1, "altered": false}   see firmware.Faults; as given, all at once
@@ -126,9 +127,9 @@ class Orders:
                 firmware.reboot()
             case "fault":
                 kind = order.get("kind")
-                if kind not in ("refuse", "ignore_yaw", "ignore_goto", "ignore_all", "silent"):
+                if kind not in ("refuse", "ignore_yaw", "ignore_goto", "ignore_all", "silent", "unanswered"):
                     raise OrderError(
-                        f"There is no fault {kind!r}: refuse, ignore_yaw, ignore_goto, ignore_all, silent."
+                        f"There is no fault {kind!r}: refuse, ignore_yaw, ignore_goto, ignore_all, silent, unanswered."
                     )
                 setattr(faults, kind, int(_number(order, "count", 1)))
             case "truth":

@@ -138,6 +138,8 @@ class Station:
                         message.get_srcSystem(), message.get_srcComponent(), 0, message.mission_type
                     )
                 ]
+            case "TIMESYNC" if message.tc1 == 0 and firmware.name == "px4":
+                return []  # PX4 1.16 leaves the target of its answer uninitialised: nobody takes it for theirs
             case "TIMESYNC" if message.tc1 == 0:
                 return [mavlink.MAVLink_timesync_message(int(firmware.time * 1e9), message.ts1)]
             case "PING" if message.target_system == 0:

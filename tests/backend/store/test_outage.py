@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from narrowing import a, known
 from sqlalchemy import make_url
 
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
@@ -79,7 +80,7 @@ class Flight:
     async def check(self, stored: SqlJournal) -> None:
         read = await stored.read("m")
         assert [record.seq for record in read] == list(range(1, self.count + 3))
-        assert [record.event.by for record in read[2:]] == [str(n) for n in range(self.count)]
+        assert [a(HoldOrdered, record.event).by for record in read[2:]] == [str(n) for n in range(self.count)]
         assert len((await stored.tracks("m"))["craft-1"]) == self.count
         for n in range(self.count):
             assert await stored.sweep("m", f"s{n}") is not None
@@ -97,7 +98,7 @@ class Locked:
     stops_reading = False
 
     def __init__(self, bench, _request) -> None:
-        self.path = make_url(bench.url).database
+        self.path = known(make_url(bench.url).database)
 
     def begin(self) -> None:
         self.other = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
@@ -322,7 +323,7 @@ async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
                 file.write(bytes(4096))
         await flight.go_on(60)
         assert journal.report().state == "lost"
-        assert "full" in sentence_of(journal.report().reason)
+        assert "full" in sentence_of(known(journal.report().reason))
         with pytest.raises(JournalUnavailable, match="the disk is full"):
             await flight.go_on(1000)
         filler.unlink()
@@ -368,10 +369,10 @@ async def test_what_was_acknowledged_survives_kill_9(bench, tmp_path):
         writer = await asyncio.create_subprocess_exec(
             sys.executable, "-c", WRITER, tmp_path, bench.url, stdout=subprocess.PIPE
         )
-        acknowledged = int(await writer.stdout.readline())
+        acknowledged = int(await known(writer.stdout).readline())
         await asyncio.sleep(wait.uniform(0.0, 0.2))
         writer.kill()
-        rest = (await writer.stdout.read()).split()
+        rest = (await known(writer.stdout).read()).split()
         await writer.wait()
         acknowledged = int(rest[-1]) if rest else acknowledged
         stored = await (await bench.open("check.spool")).read("m")

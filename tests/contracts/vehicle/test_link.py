@@ -6,9 +6,10 @@ import asyncio
 import socket
 
 import pytest
-from rig import DEAD_STATION, SPEEDUP, Rig
+from rig import DEAD_STATION, FLIGHT_COMMANDS, SPEEDUP, Rig
 
 from hardware.autopilot.connect import connect_vehicle
+from hardware.autopilot.messages import SET_MODE
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import WallClock
 from hardware.ports import VehicleError, VehicleUnreachable
@@ -91,6 +92,19 @@ async def test_an_unanswered_command_is_sent_again_visibly(rig: Rig) -> None:
     await rig.vehicle.goto(rig.place(0.0, 20.0), rig.amsl(), 5.0)
 
     assert CommandUnanswered("place", 1) in rig.tried_again()
+
+
+async def test_an_order_of_a_mode_that_shows_is_not_sent_again_though_its_answer_is_lost(rig: Rig) -> None:
+    """Sent again it would undo a pilot who switched meanwhile."""
+    await rig.airborne()
+    since_s = (await rig.sim.order("ping"))["time_s"]
+    await rig.sim.order("fault", kind="unanswered", count=1)
+
+    await rig.vehicle.return_home()
+    await rig.clock.sleep(5.0)
+
+    sent = (await rig.sim.order("commands", since_s=since_s))["commands"]
+    assert [number for _, number in sent if number in FLIGHT_COMMANDS] == [SET_MODE]
 
 
 async def test_nobody_there_is_said_in_words() -> None:

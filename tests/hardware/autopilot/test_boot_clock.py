@@ -16,10 +16,12 @@ TURN_DEG_S = 30.0
 class Link:
     """An autopilot whose clock has a rate, behind a radio; `error_s`: how wrong a message of this moment is dated."""
 
-    def __init__(self, rate: float = 1.0, delay_s: float = 0.0, jitter_s: float = 0.0, timesync: bool = True) -> None:
+    def __init__(
+        self, rate: float = 1.0, delay_s: float = 0.0, jitter_s: float = 0.0, timesync: bool = True, ping: bool = False
+    ) -> None:
         self.clock = BootClock()
         self.rate, self.delay_s, self.jitter_s, self.timesync = rate, delay_s, jitter_s, timesync
-        self.at_s, self.boot_s = EPOCH, 100.0
+        self.at_s, self.boot_s, self.ping = EPOCH, 100.0, ping
         self._chance = Random(5)
 
     def late(self) -> float:
@@ -31,6 +33,8 @@ class Link:
         if self.timesync and round(self.at_s / 0.05) % 4 == 0:
             up_s, down_s = self.late(), self.late()
             self.clock.exchanged(self.at_s - up_s, self.boot_s, self.at_s + down_s)
+        if self.ping and round(self.at_s / 0.05) % 4 == 0:
+            self.clock.went_round(self.at_s - self.late(), self.at_s + self.late())
         return self.clock.to_utc(self.boot_s, self.at_s + self.late()) - self.at_s
 
     def error_s(self, seconds: float) -> float:
@@ -64,6 +68,26 @@ def test_a_constant_delay_turns_no_heading_once_it_was_measured() -> None:
     assert Link(delay_s=0.15, timesync=False).error_s(20.0) * TURN_DEG_S == pytest.approx(4.5, abs=0.2)
     assert Link(delay_s=0.15).error_s(20.0) * TURN_DEG_S < 0.1
     assert Link(delay_s=0.15, jitter_s=0.03).error_s(20.0) * TURN_DEG_S < 0.5
+
+
+@pytest.mark.parametrize("rate", [1.0, 0.994])
+def test_where_only_pings_are_answered_the_delay_is_taken_from_them(rate: float) -> None:
+    def link(**given: float) -> Link:
+        made = Link(rate=rate, delay_s=0.15, timesync=False, ping=True, **given)
+        made.error_s(10.0)
+        return made
+
+    assert link().error_s(30.0) * TURN_DEG_S < 0.1
+    assert link(jitter_s=0.02).error_s(30.0) * TURN_DEG_S < 0.5
+
+
+def test_a_delay_that_changes_turns_headings_for_no_longer_than_the_line_takes() -> None:
+    link = Link(rate=0.994, delay_s=0.0, timesync=False, ping=True)
+    link.error_s(40.0)
+    link.delay_s = 0.25
+    assert link.error_s(70.0) * TURN_DEG_S < 0.1
+    link.delay_s = 0.0
+    assert link.error_s(70.0) * TURN_DEG_S < 0.1
 
 
 @pytest.mark.parametrize("rate", [0.98, 0.99, 1.0, 1.0001, 1.03])

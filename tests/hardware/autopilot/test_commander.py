@@ -12,7 +12,7 @@ from hardware.authority import ModeHeard, SticksTookOver
 from hardware.autopilot.commander import CommandDenied, Commander, Manoeuvre, ManoeuvreSuperseded
 from hardware.autopilot.control import Control
 from hardware.autopilot.link import Fields
-from hardware.autopilot.messages import Outgoing, arm, pause, pause_here
+from hardware.autopilot.messages import Outgoing, arm, pause, pause_here, set_mode
 from hardware.clock import ScaledClock
 from hardware.ports import NotInControl, VehicleError
 from hardware.reasons.vehicle import CommandUnanswered
@@ -72,6 +72,18 @@ async def test_accepted_is_done_and_refused_is_said() -> None:
     with pytest.raises(CommandDenied, match="refused the next place: denied"):
         await rig.order()
     assert len(rig.wire.sent) == 2
+
+
+async def test_an_order_of_a_mode_that_shows_is_not_repeated_when_its_answer_is_lost() -> None:
+    """A repetition would undo a pilot who switched meanwhile."""
+    rig = Rig()
+    rig.wire.answer = lambda count: rig.control.see(ModeHeard(2, "return", "RETURN", True, True, False, 1.0))
+
+    await rig.commander.send(rig.manoeuvre, set_mode((4.0, 5.0)), frozenset({2}), "return")
+
+    assert len(rig.wire.sent) == 1
+    assert rig.control.authority.shown_before is None
+    assert rig.news == []
 
 
 async def test_another_commands_acknowledgement_is_not_ours() -> None:

@@ -45,6 +45,23 @@ def test_a_chunk_that_does_not_come_is_a_gap(lost: int, shown: str) -> None:
     assert said(texts, {lost: CHUNKS[lost]}, at_s=WAIT_S * 1.2) == []
 
 
+def test_the_first_text_of_a_started_px4_is_joined_though_its_id_is_0() -> None:
+    """As its own simulator said it."""
+    texts = StatusTexts()
+    first = {0: "Preflight Fail: No connection to the ground contro", 1: "l station\t"}
+    assert said(texts, first, text_id=0) == ["Preflight Fail: No connection to the ground control station"]
+    assert said(texts, {0: "Takeoff detected"}, text_id=0) == ["Takeoff detected"]
+    assert said(texts, first, text_id=0) == ["Preflight Fail: No connection to the ground control station"]
+
+
+def test_a_whole_text_of_id_0_that_fills_its_bytes_is_given_without_a_gap() -> None:
+    texts = StatusTexts()
+    assert said(texts, {0: "x" * 50}, text_id=0) == []
+    assert [text.text for text in texts.overdue(WAIT_S * 1.1)] == ["x" * 50]
+    assert said(texts, {0: "y" * 50}, text_id=0, at_s=2.0) == []
+    assert said(texts, {0: "z"}, text_id=0, at_s=2.1) == ["y" * 50, "z"]
+
+
 def test_a_text_that_fills_its_chunks_ends_with_an_empty_one() -> None:
     assert said(StatusTexts(), {0: "x" * 50, 1: ""}) == ["x" * 50]
 

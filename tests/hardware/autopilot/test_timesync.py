@@ -4,26 +4,66 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.timesync import Timesync
+from hardware.autopilot.timesync import UNANSWERED, Timesync
 from hardware.clock import WallClock
 
 
 class Wire:
     def __init__(self) -> None:
         self.sent: list[Fields] = []
+        self.pings: list[Fields] = []
 
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
-        assert name == "TIMESYNC"
         assert allowed()
-        self.sent.append(fields)
+        {"TIMESYNC": self.sent, "PING": self.pings}[name].append(fields)
         return True
 
 
+class Learned:
+    def __init__(self) -> None:
+        self.exchanges: list[Any] = []
+        self.trips: list[tuple[float, float]] = []
+
+    def exchanged(self, sent_at_s: float, boot_s: float, heard_at_s: float) -> None:
+        self.exchanges.append((sent_at_s, boot_s, heard_at_s))
+
+    def went_round(self, sent_at_s: float, heard_at_s: float) -> None:
+        self.trips.append((sent_at_s, heard_at_s))
+
+
+def made() -> tuple[Timesync, Wire, Learned]:
+    wire, learned = Wire(), Learned()
+    return Timesync(cast(MavlinkLink, wire), WallClock(), learned), wire, learned
+
+
 async def asked() -> tuple[Timesync, Wire, list[Any]]:
-    wire, exchanges = Wire(), list[Any]()
-    timesync = Timesync(cast(MavlinkLink, wire), WallClock(), lambda *exchange: exchanges.append(exchange))
+    timesync, wire, learned = made()
     await timesync.ask()
-    return timesync, wire, exchanges
+    return timesync, wire, learned.exchanges
+
+
+async def test_while_nothing_answers_a_ping_goes_with_each_question_and_no_longer() -> None:
+    """PX4's answers are addressed to anybody, and do not reach us."""
+    timesync, wire, learned = made()
+    for _ in range(UNANSWERED):
+        await timesync.ask()
+    assert wire.pings == []
+    await timesync.ask()
+    (ping,) = wire.pings
+    assert (ping["target_system"], ping["target_component"]) == (0, 0)  # else it is an answer
+
+    timesync.came_back(ping, 9e9)  # a question of somebody else, by chance of the same time
+    assert learned.trips == []
+    await timesync.ask()
+    answer = wire.pings[-1] | {"target_system": 255, "target_component": 190}
+    timesync.came_back(answer, 9e9)
+    timesync.came_back(answer, 9e9)
+    assert [heard_s for _, heard_s in learned.trips] == [9e9]
+
+    timesync.heard({"tc1": 42_500_000_000, "ts1": wire.sent[-1]["ts1"]}, 9e9)
+    pings = len(wire.pings)
+    await timesync.ask()
+    assert len(wire.pings) == pings
 
 
 async def test_an_answer_to_ours_is_an_exchange_and_it_is_one_only_once() -> None:
