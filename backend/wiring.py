@@ -197,6 +197,7 @@ async def open_simulation(
                 yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:
                 await services.workers.close()
+                await services.desk.close()
         finally:
             in_flight = missions is not None and missions.flights.active is not None
             if missions is not None:

@@ -13,6 +13,7 @@ from backend.api.another_antenna import another_antenna
 from backend.api.antenna_review import antenna_review
 from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
+from backend.api.heavy import beside
 from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.what_if import SUPPOSED_KINDS, what_if
@@ -95,7 +96,7 @@ async def get_belief(
     recorded = await services.journal.read_kinds(mission_id, FOLDED_KINDS)
     if seq is not None:
         recorded = [record for record in recorded if record.seq <= seq]
-    frame = await asyncio.to_thread(belief_frame, mission_id, recorded, lite, emitter)
+    frame = await beside(services, len(recorded), belief_frame, mission_id, recorded, lite, emitter)
     if frame is None:
         raise not_found("belief_at", str(seq)) if emitter is None else not_found("belief_about", emitter)
     return Response(frame, media_type="application/octet-stream")
@@ -151,7 +152,7 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     recorded = await services.journal.read(mission_id)
     tracks = await services.journal.tracks(mission_id)
     return Response(
-        await asyncio.to_thread(EXPORTS[format], recorded, tracks),
+        await beside(services, len(recorded), EXPORTS[format], recorded, tracks),
         media_type=MEDIA_TYPES[format],
         headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'},
     )

@@ -21,13 +21,18 @@ if TYPE_CHECKING:
     from backend.mission.room import MissionRoom
 
 
+DESK_S, DESK_BYTES = 120.0, 2 * 2**30
+"""What the work on one mission may take."""
+
+
 @dataclass(frozen=True, slots=True)
 class Services:
     """Everything the endpoints use; made once by the application's start.
 
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
-    workers: read what comes from outside. access: who may enter.
+    workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
+    access: who may enter.
     """
 
     missions: MissionRoom
@@ -40,5 +45,6 @@ class Services:
     pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None
     workers: Workers = field(default_factory=Workers)
+    desk: Workers = field(default_factory=lambda: Workers(time_s=DESK_S, memory_bytes=DESK_BYTES))
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)

@@ -42,4 +42,20 @@ class DiskFull:
     )
 
 
-WorkReason = FileTooHeavy | ReadersBusy | DiskFull
+@dataclass(frozen=True, slots=True)
+class MissionTooHeavy:
+    """limit: which one the work on it met; busy: as much work as may wait is waiting."""
+
+    limit: Literal["time", "memory", "depth", "process", "busy"]
+    most_s: float
+    most_bytes: int
+    code: Literal["mission_too_heavy"] = "mission_too_heavy"
+    english: ClassVar[Words] = Words(
+        "This was not worked out: {limit?time=it took too long|memory=it took too much memory"
+        "|depth=it is nested too deep|process=the process that worked on it ended|busy=too much else is worked on} "
+        "(a mission may take {most_s} and {most_bytes} of memory). Nothing is lost, and the flight goes on.",
+        "{limit?busy=Wait a moment, then ask again.|*=Ask for less of it: one format, or an earlier belief.}",
+    )
+
+
+WorkReason = FileTooHeavy | ReadersBusy | DiskFull | MissionTooHeavy

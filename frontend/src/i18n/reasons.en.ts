@@ -1597,6 +1597,10 @@ export const reasonsEn: ReasonTable = {
     text: "The disk is full. Nothing of the file was kept.",
     remedy: "Delete maps, overlays or other files, then upload it again.",
   },
+  mission_too_heavy: {
+    text: "This was not worked out: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that worked on it ended|busy=too much else is worked on} (a mission may take {most_s} and {most_bytes} of memory). Nothing is lost, and the flight goes on.",
+    remedy: "{limit?busy=Wait a moment, then ask again.|*=Ask for less of it: one format, or an earlier belief.}",
+  },
   told_before: {
     text: "{text}",
     remedy: "{remedy}",

@@ -26,9 +26,11 @@ from backend.events import (
 )
 from backend.ports import TrackPoint
 from backend.reasons.search import Localized
+from backend.reasons.work import FileTooHeavy
 from backend.search.localization import localization
 from backend.spec import EmitterSpec, MissionSpec, Polygon, SearchArea
 from backend.wire.belief_frame import encode_belief
+from backend.workers import Workers, WorkStopped
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Sweep
 
@@ -149,6 +151,39 @@ async def test_a_past_belief_is_rebuilt_as_it_was(client, services, flown):
             corners = TASK.corners_lon_lat(belief)
             frame = encode_belief("flown", "emitter-1", seq, len(counted), belief.density, corners, lite=lite)
             assert reply.content == frame
+
+
+async def test_a_long_mission_is_worked_on_in_a_process_of_its_own_and_comes_out_alike(
+    client, services, flown, monkeypatch
+):
+    asked = (f"{flown}/beliefs", f"{flown}/export/geojson", f"{flown}/export/json")
+    before = [(await client.get(address)).content for address in asked]
+    ran: list[str] = []
+    monkeypatch.setattr("backend.api.heavy.LONG_FACTS", 1)
+    monkeypatch.setattr(Workers, "run", counting(Workers.run, ran))
+    assert [(await client.get(address)).content for address in asked] == before
+    assert ran == ["belief_frame", "geojson", "journal_json"]
+    await services.desk.close()
+
+
+def counting(run, ran):
+    async def counted(self, work, *args, **kwargs):
+        ran.append(work.__name__)
+        return await run(self, work, *args, **kwargs)
+
+    return counted
+
+
+async def test_a_mission_that_is_too_heavy_is_refused_with_its_limit(client, services, flown, monkeypatch):
+    monkeypatch.setattr("backend.api.heavy.LONG_FACTS", 1)
+
+    async def stopped(*_):
+        raise WorkStopped(FileTooHeavy("time", 120.0, 2**31))
+
+    monkeypatch.setattr(Workers, "run", stopped)
+    reply = await client.get(f"{flown}/export/geojson")
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (503, "mission_too_heavy")
+    assert reply.json()["reason"]["limit"] == "time"
 
 
 async def test_the_belief_about_another_emitter_is_asked_for_by_its_name(client, services, flown):

@@ -39,6 +39,10 @@ export const maps = {
     text: "Überlagerung {file}: Ihre Beschreibung ist beschädigt.",
     remedy: "Die Überlagerung noch einmal hochladen.",
   },
+  mission_too_heavy: {
+    text: "Das wurde nicht ausgerechnet: {limit?time=es dauerte zu lange|memory=es brauchte zu viel Speicher|depth=es ist zu tief verschachtelt|process=der Prozess, der daran arbeitete, endete|busy=zu viel anderes wird gerade ausgerechnet} (eine Mission darf {most_s} dauern und {most_bytes} Speicher brauchen). Nichts ist verloren, und der Flug geht weiter.",
+    remedy: "{limit?busy=Kurz warten und noch einmal fragen.|*=Weniger davon verlangen: ein Format, oder eine frühere Karte.}",
+  },
   file_too_heavy: {
     text: "Die Datei wurde nicht zu Ende gelesen: {limit?time=Es dauerte zu lange|memory=Es brauchte zu viel Speicher|depth=Sie ist zu tief verschachtelt|process=Der Prozess, der sie las, ist beendet} (eine Datei darf {most_s} und {most_bytes} Speicher brauchen). Nichts davon wurde behalten.",
     remedy: "Vereinfachen oder teilen Sie die Datei, und laden Sie die Teile hoch.",
