@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check kernel bench figures long fuzz load page-load sensor-faults takeovers battery-home codegen example architecture containers compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -31,14 +31,18 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; set PYTHON=")'
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[server,study]'
+# Every package is compared with the hash that stands beside its version; what builds them is among them.
+PIP := $(BIN)/pip install --quiet --disable-pip-version-check
+
+$(VENV)/.installed: pyproject.toml setup.py requirements/run.txt | $(VENV)/bin/python
+	$(PIP) --require-hashes -r requirements/run.txt
+	$(PIP) --no-build-isolation --no-deps -e .
 	@touch $@
 
 setup-dev: $(VENV)/.installed-dev
 
-$(VENV)/.installed-dev: $(VENV)/.installed
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+$(VENV)/.installed-dev: $(VENV)/.installed requirements/development.txt
+	$(PIP) --require-hashes -r requirements/development.txt
 	@touch $@
 
 frontend/node_modules/.installed: frontend/package.json frontend/package-lock.json
@@ -69,6 +73,9 @@ test: ## everything CI runs
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
+	@$(MAKE) --no-print-directory -j 2 --output-sync=recurse check-python check-page
+
+check-python:
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
@@ -77,9 +84,11 @@ check: setup-dev frontend/node_modules/.installed ## style, types, import contra
 	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json
 	$(BIN)/python -m tests.benchmarks.figures --check
-	cd frontend && npm run --silent codegen -- --check
 	$(BIN)/python -m docs.drawing --check
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+
+check-page:
+	cd frontend && npm run --silent codegen -- --check
 	cd frontend && npm run --silent check
 
 kernel: setup-dev ## compiled once here, not by each test worker
@@ -93,7 +102,7 @@ unit-and-system: # missions wait for the wall's clock, and the unit tests fill t
 	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
 
 unit: kernel ## tests without a vehicle or a browser, and how much of the code they run
-	nice -n 10 $(BIN)/pytest -n 2 --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
+	nice -n 10 $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets
@@ -121,6 +130,9 @@ page-load: setup-dev build browser ## the page: belief on screen, frames at 20 H
 sensor-faults: setup-dev ## a thousand simulated missions for each sensor fault: an hour on one core
 	$(BIN)/python -m tests.benchmarks.sensor_faults --missions 1000 --out $(MEASUREMENTS)
 
+truth: setup-dev ## a thousand simulated missions for each way in which bearings are wrong: is what is claimed true? An hour
+	$(BIN)/python -m tests.benchmarks.truth --missions 1000 --out $(MEASUREMENTS)
+
 takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simulated autopilot, and headings in time: half an hour
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour px4 --times 200 --out $(MEASUREMENTS)
 	$(BIN)/python -m tests.benchmarks.takeover_aimed --flavour ardupilot --times 200 --out $(MEASUREMENTS)
@@ -139,9 +151,30 @@ architecture: setup-dev ## the picture of docs/architecture.md, from the imports
 	$(BIN)/python -m docs.drawing
 
 COMPOSE ?= docker compose
+HTTPS_PORT ?= 443
 containers: setup-dev ## build the image, fly one mission in the containers of docker-compose.yml, take them down again
-	SPEEDUP=5 $(COMPOSE) up --build --detach
-	$(BIN)/python -m tests.containers.fly http://127.0.0.1:8600; flown=$$?; $(COMPOSE) down; exit $$flown
+	SPEEDUP=5 HTTPS_PORT=$(HTTPS_PORT) $(COMPOSE) --profile simulated up --build --detach
+	$(BIN)/python -m tests.containers.fly https://localhost:$(HTTPS_PORT); flown=$$?; $(COMPOSE) --profile simulated down; exit $$flown
+
+wheel: setup-dev build ## dist/crossfix-VERSION.whl with the page inside: pipx install it, then crossfix serve
+	$(BIN)/pip wheel --quiet --no-deps --no-build-isolation -w dist .
+	@ls dist/crossfix-*.whl
+
+requirements: ## requirements/*.txt with the hashes of what constraints.txt pins; after each change there
+	$(PYTHON) -m venv $(STAMPS)/uv && $(STAMPS)/uv/bin/pip install --quiet uv
+	cd requirements && ./compile.sh $(abspath $(STAMPS)/uv/bin/uv)
+
+audit: setup-dev ## known vulnerabilities of the packages that are installed, of Python and of the page
+	$(PYTHON) -m venv $(STAMPS)/audit && $(STAMPS)/audit/bin/pip install --quiet --require-hashes -r requirements/audit.txt
+	$(STAMPS)/audit/bin/pip-audit --disable-pip --require-hashes -r requirements/run.txt
+	cd frontend && npm audit --omit=dev
+
+SCALE ?= 1
+soak: setup-dev build ## a hundred viewers for ten minutes, aborts under load, files of 50 MB: figures 6, 7 and 20; SCALE=0.1 for a short one
+	$(BIN)/python -m tests.benchmarks.campaign soak --scale $(SCALE) $(if $(OUT),--out $(OUT))
+
+chaos: setup-dev build kernel ## kills, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13 and 15; hours, SCALE=0.01 for a short one
+	$(BIN)/python -m tests.benchmarks.campaign chaos --scale $(SCALE) $(if $(OUT),--out $(OUT))
 
 example: setup-dev ## the flight that the page plays as its example, recorded again: after each change of the wire
 	$(BIN)/python frontend/scripts/record_example.py

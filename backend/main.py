@@ -27,7 +27,8 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
         async with opening(settings) as services:
             app.state.services = services
             try:
-                yield
+                async with app.state.meters.watched_loop():
+                    yield
             finally:
                 await close_scene_views(app)
 

@@ -155,7 +155,7 @@ class Publisher(Protocol):
         ...
 
     def telemetry(self, craft_id: str, telemetry: Telemetry, now_s: float) -> None:
-        """now_s: UTC epoch seconds, against which ages are told."""
+        """now_s: UTC epoch seconds, against which ages are reckoned."""
         ...
 
     def sweep_progress(

@@ -5,11 +5,14 @@ from __future__ import annotations
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
+from urllib.parse import quote
 
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
+"""Where `make build` puts the page, and where a wheel has it."""
 
 
 class Settings(BaseSettings):
@@ -22,9 +25,11 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = ()
     """Host names besides loopback under which a browser may reach the server."""
     data_dir: Path = Path("data")
-    page_dir: Path = REPOSITORY / "frontend" / "dist"
+    page_dir: Path = INSTALLED_PAGE if INSTALLED_PAGE.is_dir() else BUILT_PAGE
 
     database_url: str | None = None
+    database_password_file: Path | None = None
+    """Its content is the password, so that it stands in no environment and no list of processes."""
     database_timeout_s: Annotated[float, Field(gt=0, le=60)] = 2.0
     """An append that takes longer goes to the spool."""
     database_slow_s: Annotated[float, Field(gt=0, le=60)] = 0.5
@@ -32,8 +37,19 @@ class Settings(BaseSettings):
     """Disk blocks taken in advance, so that a full disk does not stop the journal."""
     disk_low_bytes: int = Field(default=200 * 2**20, ge=0)
 
+    keep_sweeps_days: Annotated[float, Field(ge=0, le=36_500)] | None = None
+    """Raw sweeps of missions that ended longer ago are taken; None: kept for ever."""
+
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
+
+    log_level: Literal["debug", "info", "warning", "error"] = "warning"
+    """Of what goes to the standard error; the file has everything from info on."""
+    log_format: Literal["text", "json"] = "text"
+    log_file: Path | None = None
+    log_file_bytes: int = Field(default=10 * 2**20, ge=2**16)
+    """A file of this size is put away, and `log_files_kept` of those are kept."""
+    log_files_kept: int = Field(default=9, ge=0, le=1000)
 
     receiver: str | None = None
     """"simulated", "payload", or a device: soapy:driver=NAME, rtl_tcp://HOST[:PORT], sigmf:FILE, recording:FILE. None:
@@ -85,14 +101,36 @@ class Settings(BaseSettings):
     def async_database_url(self) -> str:
         """With the driver that is used: aiosqlite or asyncpg."""
         url = self.database_url or f"sqlite:///{(self.data_dir / 'crossfix.sqlite').resolve()}"
+        if self.database_password_file is not None:
+            url = _with_password(url, self.database_password_file)
         scheme, rest = url.split(":", 1)
         driver = "sqlite+aiosqlite" if scheme.startswith("sqlite") else "postgresql+asyncpg"
         return f"{driver}:{rest}"
 
     @property
+    def shown_database(self) -> str:
+        """Its URL without user and password, for people and logs."""
+        scheme, _, rest = self.async_database_url.partition("://")
+        return f"{scheme}://{rest.rpartition('@')[2]}"
+
+    @property
     def spool_path(self) -> Path:
         """Where facts wait while the database is away."""
         return self.data_dir / "journal.spool"
+
+
+def _with_password(url: str, file: Path) -> str:
+    """Raises ValueError when the file cannot be read."""
+    try:
+        password = file.read_text().strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ValueError(f"the database's password cannot be read from {file}: {error}") from error
+    user, found, rest = url.partition("@")
+    if not found or user.count(":") != 1:
+        raise ValueError(
+            "with a password file, the database URL names a user and no password: postgresql://USER@HOST/NAME"
+        )
+    return f"{user}:{quote(password, safe='')}@{rest}"
 
 
 def settings_of(**given: Any) -> Settings:

@@ -124,8 +124,17 @@ class EmitterSpec(Model):
         return self
 
 
+ErrorModel = Literal["independent", "joint"]
+"""What is believed of the bearings' errors: each has its own, or those of a source have a bias, a scale of their sigmas
+and an outlier rate in common, which are estimated with the place (planner.belief.joint)."""
+
+
 class SensorSpec(Model):
-    """The bearing sensor as the planner and the localizer assume it."""
+    """The bearing sensor as the planner and the localizer assume it.
+
+    bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
+    joint ones (`with_todays_errors`).
+    """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
     outlier_probability: float = Field(default=0.1, ge=0, le=0.5)
@@ -136,6 +145,7 @@ class SensorSpec(Model):
     """A sweep of a pulsed tag is complete when each sixteenth of the circle was listened to for this many pulses."""
     minimum_quality: float = Field(default=0.7, ge=0, le=1)
     maximum_retakes: int = Field(default=2, ge=0, le=10)
+    bearing_errors: ErrorModel = "independent"
 
 
 class PlannerSpec(Model):
@@ -257,3 +267,10 @@ class MissionSpec(Model):
             for emitter in self.emitters
         ]
         return self.model_copy(update={"area": where.area, "emitters": emitters, "flight": flight})
+
+
+def with_todays_errors(spec: MissionSpec) -> MissionSpec:
+    """A new mission's specification: one that names no model of the bearings' errors gets the joint one."""
+    if "bearing_errors" in spec.sensor.model_fields_set:
+        return spec
+    return spec.model_copy(update={"sensor": spec.sensor.model_copy(update={"bearing_errors": "joint"})})

@@ -28,14 +28,16 @@ from backend.version import VERSION
 from hardware.autopilot.link import check_url
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
+from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
-from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.direction_finding.pattern_file import borrowed_pattern, load_pattern
 from hardware.payload.receiver import PayloadReceiver
 from hardware.payload.session import PayloadHub
 from hardware.ports import Receiver, ReceiverError, Vehicle
 from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
+from hardware.sim.turntable import simulated_antenna
 
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
@@ -63,7 +65,7 @@ def _receiver(
     emitters: Sequence[SimulatedEmitter],
 ) -> Receiver:
     """Raises ReceiverError for a device of no known form."""
-    named = settings.receiver or ("simulated" if payload is None else "payload")
+    named = _receiver_name(settings)
     if named == "simulated":
         return EmittersAroundHome(vehicle, clock, settings.seed, settings.world, emitters)
     if named == "payload":
@@ -71,6 +73,20 @@ def _receiver(
             raise ReceiverError(PayloadTokensMissing())
         return PayloadReceiver(payload)
     return receiver_from(named, clock)
+
+
+def _pattern(settings: Settings) -> AntennaPattern:
+    """The one that was set; else the simulated antenna's for the simulated receiver, and a borrowed one for any other.
+
+    Raises PatternError.
+    """
+    if settings.antenna_pattern is not None:
+        return load_pattern(settings.antenna_pattern)
+    return simulated_antenna() if _receiver_name(settings) == "simulated" else borrowed_pattern()
+
+
+def _receiver_name(settings: Settings) -> str:
+    return settings.receiver or ("payload" if settings.payload_tokens else "simulated")
 
 
 @asynccontextmanager
@@ -97,7 +113,7 @@ async def open_simulation(
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
-    pattern = load_pattern(settings.antenna_pattern or SMALL_YAGI)
+    pattern = _pattern(settings)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock

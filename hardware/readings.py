@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from hardware.authority import NOBODY, Authority
 from hardware.reasons.preflight import GpsFixName
-from hardware.reasons.sweep import SweepReason
+from hardware.reasons.sweep import SweepReason, SweepRemark
 from hardware.reasons.vehicle_news import VehicleNews
 from planner.reason import Reason
 
@@ -205,7 +205,9 @@ class BearingReading:
     quality: cosine similarity of the sweep and the pattern shifted to the bearing, [0, 1].
     accepted: False when the sweep must be taken again; `reason` says why.
     binned_db: (180,) mean power a 2-degree bin of antenna heading (NaN: empty); fitted_db: (180,) the fit.
-    heading_sigma_deg: the share of sigma_deg that a flight's bearings have in common, the heading's.
+    heading_sigma_deg, pattern_sigma_deg: the shares of sigma_deg that a flight's bearings have in common, the heading's
+    and the antenna's (mounted or shaped otherwise than measured). remarks: what makes the bearing doubtful.
+    likelihood: what the sweep says of every direction, circle.SweepLikelihood packed; None: nothing.
     """
 
     bearing_deg: float
@@ -218,3 +220,6 @@ class BearingReading:
     fitted_db: NDArray[np.float64]
     snr_db: float | None = None
     heading_sigma_deg: float = 0.0
+    pattern_sigma_deg: float = 0.0
+    remarks: tuple[SweepRemark, ...] = ()
+    likelihood: str | None = None

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.belief.grid import GridBelief, prior_belief
+from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
 from planner.options import FIELD, PlannerOptions
@@ -138,4 +139,5 @@ def warm_up() -> None:
     square = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]])
     problem = Problem((square,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
     plan(problem, prior_belief(problem), (), (0.0, 0.0), replace(FIELD, budget=16), threads=1)
+    update_joint(joint_prior(problem), Bearing(0.0, 0.0, 0.5, problem.sigma))
     meetings(square, square, (square,))

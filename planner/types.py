@@ -56,7 +56,8 @@ class Bearing:
     """One bearing z = atan2(y_t - y_s, x_t - x_s) + w, w ~ N(0, sigma^2), taken at (x, y) (4.2).
 
     x, y: sensor position, m ENU. angle, sigma: rad. `outlier_probability` eps mixes in a uniform likelihood,
-    (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma.
+    (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma. source: who
+    took it; a joint belief (planner.belief.joint) gives the bearings of one source one bias, scale and outlier rate.
     """
 
     x: float
@@ -65,6 +66,7 @@ class Bearing:
     sigma: float
     outlier_probability: float = 0.0
     peaks: tuple[Peak, ...] = ()
+    source: str = ""
 
 
 @dataclass(frozen=True, slots=True)

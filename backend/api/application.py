@@ -7,8 +7,9 @@ from contextlib import AbstractAsyncContextManager
 
 from fastapi import FastAPI
 
-from backend.api import live, payload, problems, scene
+from backend.api import live, payload, probes, problems, scene
 from backend.api.guard import Guard
+from backend.api.meters import Metered, Meters
 from backend.api.page import Page
 from backend.api.schema import ROUTERS, operation_id
 from backend.settings import Settings
@@ -32,9 +33,13 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     problems.install(app)
     for router in ROUTERS:
         app.include_router(router)
+    app.include_router(probes.router)
     app.include_router(live.router)
     app.include_router(payload.router)
     app.include_router(scene.pages)
     app.router.default = Page(settings.page_dir)
+    app.state.meters = Meters()
+    app.state.meters.watch(lambda: app.state.services)
+    app.add_middleware(Metered, meters=app.state.meters)
     app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))
     return app

@@ -6,9 +6,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
-from backend.api.dependencies import PrincipalDep, ServicesDep
+from backend.api.dependencies import MetersDep, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.commands import CommandReply, CraftRequest
+from backend.logs import about
 
 CraftId = Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,40}$", description="The craft's id")]
 router = APIRouter(prefix="/api/crafts", tags=["crafts"], responses=PROBLEM_RESPONSES)
@@ -16,10 +17,13 @@ router = APIRouter(prefix="/api/crafts", tags=["crafts"], responses=PROBLEM_RESP
 
 @router.post("/{craft_id}/commands")
 async def order_craft(
-    craft_id: CraftId, request: CraftRequest, services: ServicesDep, principal: PrincipalDep
+    craft_id: CraftId, request: CraftRequest, services: ServicesDep, principal: PrincipalDep, meters: MetersDep
 ) -> CommandReply:
     """Idempotent by `command_id`. A refusal is a reply with accepted = false; seq is 0 without a mission."""
     flights = services.missions.flights
     if craft_id not in flights.loose:
         raise not_found("craft", craft_id)
-    return await flights.command_craft(craft_id, request.command_id, request.command, principal.name)
+    with about(craft=craft_id, command=str(request.command_id)):
+        reply = await flights.command_craft(craft_id, request.command_id, request.command, principal.name)
+        meters.told(request.command.kind, reply)
+    return reply

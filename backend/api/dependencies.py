@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Path, Request
 
+from backend.api.meters import Meters
 from backend.api.services import Services
 from backend.auth.principal import Principal, current_principal
 
@@ -18,5 +19,11 @@ def services(request: Request) -> Services:
     return request.app.state.services
 
 
+def meters(request: Request) -> Meters:
+    """Of the application."""
+    return request.app.state.meters
+
+
+MetersDep = Annotated[Meters, Depends(meters)]
 ServicesDep = Annotated[Services, Depends(services)]
 PrincipalDep = Annotated[Principal, Depends(current_principal)]

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from typing import Annotated
+
+from fastapi import APIRouter, Query
 
 from backend.api import summary
-from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
+from backend.api.dependencies import MetersDep, MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
+from backend.logs import about
 from backend.search.errors import MissionNotFound
-from backend.spec import MissionSpec
+from backend.spec import MissionSpec, with_todays_errors
 from backend.store.digest import MissionDigest
+from backend.store.reading import PlaceInList
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
 
 router = APIRouter(prefix="/api/missions", tags=["missions"], responses=PROBLEM_RESPONSES)
@@ -32,15 +36,28 @@ async def _mission(services: Services, mission_id: str) -> Mission:
 
 
 @router.get("")
-async def list_missions(services: ServicesDep) -> MissionList:
-    """All missions, newest first."""
-    return MissionList(missions=[summary.mission_summary(digest) for digest in await services.journal.missions()])
+async def list_missions(
+    services: ServicesDep,
+    limit: Annotated[int, Query(ge=1, le=500)] = 100,
+    after: Annotated[str | None, Query(pattern=r"^[0-9]{1,18}\.[A-Za-z0-9_-]{1,64}$")] = None,
+    named: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
+) -> MissionList:
+    """Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name."""
+    digests = await services.journal.page(limit + 1, None if after is None else _place(after), named)
+    shown, more = digests[:limit], len(digests) > limit
+    follow = f"{shown[-1].drafted_at_us}.{shown[-1].mission_id}" if more else None
+    return MissionList(missions=[summary.mission_summary(digest) for digest in shown], next=follow)
+
+
+def _place(after: str) -> PlaceInList:
+    drafted_at_us, mission_id = after.split(".")
+    return PlaceInList(int(drafted_at_us), mission_id)
 
 
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
+    return await _mission(services, await services.missions.drafts.create(with_todays_errors(spec), principal.name))
 
 
 @router.get("/{mission_id}")
@@ -54,16 +71,19 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, spec, principal.name)
+    await services.missions.drafts.edit(mission_id, with_todays_errors(spec), principal.name)
     return await _mission(services, mission_id)
 
 
 @router.post("/{mission_id}/commands")
 async def send_command(
-    mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep
+    mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep, meters: MetersDep
 ) -> CommandReply:
     """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
-    return await services.missions.flights.command(mission_id, request, principal.name)
+    with about(mission=mission_id, command=str(request.command_id)):
+        reply = await services.missions.flights.command(mission_id, request, principal.name)
+        meters.told(request.command.kind, reply)
+    return reply
 
 
 @router.post("/{mission_id}/preflight")

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query, Response
 
 from backend.api import summary
 from backend.api.another_antenna import another_antenna
+from backend.api.antenna_review import antenna_review
 from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
 from backend.api.missions import stored_mission
@@ -20,7 +21,7 @@ from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
 from backend.wire.mcap_export import mcap
-from backend.wire.resources import EventPage, SweepRecord, Track, WhatIf, WhatIfRequest
+from backend.wire.resources import AntennaReview, EventPage, SweepRecord, Track, WhatIf, WhatIfRequest
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
@@ -110,6 +111,17 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
         found = await asyncio.to_thread(what_if, mission_id, recorded, request, antenna)
     if found is None:
         raise not_found("belief_after", str(request.bearings))
+    return found
+
+
+@router.get("/antenna")
+async def get_antenna(mission_id: MissionId, services: ServicesDep, emitter: EmitterId = None) -> AntennaReview:
+    """Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show."""
+    await stored_mission(services, mission_id)
+    recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
+    found = await asyncio.to_thread(antenna_review, recorded, emitter, services.pattern)
+    if found is None:
+        raise not_found("belief_about", str(emitter))
     return found
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from backend.api.dependencies import ServicesDep
+from backend.api.meters import free_bytes
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.suggestion import suggested_mission
 from backend.craft.equipment import CraftEquipment
@@ -33,9 +34,13 @@ async def health(services: ServicesDep) -> Health:
         state="ok" if report.state == "ok" and all(vehicle.connected for vehicle in vehicles) else "degraded",
         version=VERSION,
         uptime_s=time.monotonic() - services.began_monotonic_s,
-        database=DatabaseHealth(state=report.state, kind=kind, reason=report.reason, spooled=report.spooled),
+        database=DatabaseHealth(
+            state=report.state, kind=kind, reason=report.reason, spooled=report.spooled, refused=report.refused
+        ),
         vehicles=vehicles,
         viewers=services.hub.viewers(),
+        disk_free_bytes=free_bytes(services),
+        keep_sweeps_days=settings.keep_sweeps_days,
         simulated=settings.simulated,
         time_factor=settings.time_factor,
     )

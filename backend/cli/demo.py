@@ -20,7 +20,7 @@ from backend.cli.running import CannotServe, running_server, stop_on_signals
 from backend.settings import Settings, settings_of
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.spec import MOST_EMITTERS, EmitterSpec
-from backend.store.journal import DatabaseAway
+from backend.store.delivery import DatabaseAway
 from backend.store.opening import DatabaseUnusable
 from backend.store.reading import JournalUnavailable
 from hardware.direction_finding.pattern_file import PatternError

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, get_args
 
@@ -11,14 +12,20 @@ import numpy as np
 import typer
 
 from backend.cli.edge import print_json, remark, stop
-from hardware.direction_finding.bearings_file import DEFAULT_SIGMA_DEG, RecordedBearing, read_bearings
+from backend.search.localization import error_prior
+from backend.settings import settings_of
+from backend.spec import ErrorModel
+from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
+from hardware.direction_finding.bearings_file import RecordedBearing, read_bearings
 from hardware.direction_finding.table_file import RecordingError
 from hardware.frame import LocalFrame, compass_to_angle
 from hardware.readings import Place
 from hardware.reasons.table import FileUnreadable
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
-from planner.belief.verdict import verdict
+from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
+from planner.belief.source_errors import SourceErrors
+from planner.belief.verdict import points_at, verdict
 from planner.geometry import convex_hull
 from planner.options import Estimator
 from planner.reason import sentence_of, text_of
@@ -36,6 +43,8 @@ SHORTEST_RANGE_M = 1000.0
 RANGE_BY_SPREAD = 3.0
 _DISC_CORNERS = 48
 ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
+USUAL_OUTLIERS = 0.1
+"""As a mission expects unless told otherwise."""
 MEDIAN: Estimator = "geometric_median"
 """The place with the least expected error, the figure that is stated beside it."""
 
@@ -60,11 +69,30 @@ def localize(
         ),
     ] = None,
     sigma: Annotated[
-        float, typer.Option(min=0.1, max=60.0, help="Standard deviation in degrees of bearings without their own.")
-    ] = DEFAULT_SIGMA_DEG,
+        float | None,
+        typer.Option(
+            min=0.1,
+            max=60.0,
+            help="Standard deviation in degrees of bearings without their own. Default: estimated from how they miss "
+            "one another, and CROSSFIX_HEADING_SIGMA_DEG.",
+        ),
+    ] = None,
     outliers: Annotated[
-        float, typer.Option(min=0.0, max=0.5, help="Probability that a bearing is wrong altogether (0: none may be).")
-    ] = 0.0,
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=0.5,
+            help="Probability that a bearing is wrong altogether (0: none may be). Default: where the file states "
+            "sigmas 0.1, with independent errors 0; else estimated.",
+        ),
+    ] = None,
+    errors: Annotated[
+        str,
+        typer.Option(
+            help="joint: all bearings may be turned by one angle, which is estimated with the place, as are the scale "
+            "of their sigmas and the rate of outliers. independent: each has an error of its own."
+        ),
+    ] = "joint",
     threshold: Annotated[
         float, typer.Option(min=0.1, help='Expected error in metres below which the emitter counts as "localized".')
     ] = 10.0,
@@ -82,13 +110,19 @@ def localize(
     Example: crossfix localize bearings.csv --range 800 --json
     """
     try:
-        recorded = read_bearings(file, sigma)
+        recorded = read_bearings(file) if sigma is None else read_bearings(file, sigma)
         for reason in recorded.remarks:
             remark(sentence_of(reason))
         chosen = _of_tag(file, recorded.bearings, tag)
         frame = LocalFrame(_middle(chosen))
         region = _read_area(area, frame) if area is not None else _audible(chosen, frame, range_)
-        answer = _localize(chosen, frame, region, outliers, threshold, _known_estimator(estimator))
+        joint = _joint(errors)
+        expected = USUAL_OUTLIERS if joint else 0.0
+        if sigma is None and not all(b.stated for b in chosen):
+            scatter = _scatter(chosen, frame, region)
+            chosen, expected = _with_sigma(chosen, scatter.sigma_deg), scatter.outlier_probability
+        rate = expected if outliers is None else outliers
+        answer = _localize(chosen, frame, region, rate, threshold, _known_estimator(estimator), joint)
     except (RecordingError, PlannerError, ValueError) as error:
         stop(error)
     if json_:
@@ -104,6 +138,12 @@ def _known_estimator(name: str) -> Estimator:
     raise ValueError(f'"{name}" is no estimator: choose one of {", ".join(ESTIMATORS)}')
 
 
+def _joint(errors: str) -> bool:
+    if errors not in get_args(ErrorModel):
+        raise ValueError(f'"{errors}" is no model of errors: choose one of {", ".join(get_args(ErrorModel))}')
+    return errors == "joint"
+
+
 def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) -> list[RecordedBearing]:
     tags = sorted({b.tag for b in bearings if b.tag is not None})
     if tag is None and len(tags) > 1:
@@ -112,6 +152,20 @@ def _of_tag(file: Path, bearings: tuple[RecordedBearing, ...], tag: str | None) 
     if not chosen:
         raise ValueError(f"{file} holds no bearing of tag {tag} (tags there: {', '.join(tags) or 'none'})")
     return chosen
+
+
+def _scatter(bearings: list[RecordedBearing], frame: LocalFrame, region: Region) -> BearingScatter:
+    """Of those without a sigma; what all of them share, the compass', shows in no scatter and is added."""
+    open_ = [b for b in bearings if not b.stated]
+    corners = np.concatenate(region)
+    places = np.array([frame.to_enu(b.place) for b in open_])
+    degrees = np.array([b.bearing_deg for b in open_])
+    found = bearing_scatter(places, degrees, corners.min(axis=0), corners.max(axis=0))
+    return replace(found, sigma_deg=math.hypot(found.sigma_deg, settings_of().heading_sigma_deg))
+
+
+def _with_sigma(bearings: list[RecordedBearing], sigma_deg: float) -> list[RecordedBearing]:
+    return [b if b.stated else replace(b, sigma_deg=sigma_deg) for b in bearings]
 
 
 def _middle(bearings: list[RecordedBearing]) -> Place:
@@ -168,16 +222,14 @@ def _localize(
     outliers: float,
     threshold: float,
     estimator: Estimator,
+    joint: bool,
 ) -> dict[str, Any]:
     bearings: list[Bearing] = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
         bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
     problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
-    try:
-        belief: GridBelief | None = fold(problem, bearings)
-    except InconsistentBearings:
-        belief = None
+    belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings)
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
     answer: dict[str, Any] = {
         "estimate": None,
@@ -188,6 +240,9 @@ def _localize(
         "localized": judged.localized,
         "not_yet": [text_of(reason) for reason in judged.reasons],
         "bearings": len(bearings),
+        "sigma_deg": round(max(b.sigma_deg for b in recorded), 2),
+        "outlier_probability": round(outliers, 3),
+        "sources": [_source(one) for one in belief.errors] if isinstance(belief, JointBelief) else [],
     }
     if belief is not None:
         spread = estimate(belief, problem.estimator)
@@ -200,6 +255,33 @@ def _localize(
     return answer
 
 
+def _fold(problem: Problem, bearings: list[Bearing]) -> GridBelief | None:
+    try:
+        return fold(problem, bearings)
+    except InconsistentBearings:
+        return None
+
+
+def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
+    """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
+    belief = joint_prior(problem, otherwise=error_prior(outliers))
+    for bearing in bearings:
+        belief = update_joint(belief, bearing)
+    found = estimate(belief, problem.estimator)
+    agreeing = sum(points_at(bearing, found.x, found.y) for bearing in corrected(belief, bearings))
+    return None if agreeing < min(2, len(bearings)) else belief
+
+
+def _source(errors: SourceErrors) -> dict[str, float | int]:
+    return {
+        "bearings": errors.bearings,
+        "bias_deg": round(-math.degrees(errors.bias), 2),
+        "bias_std_error_deg": round(math.degrees(errors.bias_sd), 2),
+        "sigma_scale": round(errors.scale, 3),
+        "outlier_rate": round(errors.outlier_rate, 3),
+    }
+
+
 def _text(answer: dict[str, Any]) -> str:
     if answer["estimate"] is None:
         return (
@@ -210,6 +292,11 @@ def _text(answer: dict[str, Any]) -> str:
     lines = [
         f"emitter at {place['lat']:.6f}, {place['lon']:.6f}, expected error {answer['expected_rmse_m']:.0f} m, "
         f"from {answer['bearings']} bearings"
+    ]
+    lines += [
+        f"all bearings turned clockwise by {one['bias_deg']:+.0f} ± {one['bias_std_error_deg']:.0f} degrees, "
+        f"which is taken into account; their errors are {one['sigma_scale']:.1f} times what was stated"
+        for one in answer["sources"]
     ]
     lines.append("localized" if answer["localized"] else f"not yet localized: {' '.join(answer['not_yet'])}")
     return "\n".join(lines)

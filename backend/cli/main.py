@@ -19,6 +19,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "study": ("backend.cli.study:app", "Compare planners by Monte Carlo."),
     "bench": ("backend.cli.bench:bench", "Measure the planner's speed on this machine."),
     "calibrate": ("backend.cli.calibrate:calibrate", "Measure an antenna pattern from a flight around an emitter."),
+    "backup": ("backend.cli.backup:backup", "Save everything that a server keeps, while it flies."),
+    "restore": ("backend.cli.restore:restore", "Put a backup back onto an empty server."),
+    "thin": ("backend.cli.thin:thin", "Take old raw sweeps, and keep everything else."),
     "payload": ("backend.cli.payload:payload", "Run the companion computer's agent."),
 }
 """Name -> where it is (module:function or module:app), one line of help."""

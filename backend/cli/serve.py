@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+import logging
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
 from backend.cli.edge import print_json, remark, stop
+from backend.logs import configure
 from backend.settings import Settings, settings_of
 from planner.reason import ReasonedError
 
@@ -64,8 +66,11 @@ def serve(
             seed=seed,
             world=world,
         )
+        configure(settings, verbose=logging.getLogger().isEnabledFor(logging.INFO))
     except ValueError as error:
         stop(error)
+    except OSError as error:
+        stop(f"the log file {error.filename} cannot be written: {error.strerror}")
     if settings.reachable_from_outside:
         remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:
@@ -87,7 +92,7 @@ async def _serve(settings: Settings, json_: bool) -> None:
         server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
         if json_:
-            print_json({"url": running.url, "vehicle": what, "database": settings.async_database_url})
+            print_json({"url": running.url, "vehicle": what, "database": settings.shown_database})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
         await running.gone
@@ -97,7 +102,7 @@ def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:
     """Raises what nobody foresaw."""
     from backend.cli.running import CannotServe
     from backend.ports import JournalUnavailable
-    from backend.store.journal import DatabaseAway
+    from backend.store.delivery import DatabaseAway
 
     match error:
         case DatabaseAway() | JournalUnavailable():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from backend.cli.edge import print_json, remark, stop, words_of
+from backend.cli.truth import truth
 from planner.options import STUDY
 from planner.study.errors import StudyError
 from planner.types import PlannerError
@@ -148,6 +149,9 @@ def report(
     _print_table(study, summaries)
     for path in drawn:
         typer.echo(f"drew {path}", err=True)
+
+
+app.command()(truth)
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

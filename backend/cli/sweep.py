@@ -8,8 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from backend.cli.edge import parse_place, print_json, remark, stop
+from backend.settings import settings_of
 from hardware.direction_finding.estimate import MINIMUM_QUALITY, SparseDirectionFinder
-from hardware.direction_finding.pattern_file import SMALL_YAGI, PatternError, load_pattern
+from hardware.direction_finding.pattern_file import PatternError, borrowed_pattern, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, mounted
 from hardware.direction_finding.table_file import RecordingError
 from hardware.readings import BearingReading
@@ -27,7 +28,7 @@ def sweep(
         Path | None,
         typer.Option(
             help="Antenna pattern: JSON, or a turntable table (angle_deg, gain_db) as CSV. "
-            "Default: the small Yagi on a multicopter that ships with crossfix; your own antenna's pattern is better."
+            "Default: the small Yagi that ships with crossfix, another antenna's: the bearing says so and is wider."
         ),
     ] = None,
     offset: Annotated[
@@ -52,6 +53,14 @@ def sweep(
     pulse_period_s: Annotated[
         float | None, typer.Option(help="For SigMF of a pulsed tag: from pulse to pulse.")
     ] = None,
+    heading_sigma_deg: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=45.0,
+            help="What headings are uncertain by. Default: CROSSFIX_HEADING_SIGMA_DEG, as in flight.",
+        ),
+    ] = None,
     minimum_quality: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Sweeps less similar to the antenna pattern are rejected.")
     ] = MINIMUM_QUALITY,
@@ -65,15 +74,16 @@ def sweep(
     nose.csv --json
     """
     try:
-        antenna = load_pattern(pattern or SMALL_YAGI)
+        antenna = borrowed_pattern() if pattern is None else load_pattern(pattern)
         iq = IqReading(headings, frequency_hz, _pulses(pulse_width_s, pulse_period_s))
         recording = read_sweeps(file, tag, iq)
         place = parse_place(at) if at is not None else None
+        heading_sigma = settings_of(heading_sigma_deg=heading_sigma_deg).heading_sigma_deg
     except (RecordingError, PatternError, SpectrumError, ValueError) as error:
         stop(error)
     for reason in recording.remarks:
         remark(sentence_of(reason))
-    finder = SparseDirectionFinder(minimum_quality=minimum_quality)
+    finder = SparseDirectionFinder(minimum_quality=minimum_quality, heading_sigma_deg=heading_sigma)
     answers: list[dict[str, Any]] = []
     for recorded in recording.sweeps:
         reading = finder.estimate(recorded.sweep, mounted(antenna, recorded, offset))
@@ -104,6 +114,7 @@ def _answer(recorded: RecordedSweep, reading: BearingReading, place: tuple[float
         "quality": round(reading.quality, 4),
         "accepted": reading.accepted,
         "reason": "" if reading.reason is None else sentence_of(reading.reason),
+        "remarks": [sentence_of(remark) for remark in reading.remarks],
         "tag": recorded.sweep.tag,
         "lat": here[0],
         "lon": here[1],
@@ -120,4 +131,5 @@ def _sentence(answer: dict[str, Any]) -> str:
     place = "" if answer["lat"] is None else f" from {answer['lat']:.6f}, {answer['lon']:.6f}"
     text = f"{what}: bearing {answer['bearing_deg']:.1f} +- {answer['sigma_deg']:.1f} degrees{place}"
     text += f", quality {answer['quality']:.2f}, {answer['samples']} samples"
-    return text if answer["accepted"] else f"{text}; rejected: {answer['reason']}"
+    text = text if answer["accepted"] else f"{text}; rejected: {answer['reason']}"
+    return "\n".join([text, *(f"  {remark}" for remark in answer["remarks"])])

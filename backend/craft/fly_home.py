@@ -1,8 +1,9 @@
 """How a return is flown: by way points of ours around what may not be flown over, then down at home.
 
 The autopilot knows neither our no-fly areas nor our altitude band nor the ground: its own return flies straight. It is
-ordered only when ours cannot be flown, from an altitude that keeps clear of the ground, and that is told. Each leg is
-held against the vetoes again right before it is sent; a pilot who takes over, or the autopilot's failsafe, ends it.
+ordered only when ours cannot be flown, from an altitude that keeps clear of the ground, and the operator sees which it
+is. Each leg is held against the vetoes again right before it is sent; a pilot who takes over, or the autopilot's
+failsafe, ends it.
 """
 
 from __future__ import annotations

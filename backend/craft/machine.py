@@ -42,12 +42,11 @@ from backend.craft.inputs import (
     WorkVetoed,
 )
 from backend.craft.low_battery import LANDING_PATIENCE_S
-from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, ours_to_order, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
 from backend.craft.step import (
     CraftStep,
     alert,
     bring_down,
-    cancel_timers,
     carried_out,
     clear_alerts,
     clear_failsafe,
@@ -63,8 +62,8 @@ from backend.craft.step import (
     tell_said,
     try_rung,
 )
+from backend.craft.who_flies import authority_heard, restarted
 from backend.events import (
-    AuthorityChanged,
     BearingMeasured,
     HoldOrdered,
     LinkLost,
@@ -87,10 +86,9 @@ from backend.reasons.refused import Refused
 from backend.reasons.search import Localized
 from backend.search.effects import Refuse
 from backend.search.state import SearchState
-from hardware.authority import Authority
 
 MOST_REFUSED = 3
-"""So many places in a row that the autopilot will not fly to are no accident."""
+"""This number of places in a row that the autopilot will not fly to is no accident."""
 UNSURE_PLACE_M = 5.0
 """A vehicle that hovers stays within this; what it reports beyond is an alert."""
 
@@ -139,7 +137,7 @@ def _take(step: CraftStep, given: CraftInput) -> None:
                 if craft.phase in AUTOMATIC:
                     hold(step, because)
         case AuthorityHeard(authority=authority):
-            _authority(step, authority)
+            authority_heard(step, authority)
         case FailsafeEnded(mode=mode):
             if craft.phase in ("hold", *HOMEWARD) and not craft.taken_over:
                 alert(step, "vehicle", "caution", flight.FailsafeStopped(mode))
@@ -156,7 +154,7 @@ def _take(step: CraftStep, given: CraftInput) -> None:
         case TimerExpired():
             _timer(step, given)
         case Restarted(authority=authority):
-            _restarted(step, authority)
+            restarted(step, authority)
         case Leaving():
             if craft.engaged and craft.phase in AUTOMATIC and not craft.taken_over:
                 reason = flight.ServerEnds()
@@ -265,41 +263,6 @@ def _failed(step: CraftStep, given: WorkFailed) -> None:
         come_down(step, given.because, "failed")
     elif phase in AUTOMATIC:
         hold(step, given.because)
-
-
-def _authority(step: CraftStep, heard: Authority) -> None:
-    """Somebody else flies, or the same one differently. Nothing is sent; only an operator takes control back."""
-    craft, before = step.craft, step.craft.authority
-    if not craft.engaged or kept_of(heard) == kept_of(before):
-        return
-    taken = pilot_has(heard) and not craft.taken_over
-    if taken:
-        step.do(CancelWork())
-        cancel_timers(step)
-    step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
-    if not ours_to_order(heard):
-        step.do(CancelTimer("order"))
-        clear_alerts(step, "order")
-    if taken:
-        clear_failsafe(step)
-        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
-        alert(step, "pilot", "caution", reason)
-        step.go("manual", reason)
-    elif heard.who == "failsafe" and before.who != "failsafe" and craft.phase in AUTOMATIC | {"hold"}:
-        step.do(CancelWork())
-        silent = "link_lost" if "vehicle" in craft.links_down else "silence"
-        _failsafe_flies(step, flight.FailsafeFlies(silent))
-
-
-def kept_of(authority: Authority) -> tuple[object, ...]:
-    """What of it is a fact to keep: the bookkeeping of each command is not."""
-    a = authority
-    return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode
-
-
-def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
-    alert(step, "vehicle", "caution", reason)
-    step.go("hold", reason)
 
 
 def _link_down(step: CraftStep, given: LinkDown) -> None:
@@ -416,25 +379,3 @@ def _timer(step: CraftStep, given: TimerExpired) -> None:
             low_battery.counted_down(step)
         case _:
             return
-
-
-def _restarted(step: CraftStep, heard: Authority) -> None:
-    """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
-    craft = step.craft
-    if not craft.engaged:
-        return
-    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps")
-    if kept_of(heard) != kept_of(craft.authority):
-        step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
-    if craft.taken_over:
-        return
-    if pilot_has(heard):
-        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
-        alert(step, "pilot", "caution", reason)
-        step.go("manual", reason)
-    elif heard.who == "failsafe":
-        ordered = craft.phase in HOMEWARD
-        _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
-    else:
-        insist(step, "hold")
-        step.go("hold", flight.BackAfterRestart())

@@ -34,7 +34,7 @@ from backend.events.bearings import (
     RecordingImported,
     SweepRejected,
 )
-from backend.events.belief import BeliefUpdated, EstimateFact
+from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
 from backend.events.craft import (
     FIRST_CRAFT,
@@ -139,6 +139,7 @@ __all__ = [
     "ReturnOrdered",
     "SafetyVetoed",
     "ServerRestarted",
+    "SourceErrorsFact",
     "SweepRejected",
     "SweepStarted",
     "TookOff",

@@ -14,13 +14,15 @@ from backend.spec import Id, Place
 
 class AntennaFact(Fact):
     """relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
-    front points so far clockwise of the nose."""
+    front points so far clockwise of the nose. pointing_sigma_deg, borrowed: as in hardware's AntennaPattern."""
 
     name: str
     relative_bearing_deg: list[float]
     gain_db: list[float]
     offset_to_nose_deg: float
     frequency_hz: Known
+    pointing_sigma_deg: Known = None
+    borrowed: bool = False
 
 
 class CraftSource(Fact):
@@ -56,7 +58,7 @@ class Peak(Fact):
 
 
 class SweepRejected(Fact):
-    """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db: as in BearingMeasured."""
+    """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured."""
 
     kind: Literal["sweep_rejected"] = "sweep_rejected"
     emitter_id: Id
@@ -69,6 +71,7 @@ class SweepRejected(Fact):
     place: Place
     binned_db: list[Known]
     fitted_db: list[Known]
+    likelihood: str | None = None
 
 
 class BearingMeasured(Fact):
@@ -76,7 +79,9 @@ class BearingMeasured(Fact):
     bins of 2 degrees of antenna heading (true), None where nothing was heard.
 
     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
-    heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
+    heading_sigma_deg, pattern_sigma_deg: the shares of sigma_deg that all bearings of a flight have in common, the
+    heading's and the antenna's. remarks: what makes the bearing less certain.
+    likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
     """
 
@@ -98,6 +103,9 @@ class BearingMeasured(Fact):
     fitted_db: list[Known]
     measurement_time_s: Known = None
     heading_sigma_deg: float = 0.0
+    pattern_sigma_deg: float = 0.0
+    remarks: list[Reason] = Field(default_factory=list[Reason])
+    likelihood: str | None = None
     samples_without_heading: int = 0
 
 

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from backend.events.bearings import BearingSource
 from backend.events.fact import Fact, Known
 from backend.reasons import Reason
 from backend.spec import Area, Id
@@ -24,12 +25,26 @@ class EstimateFact(Fact):
     major_axis_deg: float
 
 
+class SourceErrorsFact(Fact):
+    """What the bearings say of their own source. bias_deg: they all point this far clockwise of where they should; the
+    belief has taken it off. sigma_scale: their errors are this many times what was stated of them. outlier_rate: share
+    of them that is wrong altogether."""
+
+    source: BearingSource
+    bearings: int
+    bias_deg: float
+    bias_std_error_deg: float
+    sigma_scale: float
+    outlier_rate: float
+
+
 class BeliefUpdated(Fact):
     """The belief about one emitter after folding `bearings` bearings. `digest`: SHA-256 of the grid, so that a rebuilt
     belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
-    significant: then nothing is claimed."""
+    significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
+    uses them; empty of one that takes errors to be independent."""
 
     kind: Literal["belief_updated"] = "belief_updated"
     emitter_id: Id
@@ -41,4 +56,5 @@ class BeliefUpdated(Fact):
     contradicting: list[str] = Field(default_factory=list[str])
     heading_offset_deg: Known = None
     heading_offset_std_error_deg: Known = None
+    sources: list[SourceErrorsFact] = Field(default_factory=list[SourceErrorsFact])
     digest: str

@@ -58,7 +58,7 @@ class AreaChanged(Fact):
 
 
 class ServerRestarted(Fact):
-    """From here on beliefs are computed anew; a craft that we flew is held until an operator resumes."""
+    """From here on beliefs are computed afresh; a craft that we flew is held until an operator resumes."""
 
     kind: Literal["server_restarted"] = "server_restarted"
 

@@ -19,6 +19,7 @@ from backend.craft.runner import CraftRunner
 from backend.craft.safety import limits_of, staying_vetoes
 from backend.craft.state import CraftState
 from backend.events import BeliefUpdated, Event, Recorded
+from backend.logs import about
 from backend.mission.beliefs import Beliefs
 from backend.mission.effects import Effect, OfCraft, Reply
 from backend.mission.equipment import MissionEquipment
@@ -76,13 +77,15 @@ class MissionRunner:
             partial(self._keep_track, craft_id),
             partial(self._keep_sweep, craft_id),
         )
-        runner.listening.start()
+        with about(self.mission_id, craft_id, command=None):
+            runner.listening.start()
         return runner
 
     def begin(self) -> None:
         """Start watching."""
-        for craft in self.crafts.values():
-            craft.begin()
+        for craft_id, craft in self.crafts.items():
+            with about(self.mission_id, craft_id, command=None):
+                craft.begin()
 
     async def close(self) -> None:
         """Stop everything of this mission; what is recorded reaches the journal first. Sends nothing."""
@@ -101,7 +104,8 @@ class MissionRunner:
                     facts.append(event)
                 case OfCraft(craft_id=craft_id, effect=wanted):
                     if craft_id in self.crafts:
-                        self.crafts[craft_id].carry_out(wanted)
+                        with about(self.mission_id, craft_id):
+                            self.crafts[craft_id].carry_out(wanted)
                 case UpdateBelief(emitter_id=emitter_id):
                     self._beliefs.update(self._state.search.emitters[emitter_id])
                 case SearchElsewhere():

@@ -87,6 +87,19 @@ class HeadingsAskew:
 
 
 @dataclass(frozen=True, slots=True)
+class BearingsCorrected:
+    """All bearings of a source are turned by one angle, clockwise; the belief has taken it off."""
+
+    bias_deg: float
+    std_error_deg: float
+    code: Literal["bearings_corrected"] = "bearings_corrected"
+    english: ClassVar[Words] = Words(
+        "All bearings are turned by about {bias_deg} ± {std_error_deg}; the belief takes that into account.",
+        "Check compass and antenna mounting before the next flight.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class Localized:
     code: Literal["localized"] = "localized"
     english: ClassVar[Words] = Words("Localized: the expected error is below the threshold.")
@@ -179,6 +192,7 @@ SearchReason = (
     | AreaTooWide
     | AreaTooFar
     | HeadingsAskew
+    | BearingsCorrected
     | Localized
     | LocalizedAgainst
     | RecordingTooLong

@@ -95,7 +95,7 @@ class Composer:
         return replace(take, content=shown, scene=replace(take.scene, items=(*still, *fresh)))
 
     async def _ground(self, story: Story) -> Terrain | None:
-        """Of the last digest that was asked for it is kept: each event makes the scene anew."""
+        """Keeps that of the last digest asked for: the scene is built again at each event."""
         flown_over = story.state.search.ground
         if flown_over is None:
             return None

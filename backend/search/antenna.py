@@ -18,6 +18,8 @@ def antenna_fact(pattern: AntennaPattern) -> AntennaFact:
         gain_db=pattern.gain_db.tolist(),
         offset_to_nose_deg=pattern.offset_to_nose_deg,
         frequency_hz=pattern.frequency_hz,
+        pointing_sigma_deg=pattern.pointing_sigma_deg,
+        borrowed=pattern.borrowed,
     )
 
 
@@ -27,5 +29,13 @@ def antenna_flown(recorded: Sequence[Recorded]) -> AntennaPattern | None:
         if isinstance(record.event, MissionStarted | RecordingImported) and record.event.antenna is not None:
             fact = record.event.antenna
             angle, gain = np.array(fact.relative_bearing_deg), np.array(fact.gain_db)
-            return AntennaPattern(fact.name, angle, gain, fact.offset_to_nose_deg, fact.frequency_hz)
+            return AntennaPattern(
+                fact.name,
+                angle,
+                gain,
+                fact.offset_to_nose_deg,
+                fact.frequency_hz,
+                pointing_sigma_deg=fact.pointing_sigma_deg,
+                borrowed=fact.borrowed,
+            )
     return None

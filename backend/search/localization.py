@@ -15,7 +15,16 @@ from shapely import Polygon as ShapelyPolygon
 from shapely.geometry.base import BaseGeometry
 
 from backend import spec
-from backend.events import BearingMeasured, BeliefUpdated, EstimateFact
+from backend.events import (
+    BearingMeasured,
+    BearingSource,
+    BeliefUpdated,
+    CraftSource,
+    EstimateFact,
+    ImportSource,
+    PersonSource,
+    SourceErrorsFact,
+)
 from backend.reasons import Reason, carried
 from backend.reasons.search import HeadingsAskew
 from backend.search import area
@@ -27,6 +36,8 @@ from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import Place
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief, digest, prior_belief, update
+from planner.belief.joint import UNKNOWN_SOURCE, JointBelief, joint_prior, update_joint
+from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.types import (
     Bearing,
@@ -49,6 +60,10 @@ from planner.types import (
 
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
+
+FEWEST_OUTLIERS = 0.01
+MOST_OUTLIERS = 0.6
+"""Rates that a joint belief allows for, whatever is specified."""
 
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
@@ -76,6 +91,11 @@ class Localization:
         """Degrees; (0, 0) of the frame."""
         return self.frame.origin
 
+    @property
+    def joint(self) -> bool:
+        """Whether the errors that a source's bearings have in common are estimated with the place."""
+        return isinstance(self.prior, JointBelief)
+
     def without(self, closed: BaseGeometry | None) -> Localization:
         """The same with these places (m ENU) closed to the planner, too."""
         if closed is None:
@@ -93,9 +113,10 @@ class Localization:
             x=east,
             y=north,
             angle=compass_to_angle(fact.bearing_deg),
-            sigma=math.radians(fact.sigma_deg),
+            sigma=math.radians(own_sigma_deg(fact) if self.joint else fact.sigma_deg),
             outlier_probability=self.mission.sensor.outlier_probability,
             peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
+            source=source_name(fact.source),
         )
 
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
@@ -111,7 +132,9 @@ class Localization:
             return self.prior
         found = self._folds.get(bearings)
         if found is None:
-            found = update(self._folded(bearings[:-1]), bearings[-1])
+            before = self._folded(bearings[:-1])
+            joint = isinstance(before, JointBelief)
+            found = update_joint(before, bearings[-1]) if joint else update(before, bearings[-1])
             if len(self._folds) >= FOLDS_KEPT:
                 self._folds.clear()
             self._folds[bearings] = found
@@ -130,7 +153,7 @@ class Localization:
         bearings = self.planner_bearings(measured)
         folded = self.belief(bearings)
         said = verdict(self.problem, self.rule, bearings, folded)
-        offset = self.heading_offset(measured)
+        offset = None if self.joint else self.heading_offset(measured)
         doubt = offset if offset is not None and offset.significant else None
         shown = self.planning_belief(bearings) if folded is None else folded
         askew = () if doubt is None else (HeadingsAskew(doubt.offset_deg, doubt.std_error_deg),)
@@ -145,6 +168,7 @@ class Localization:
             contradicting=[measured[index].bearing_id for index in said.against],
             heading_offset_deg=None if doubt is None else doubt.offset_deg,
             heading_offset_std_error_deg=None if doubt is None else doubt.std_error_deg,
+            sources=_errors_facts(shown, measured),
             digest=digest(shown),
         )
         return fact, shown
@@ -153,7 +177,7 @@ class Localization:
         """What the bearings are off by together, judged by what their sigmas hold besides the heading's share."""
         places = np.array([self.frame.to_enu(b.place) for b in measured]).reshape(-1, 2)
         bearing = np.array([b.bearing_deg for b in measured])
-        own = np.sqrt([max(b.sigma_deg**2 - b.heading_sigma_deg**2, 0.0) for b in measured])
+        own = np.array([own_sigma_deg(b) for b in measured])
         return heading_offset(places, bearing, own, max(self.mission.sensor.outlier_probability, DOUBT))
 
     def _estimate_fact(self, belief: GridBelief, spread: Estimate) -> EstimateFact:
@@ -222,11 +246,57 @@ def localization(
         min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
     )
     try:
-        prior = prior_belief(problem)
+        prior = _prior_belief(problem, sensor)
     except PlannerError as error:
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
     return Localization(mission, emitter.emitter_id, frame, problem, prior, rule)
+
+
+def own_sigma_deg(fact: BearingMeasured) -> float:
+    """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source."""
+    return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2, 0.0))
+
+
+def source_name(source: BearingSource) -> str:
+    """As the planner tells sources apart."""
+    match source:
+        case CraftSource(craft_id=name) | PersonSource(name=name) | ImportSource(recording_id=name):
+            return f"{source.kind}:{name}"
+
+
+def _prior_belief(problem: Problem, sensor: spec.SensorSpec) -> GridBelief:
+    match sensor.bearing_errors:
+        case "joint":
+            return joint_prior(problem, otherwise=error_prior(sensor.outlier_probability))
+        case "independent":
+            return prior_belief(problem)
+
+
+def error_prior(outlier_probability: float) -> ErrorPrior:
+    """What is assumed of a source of which nothing is known: outliers are half or twice as frequent as specified."""
+    if outlier_probability == 0.0:
+        return replace(UNKNOWN_SOURCE, rate=np.array([FEWEST_OUTLIERS]), rate_weight=np.ones(1))
+    rate = np.clip(outlier_probability * np.array([0.5, 2.0]), FEWEST_OUTLIERS, MOST_OUTLIERS)
+    return replace(UNKNOWN_SOURCE, rate=rate)
+
+
+def _errors_facts(belief: GridBelief, measured: Sequence[BearingMeasured]) -> list[SourceErrorsFact]:
+    """Compass bearings turn the other way round than the planner's angles."""
+    if not isinstance(belief, JointBelief):
+        return []
+    sources = {source_name(fact.source): fact.source for fact in measured}
+    return [
+        SourceErrorsFact(
+            source=sources[one.source],
+            bearings=one.bearings,
+            bias_deg=-math.degrees(one.bias),
+            bias_std_error_deg=math.degrees(one.bias_sd),
+            sigma_scale=one.scale,
+            outlier_rate=one.outlier_rate,
+        )
+        for one in belief.errors
+    ]
 
 
 def _motion(motion: spec.MotionSpec) -> Motion:

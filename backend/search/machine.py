@@ -21,6 +21,7 @@ from backend.events import (
     MissionEdited,
     MissionEnded,
     PreflightChecked,
+    SourceErrorsFact,
     Topic,
 )
 from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals, search
@@ -37,6 +38,7 @@ from backend.search.inputs import (
     SearchOver,
 )
 from backend.search.state import SearchState, evolve
+from hardware.direction_finding.heading_offset import SIGNIFICANT, TOLERABLE_DEG
 
 
 @dataclass(slots=True)
@@ -119,15 +121,26 @@ def _belief(step: SearchStep, given: BeliefReady) -> None:
     if emitter is None or given.bearing_ids != emitter.bearing_ids or emitter.belief_current:
         return
     step.record(given.fact)
-    _doubt_headings(step, given.fact)
+    doubt_headings(step, given.fact)
 
 
-def _doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
+def doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
+    """Bearings that are turned together are a caution, whether that stops the claim or is taken into account."""
     askew = next((reason for reason in belief.not_yet if isinstance(reason, search.HeadingsAskew)), None)
+    askew = askew or next((_corrected(one) for one in belief.sources if _turned(one)), None)
     if askew is None:
         clear_alerts(step, "heading")
     else:
         alert(step, "heading", "caution", askew)
+
+
+def _turned(source: SourceErrorsFact) -> bool:
+    """By more than a compass may be off, and more than chance makes it."""
+    return abs(source.bias_deg) > max(TOLERABLE_DEG, SIGNIFICANT * source.bias_std_error_deg)
+
+
+def _corrected(source: SourceErrorsFact) -> search.BearingsCorrected:
+    return search.BearingsCorrected(source.bias_deg, source.bias_std_error_deg)
 
 
 def _ordered(step: SearchStep, given: SearchOrdered) -> None:

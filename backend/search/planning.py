@@ -15,9 +15,10 @@ import numpy as np
 
 from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, PlanChosen
 from backend.reasons import Reason, carried
-from backend.search.localization import Localization
+from backend.search.localization import Localization, own_sigma_deg, source_name
 from hardware.readings import Place
 from planner.belief.grid import GridBelief
+from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.plan import expected_time_from, plan
 from planner.policy.base import BASE_POLICIES
 from planner.travel import straight_suffices, travel_path, visibility_graph
@@ -72,7 +73,7 @@ def decide(
     if options.method == "base_policy":
         return base_policy_decision(task, belief, platform, without)
     return plan(
-        foreseen(task.problem, measured),
+        foreseen(task.problem, measured, belief),
         belief,
         task.planner_bearings(measured),
         platform,
@@ -82,15 +83,29 @@ def decide(
     )
 
 
-def foreseen(problem: Problem, measured: Sequence[BearingMeasured]) -> Problem:
+def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None) -> Problem:
     """The problem with the sensor as this mission found it, for the bearings to come; the specification counts as one.
 
     sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): a geometric mean, since sigma is a scale: one bad sweep in a
     good signal does not undo the others. The measurement time is the arithmetic mean, since missions add it up.
+    A joint belief knows more: of sigma only each bearing's own share counts, times the scale that was found, and the
+    bias by as much as it is still uncertain.
     """
     sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
+    sigma = _with_errors(geometric_mean(sigmas), measured, belief)
     times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
-    return replace(problem, sigma=geometric_mean(sigmas), measurement_time=fmean(times))
+    return replace(problem, sigma=sigma, measurement_time=fmean(times))
+
+
+def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None) -> float:
+    """sigma_foreseen = hypot(scale sigma_own, bias' standard deviation), of the source that measured last; rad."""
+    if not isinstance(belief, JointBelief) or not measured:
+        return sigma
+    errors = belief.errors_of(source_name(measured[-1].source))
+    if errors is None:
+        return sigma
+    shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in measured]
+    return math.hypot(errors.scale * sigma * geometric_mean(shares), errors.bias_sd)
 
 
 def base_policy_decision(
@@ -158,7 +173,7 @@ def cost_of(
     """Time until localized when the next bearing is taken at `place` (m ENU)."""
     try:
         found = expected_time_from(
-            foreseen(task.problem, measured),
+            foreseen(task.problem, measured, belief),
             belief,
             task.planner_bearings(measured),
             place,

@@ -47,7 +47,7 @@ def sweep_fact(
     if not reading.accepted or reading.quality < sensor.minimum_quality:
         low = QualityTooLow(reading.quality, sensor.minimum_quality)
         reason = low if reading.reason is None else carried(reading.reason)
-        return rejected(taken, sweep.position, reading.quality, reason, binned, fitted)
+        return rejected(taken, sweep.position, reading.quality, reason, binned, fitted, reading.likelihood)
     return BearingMeasured(
         emitter_id=taken.emitter_id,
         source=taken.source,
@@ -66,6 +66,9 @@ def sweep_fact(
         fitted_db=fitted,
         measurement_time_s=measurement_time_s,
         heading_sigma_deg=reading.heading_sigma_deg,
+        pattern_sigma_deg=reading.pattern_sigma_deg,
+        remarks=[carried(remark) for remark in reading.remarks],
+        likelihood=reading.likelihood,
         samples_without_heading=sweep.samples_without_heading,
     )
 
@@ -77,8 +80,9 @@ def rejected(
     reason: Reason,
     binned_db: list[float | None] | None = None,
     fitted_db: list[float | None] | None = None,
+    likelihood: str | None = None,
 ) -> SweepRejected:
-    """binned_db, fitted_db: (180,) dB, None for a sweep that never got that far."""
+    """binned_db, fitted_db: (180,) dB, None for a sweep that never got that far. likelihood: packed."""
     nothing: list[float | None] = [None] * BINS
     return SweepRejected(
         emitter_id=taken.emitter_id,
@@ -91,6 +95,7 @@ def rejected(
         place=place,
         binned_db=nothing if binned_db is None else binned_db,
         fitted_db=nothing if fitted_db is None else fitted_db,
+        likelihood=likelihood,
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from alembic import command
 from alembic.config import Config
+from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, event, make_url
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlalchemy.pool import NullPool
@@ -57,31 +58,54 @@ def _configure_sqlite(engine: AsyncEngine) -> None:
         connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
 
 
-async def migrate(url: str, timeout_s: float = 30.0) -> None:
-    """Bring the database to the current schema. In a thread of its own: Alembic is synchronous."""
-    await asyncio.to_thread(_migrate_in_thread, url, timeout_s)
-
-
-def _migrate_in_thread(url: str, timeout_s: float) -> None:
-    asyncio.run(_upgrade(url, timeout_s))
-
-
-async def _upgrade(url: str, timeout_s: float) -> None:
+def engine_for_once(url: str, timeout_s: float) -> AsyncEngine:
+    """For a command that works beside the server: its connections are closed as soon as they are given back."""
+    engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
     if make_url(url).get_backend_name() == "sqlite":
         _make_folder(url)
-        engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
         _configure_sqlite(engine)
-    else:
-        engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
+    return engine
+
+
+async def migrate(url: str, timeout_s: float = 30.0, revision: str = "head") -> None:
+    """Bring the database to the current schema, or to an earlier revision of it on the way there. In a thread of its
+    own: Alembic is synchronous."""
+    await asyncio.to_thread(_migrate_in_thread, url, timeout_s, revision)
+
+
+async def shrink(engine: AsyncEngine) -> None:
+    """Give the file's unused pages back to the disk. SQLite only; nobody else may use the file."""
+    async with engine.connect() as connection:
+        driver = (await connection.get_raw_connection()).driver_connection
+        assert driver is not None
+        await driver.execute("VACUUM")  # allowed outside a transaction only
+
+
+def known_revisions() -> frozenset[str]:
+    """Of the schemas that this version can bring up to date."""
+    return frozenset(script.revision for script in ScriptDirectory.from_config(_config()).walk_revisions())
+
+
+def _migrate_in_thread(url: str, timeout_s: float, revision: str) -> None:
+    asyncio.run(_upgrade(url, timeout_s, revision))
+
+
+async def _upgrade(url: str, timeout_s: float, revision: str) -> None:
+    engine = engine_for_once(url, timeout_s)
     try:
         async with engine.execution_options(write=True).begin() as connection:
-            await connection.run_sync(_run_alembic)
+            await connection.run_sync(_run_alembic, revision)
     finally:
         await engine.dispose()
 
 
-def _run_alembic(connection: Connection) -> None:
+def _config() -> Config:
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+    return config
+
+
+def _run_alembic(connection: Connection, revision: str) -> None:
+    config = _config()
     config.attributes["connection"] = connection
-    command.upgrade(config, "head")
+    command.upgrade(config, revision)

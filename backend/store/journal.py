@@ -1,29 +1,26 @@
 """The journal in a database: facts are durable before anybody hears of them, and a database that is away stops nothing.
 
-An append goes to the database; when that fails or takes too long it goes to the spool on disk, in order, and a
-background task drains the spool once the database answers again. `append` returns only when one of the two is durable.
-Missions that are written to are kept in memory, so their events can be read while the database is away.
+How an entry reaches the database, or the spool while it is away, is `delivery`. Here are the order of a mission's facts
+and what is read back: missions that are written to are kept in memory, so their events can be read meanwhile.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import shutil
 import time
-from collections import deque
 from collections.abc import Callable, Coroutine, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from itertools import islice
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
-from sqlalchemy import exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, Recorded
 from backend.ports import FactRefused, JournalUnavailable, TrackPoint
-from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, NothingStores
+from backend.reasons.storage import FactUnfit
+from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
     Entry,
@@ -31,43 +28,19 @@ from backend.store.entries import (
     JournalConflict,
     SweepEntry,
     TrackEntry,
-    decode,
     sweep_entry,
     to_records,
     to_row,
 )
-from backend.store.patience import patience
-from backend.store.reading import StoredFacts, why
-from backend.store.spool import Spool, SpoolFull
+from backend.store.reading import PlaceInList, StoredFacts
+from backend.store.spool import Spool
 from hardware.readings import Sweep
 
 log = logging.getLogger("crossfix.store")
 
 T = TypeVar("T")
 
-RETRY_FIRST_S, RETRY_LAST_S = 0.25, 5.0
-PROBE_S = 1.0
-DRAIN_BATCH = 64
 START_PATIENCE_S = 20.0
-
-REFUSED = (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingError)
-"""The database answered, and will never take this entry."""
-
-
-class DatabaseAway(RuntimeError):
-    """The database did not answer; nothing is known about the last transaction."""
-
-
-@dataclass(frozen=True, slots=True)
-class DatabaseReport:
-    """reason: None when all is well. spooled: entries on disk that wait for the database. refused: entries that it will
-    never take (kept in a file)."""
-
-    state: Literal["ok", "slow", "lost"]
-    reason: DatabaseSilent | DatabaseSlow | DiskLow | None
-    spooled: int
-    refused: int
-
 
 NETS_MISSIONS = 100
 """So many missions back a vehicle's own nets may still wait to be put back."""
@@ -96,21 +69,14 @@ class SqlJournal:
     ) -> None:
         self._engine = engine
         self._stored = StoredFacts(engine, 2 * timeout_s)
-        self._writer = engine.execution_options(write=True)
         self._spool = spool
+        self._delivery = Delivery(
+            engine, spool, self._forget_ended, timeout_s=timeout_s, slow_s=slow_s, disk_low_bytes=disk_low_bytes
+        )
         self._now = now
-        self._timeout_s = timeout_s
-        self._slow_s = slow_s
-        self._disk_low_bytes = disk_low_bytes
         self._lock = asyncio.Lock()
-        self._pending = deque(decode(payload) for payload in spool.entries())
+        """Over the numbers of a mission's facts."""
         self._written: dict[str, Written] = {}
-        self._wake = asyncio.Event()
-        self._fault: str | None = None
-        self._answers = True
-        self._took_s = 0.0
-        self._refused = 0
-        self._disk_free_bytes: int | None = None
         self._tasks: set[asyncio.Task[Any]] = set()
 
     # Writing
@@ -143,7 +109,7 @@ class SqlJournal:
             except ValueError as error:
                 raise FactRefused(FactUnfit("journal", " ".join(str(error).split()).rstrip("."))) from error
             try:
-                await self._store(entry)
+                await self._delivery.store(entry)
             except JournalConflict:
                 self._written.pop(mission_id, None)  # the next append reads what the other one wrote
                 raise
@@ -173,81 +139,27 @@ class SqlJournal:
             await self._whole(self._save(TrackEntry(mission_id, craft_id, tuple(points))))
 
     async def _save(self, entry: Entry) -> None:
-        async with self._lock:
-            try:
-                await self._store(entry)
-            except FactRefused as error:
-                await self._set_aside(entry, str(error))
-                raise
+        try:
+            await self._delivery.store(entry)
+        except FactRefused as error:
+            await self._delivery.set_aside(entry, str(error))
+            raise
 
     async def keep_aside(self, mission_id: str, events: Sequence[Event], why: str) -> None:
         """For a person to look at, in a file beside the spool; counted in the report."""
         at_utc = datetime.fromtimestamp(self._now(), UTC)
-        await self._whole(self._set_aside(_entry(mission_id, 0, at_utc, events), why))
-
-    async def _set_aside(self, entry: Entry, why: str) -> None:
-        self._refused += 1
-        log.error("kept aside, it cannot be stored: %s", why)
-        try:
-            await asyncio.to_thread(self._spool.keep_aside, entry.encode())
-        except OSError as error:
-            log.error("it could not be kept aside either (%s): %s", error.strerror, entry.encode().decode())
+        await self._whole(self._delivery.set_aside(_entry(mission_id, 0, at_utc, events), why))
 
     async def _known(self, mission_id: str) -> Written:
         """The mission so far, what still waits in the spool included."""
         if mission_id not in self._written:
             recorded = await self._stored.read(mission_id)
-            waiting = [
-                row
-                for entry in self._pending
-                if isinstance(entry, EventsEntry) and entry.mission_id == mission_id
-                for row in entry.rows
-            ]
+            waiting = [row for entry in self._delivery.waiting_events(mission_id) for row in entry.rows]
             recorded += to_records(mission_id, [row for row in waiting if row.seq > len(recorded)])
             return Written(recorded, fold(None, recorded) if recorded else None)
         return self._written[mission_id]
 
-    async def _store(self, entry: Entry) -> None:
-        """To the database, or behind what already waits in the spool."""
-        if not self._pending and self._fault is None:
-            try:
-                await self._write([entry])
-            except DatabaseAway as error:
-                self._lost(error)
-            except JournalConflict:
-                raise
-            except REFUSED as error:
-                raise FactRefused(FactUnfit("database", why(error))) from error
-            else:
-                return
-        try:
-            await asyncio.to_thread(self._spool.append, entry.encode())
-        except SpoolFull as error:
-            raise JournalUnavailable(NothingStores(self._fault or "it still takes what waited", str(error))) from error
-        self._pending.append(entry)
-        self._wake.set()
-
-    async def _write(self, entries: Sequence[Entry]) -> None:
-        """All in one transaction. Raises DatabaseAway, and what `REFUSED` names."""
-        began = time.monotonic()
-        try:
-            async with patience(self._timeout_s), self._writer.begin() as connection:
-                for entry in entries:
-                    await entry.write(connection)
-        except REFUSED:
-            raise
-        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(why(error)) from error
-        finally:
-            self._took_s = time.monotonic() - began
-
     # Being away and coming back
-
-    def _lost(self, error: DatabaseAway) -> None:
-        if self._fault is None:
-            log.error("database away: %s; events are spooled", error)
-        self._fault, self._answers = str(error), False
-        self._wake.set()
 
     async def start_up(self) -> None:
         """What an earlier server left in the spool is stored, or known until the database takes it.
@@ -255,11 +167,15 @@ class SqlJournal:
         A database that is busy at this moment is waited for. Raises JournalUnavailable when it does not even read.
         """
         try:
-            await self.drain()
-        except DatabaseAway as error:
-            self._lost(error)
-            for mission_id in {entry.mission_id for entry in self._pending if isinstance(entry, EventsEntry)}:
-                self._written[mission_id] = await self._patiently(lambda mission_id=mission_id: self._known(mission_id))
+            await self._delivery.drain()
+        except Exception as error:
+            if not isinstance(error, DatabaseAway):
+                log.exception("what was spooled could not be stored yet; the watch over the database tries on")
+            self._delivery.lost(error)
+            waiting = {entry.mission_id for entry in self._delivery.waiting if isinstance(entry, EventsEntry)}
+            for mission_id in waiting:
+                with suppress(ValueError):  # facts that cannot be read: the watch keeps them aside
+                    self._written[mission_id] = await self._patiently(lambda m=mission_id: self._known(m))
 
     @staticmethod
     async def _patiently(read: Callable[[], Coroutine[Any, Any, T]]) -> T:
@@ -275,69 +191,11 @@ class SqlJournal:
 
     async def run(self) -> None:
         """Watch the database, and drain the spool when it is back. Runs until cancelled."""
-        retry_s = RETRY_FIRST_S
-        while True:
-            if self._pending or self._fault is not None:
-                try:
-                    await self.drain()
-                    retry_s = RETRY_FIRST_S
-                except DatabaseAway as error:
-                    self._lost(error)
-                    await asyncio.sleep(retry_s)
-                    retry_s = min(2 * retry_s, RETRY_LAST_S)
-                continue
-            self._disk_free_bytes = shutil.disk_usage(self._spool.path).free
-            self._wake.clear()
-            try:
-                async with asyncio.timeout(PROBE_S):
-                    await self._wake.wait()
-            except TimeoutError:
-                try:
-                    await self._probe()
-                except DatabaseAway as error:
-                    self._lost(error)
-
-    async def _probe(self) -> None:
-        began = time.monotonic()
-        try:
-            async with patience(self._timeout_s), self._engine.connect() as connection:
-                await connection.execute(text("SELECT 1"))
-        except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(why(error)) from error
-        self._took_s = time.monotonic() - began
-
-    async def drain(self) -> None:
-        """Everything that waits, in order; appends meanwhile queue up behind it. Raises DatabaseAway."""
-        await self._probe()
-        drained = 0
-        while self._pending:
-            batch = list(islice(self._pending, DRAIN_BATCH))
-            try:
-                await self._write(batch)
-            except REFUSED:
-                del batch[1:]
-                await self._write_or_keep_aside(batch[0])
-            drained += len(batch)
-            self._answers = True  # slow until the rest is stored, but away no longer
-            for _ in batch:
-                self._pending.popleft()
-        async with self._lock:
-            if not self._pending:
-                await asyncio.to_thread(self._spool.clear)
-                if self._fault is not None:
-                    log.warning("database back, %d spooled entries stored", drained)
-                self._fault = None
-                self._forget_ended()
-
-    async def _write_or_keep_aside(self, entry: Entry) -> None:
-        try:
-            await self._write([entry])
-        except REFUSED as error:
-            await self._set_aside(entry, f"the database refuses a spooled entry: {error}")
+        await self._delivery.run()
 
     def _forget_ended(self) -> None:
         """Memory holds missions in flight only; an ended one is read from the database again."""
-        if self._pending:
+        if self._delivery.waiting:
             return
         for mission_id, known in list(self._written.items()):
             if known.digest is not None and known.digest.ended_at_us is not None and not known.digest.flying:
@@ -345,14 +203,7 @@ class SqlJournal:
 
     def report(self) -> DatabaseReport:
         """From what the last attempts showed; asks nobody."""
-        waiting = len(self._pending)
-        if self._fault is not None and not self._answers:
-            return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
-        if waiting or self._fault is not None or self._took_s > self._slow_s:
-            return DatabaseReport("slow", DatabaseSlow(self._took_s), waiting, self._refused)
-        if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:
-            return DatabaseReport("slow", DiskLow(self._disk_free_bytes), 0, self._refused)
-        return DatabaseReport("ok", None, 0, self._refused)
+        return self._delivery.report()
 
     async def close(self) -> None:
         """Wait for appends that run; what is spooled stays on disk for the next start."""
@@ -385,6 +236,10 @@ class SqlJournal:
         """All missions, newest first."""
         return await self._stored.missions()
 
+    async def page(self, most: int, before: PlaceInList | None = None, named: str = "") -> list[MissionDigest]:
+        """A part of them, for a list that may hold thousands; see StoredFacts.page."""
+        return await self._stored.page(most, before, named)
+
     async def of_nets(self) -> list[Recorded]:
         """Of the newest missions, oldest first: who flies a hundred missions puts the nets of the first back before."""
         newest = (await self._patiently(self._stored.missions))[:NETS_MISSIONS]
@@ -402,7 +257,7 @@ class SqlJournal:
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         """Also one that still waits in the spool; None for an unknown one."""
-        for waiting in self._pending:
+        for waiting in self._delivery.waiting:
             if isinstance(waiting, SweepEntry) and (waiting.mission_id, waiting.sweep_id) == (mission_id, sweep_id):
                 return waiting
         return await self._stored.sweep(mission_id, sweep_id)

@@ -15,6 +15,7 @@ from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
 from backend.store.reading import why
+from backend.store.retention import keep_thin
 from backend.store.spool import Spool, SpoolForeign, SpoolTaken, claim
 from planner.reason import ReasonedError
 
@@ -32,15 +33,18 @@ class DatabaseUnusable(ReasonedError, RuntimeError):
 async def open_journal(settings: Settings, now: Callable[[], float]) -> AsyncGenerator[SqlJournal]:
     """`now`: UTC epoch seconds of the mission's clock, stamped on every event. Raises DatabaseUnusable."""
     url = settings.async_database_url
-    with _claimed(url):
+    with claimed(url):
         async with _opened(settings, url, now) as journal:
             yield journal
 
 
 @contextmanager
-def _claimed(url: str) -> Generator[None]:
-    """One server an SQLite file: two would fly and record the same mission. (A stale lock in PostgreSQL could keep a
-    server out that restarts in flight; there the journal finds a second writer by its sequence numbers.)"""
+def claimed(url: str) -> Generator[None]:
+    """One server an SQLite file: two would fly and record the same mission. Raises DatabaseUnusable.
+
+    (A stale lock in PostgreSQL could keep a server out that restarts in flight; there the journal finds a second writer
+    by its sequence numbers.)
+    """
     database = make_url(url).database
     if make_url(url).get_backend_name() != "sqlite" or not database or database == ":memory:":
         yield
@@ -71,21 +75,24 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
         raise DatabaseUnusable(ForeignSpool(str(settings.spool_path))) from error
     except (DBAPIError, OSError, ValueError) as error:
         raise DatabaseUnusable(DatabaseUnfit(shown, why(error))) from error
+    engine = make_engine(url, settings.database_timeout_s)
     journal = SqlJournal(
-        make_engine(url, settings.database_timeout_s),
+        engine,
         spool,
         now,
         timeout_s=settings.database_timeout_s,
         slow_s=settings.database_slow_s,
         disk_low_bytes=settings.disk_low_bytes,
     )
-    watch: asyncio.Task[None] | None = None
+    beside: list[asyncio.Task[None]] = []
     try:
         await journal.start_up()
-        watch = asyncio.create_task(journal.run())
+        beside.append(asyncio.create_task(journal.run()))
+        if settings.keep_sweeps_days is not None:
+            beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days)))
         yield journal
     finally:
-        if watch is not None:
-            watch.cancel()
-            await asyncio.gather(watch, return_exceptions=True)
+        for task in beside:
+            task.cancel()
+        await asyncio.gather(*beside, return_exceptions=True)
         await journal.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import Executable, exc, select
@@ -16,6 +17,14 @@ from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sw
 from backend.store.patience import patience
 from backend.store.tables import events, missions, sweeps, tracks
 from backend.store.upgrade import OF_A_SWEEP, kinds_of_old
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceInList:
+    """Of a mission in the list, the last drafted first."""
+
+    drafted_at_us: int
+    mission_id: str
 
 
 class StoredFacts:
@@ -48,6 +57,17 @@ class StoredFacts:
         """The last drafted first."""
         rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
         return [MissionDigest(**row._mapping) for row in rows]
+
+    async def page(self, most: int, before: PlaceInList | None, named: str) -> list[MissionDigest]:
+        """The next missions of the same list. before: the last one known, None for the first page. named: a part of
+        their name, "" for all."""
+        query = select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id).limit(most)
+        if before is not None:
+            at, later = missions.c.drafted_at_us, missions.c.mission_id > before.mission_id
+            query = query.where((at < before.drafted_at_us) | ((at == before.drafted_at_us) & later))
+        if named:
+            query = query.where(missions.c.name.icontains(named, autoescape=True))
+        return [MissionDigest(**row._mapping) for row in await self._fetch(query)]
 
     async def unfinished(self) -> list[MissionDigest]:
         """Started, and not ended or with a craft still in the air."""

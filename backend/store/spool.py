@@ -11,6 +11,7 @@ from __future__ import annotations
 import fcntl
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 from backend.reasons.storage import ForeignSpool
@@ -41,6 +42,36 @@ def claim(fd: int, patience_s: float) -> None:
             if time.monotonic() >= until:
                 raise SpoolTaken from None
             time.sleep(0.05)
+
+
+def entries_beside(path: Path) -> list[bytes]:
+    """What a spool holds that another process owns, oldest first; empty where there is none. Raises SpoolForeign.
+
+    Read while it is written to, it is what was there at one moment or a part of it that has been stored since.
+    """
+    try:
+        fd = os.open(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return []
+    try:
+        header = os.pread(fd, HEADER.size, 0)
+        magic, generation = HEADER.unpack(header) if len(header) == HEADER.size else (b"", 0)
+        if magic != MAGIC:
+            raise SpoolForeign(ForeignSpool(str(path)))
+        return list(_records(fd, generation))
+    finally:
+        os.close(fd)
+
+
+def _records(fd: int, generation: int) -> Iterator[bytes]:
+    end = HEADER.size
+    while len(head := os.pread(fd, RECORD.size, end)) == RECORD.size:
+        length, crc = RECORD.unpack(head)
+        payload = os.pread(fd, length, end + RECORD.size)
+        if length == 0 or len(payload) < length or crc != crc_of(generation, payload):
+            return
+        yield payload
+        end += RECORD.size + length
 
 
 class Spool:
@@ -74,20 +105,9 @@ class Spool:
         os.fsync(self._fd)
 
     def _scan(self) -> list[bytes]:
-        found: list[bytes] = []
-        while True:
-            head = os.pread(self._fd, RECORD.size, self._end)
-            if len(head) < RECORD.size:
-                return found
-            length, crc = RECORD.unpack(head)
-            payload = os.pread(self._fd, length, self._end + RECORD.size)
-            if length == 0 or len(payload) < length or crc != self._crc(payload):
-                return found
-            found.append(payload)
-            self._end += RECORD.size + length
-
-    def _crc(self, payload: bytes) -> int:
-        return crc_of(self._generation, payload)
+        found = list(_records(self._fd, self._generation))
+        self._end = HEADER.size + sum(RECORD.size + len(payload) for payload in found)
+        return found
 
     def entries(self) -> list[bytes]:
         """What is kept, oldest first."""
@@ -95,7 +115,7 @@ class Spool:
 
     def append(self, payload: bytes) -> None:
         """Durable when it returns. Raises SpoolFull; what was kept before stays intact."""
-        record = RECORD.pack(len(payload), self._crc(payload)) + payload
+        record = RECORD.pack(len(payload), crc_of(self._generation, payload)) + payload
         try:
             written = os.pwrite(self._fd, record, self._end)
             if written < len(record):

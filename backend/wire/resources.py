@@ -27,12 +27,14 @@ DatabaseState = Literal["ok", "slow", "lost"]
 
 
 class DatabaseHealth(Model):
-    """`reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back."""
+    """`reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. `refused`: entries
+    that it will never take, kept in a file."""
 
     state: DatabaseState
     kind: Literal["sqlite", "postgresql"]
     reason: Reason | None
     spooled: int
+    refused: int
 
 
 class VehicleHealth(Model):
@@ -45,7 +47,8 @@ class VehicleHealth(Model):
 
 
 class Health(Model):
-    """ok: everything answers; degraded: the server works, a part it needs does not."""
+    """ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
+    system does not say. keep_sweeps_days: of missions that are over; None for ever."""
 
     state: Literal["ok", "degraded"]
     version: str
@@ -53,6 +56,8 @@ class Health(Model):
     database: DatabaseHealth
     vehicles: list[VehicleHealth]
     viewers: int
+    disk_free_bytes: int | None
+    keep_sweeps_days: float | None
     simulated: bool
     time_factor: float
 
@@ -135,9 +140,10 @@ class Mission(MissionSummary):
 
 
 class MissionList(Model):
-    """Newest first."""
+    """Newest first. next: what `after` asks for the missions that follow, None when these are the last."""
 
     missions: list[MissionSummary]
+    next: str | None
 
 
 class PreflightReply(Model):
@@ -319,6 +325,17 @@ class PatternUpload(Model):
 
     text: str = Field(min_length=1, max_length=500_000)
     filename: str = Field(min_length=1, max_length=255)
+
+
+class AntennaReview(Model):
+    """What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
+    what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
+    measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is."""
+
+    sweeps: int
+    repeats_db: float | None
+    doubt: Reason | None
+    proposed: PatternUpload | None
 
 
 class WhatIfRequest(Model):

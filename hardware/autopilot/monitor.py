@@ -53,7 +53,7 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (30, 20.0),  # ATTITUDE
     (33, 10.0),  # GLOBAL_POSITION_INT
     (245, 5.0),  # EXTENDED_SYS_STATE
-    (24, 5.0),  # GPS_RAW_INT: a lost fix is told within half a second
+    (24, 5.0),  # GPS_RAW_INT: a lost fix is noticed within half a second
     (1, 2.0),  # SYS_STATUS
     (230, 2.0),  # ESTIMATOR_STATUS (PX4)
     (193, 2.0),  # EKF_STATUS_REPORT (ArduPilot)

@@ -88,7 +88,7 @@ class Snapshot:
 
     @property
     def reboots(self) -> int:
-        """How often the autopilot's time since boot began anew while we listened."""
+        """How often the autopilot's time since boot started again while we listened."""
         return self._boot_clock.reboots
 
     @property

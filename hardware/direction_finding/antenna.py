@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,13 @@ from hardware.reasons.pattern import PatternOfOtherFrequency
 OTHER_FREQUENCY = 0.1
 """A pattern says little about a frequency that differs by a larger share from its own."""
 
+UNCHECKED_SQUINT_DEG = 6.0
+"""An antenna that nobody checked on its vehicle may point 10 degrees beside where it should: within two of these."""
+BORROWED_SQUINT_DEG = 9.0
+"""The same when not even the antenna is the one that was measured."""
+UNEVEN_FLANKS = 0.05
+"""What flanks of uneven width move a bearing by, standard deviation over the 3 dB beam width."""
+
 
 @dataclass(frozen=True, slots=True)
 class AntennaPattern:
@@ -20,6 +28,8 @@ class AntennaPattern:
     relative_bearing_deg: (n,), ascending in [0, 360), clockwise seen from above, 0 = the antenna's front.
     gain_db: (n,) gain at those angles; interpolated linearly in dB around the circle.
     offset_to_nose_deg: the antenna's front points this far clockwise of the vehicle's nose.
+    pointing_sigma_deg: what bearings found with it are uncertain by together, measured on the vehicle; None: not
+    measured. borrowed: of another antenna than the one that flies, as far as anybody said.
     """
 
     name: str
@@ -29,6 +39,22 @@ class AntennaPattern:
     frequency_hz: float | None = None
     polarization: str | None = None
     measured_on: str | None = None
+    pointing_sigma_deg: float | None = None
+    borrowed: bool = False
+
+    @property
+    def beam_deg(self) -> float:
+        """Width of everything within 3 dB of the maximum."""
+        gain = self.gain_at(np.arange(0.0, 360.0, 0.5))
+        return 0.5 * float(np.sum(gain > gain.max() - 3.0))
+
+    @property
+    def mismatch_sigma_deg(self) -> float:
+        """What bearings found with this pattern may be off by together, in degrees: no single sweep can show it."""
+        if self.pointing_sigma_deg is not None and not self.borrowed:
+            return self.pointing_sigma_deg
+        squint = BORROWED_SQUINT_DEG if self.borrowed else UNCHECKED_SQUINT_DEG
+        return math.hypot(squint, UNEVEN_FLANKS * self.beam_deg)
 
     def gain_at(self, relative_bearing_deg: NDArray[np.float64]) -> NDArray[np.float64]:
         """Gain in dB at any relative bearings (degrees, any shape)."""

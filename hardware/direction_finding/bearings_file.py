@@ -20,13 +20,17 @@ _SIGMA = ("sigma_deg", "sigma", "std_deg")
 
 @dataclass(frozen=True, slots=True)
 class RecordedBearing:
-    """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file."""
+    """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file.
+
+    stated: whether the file gives its sigma.
+    """
 
     line: int
     place: Place
     bearing_deg: float
     sigma_deg: float
     tag: str | None = None
+    stated: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +107,11 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
             return table.cell_unusable(row, column, quantity)
         values.append(value)
     lat, lon, bearing = values
-    sigma = default_sigma_deg
+    sigma, given = default_sigma_deg, False
     if columns.sigma is not None and columns.sigma < len(row.cells) and row.cells[columns.sigma]:
         stated = row.number(columns.sigma)
         if stated is None or not 0.0 < stated <= 180.0:
             return table.cell_unusable(row, columns.sigma, "sigma")
-        sigma = stated
+        sigma, given = stated, True
     tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
-    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None)
+    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None, given)

@@ -33,6 +33,9 @@ FEWEST_SAMPLES = 72
 """One a step, all the way round."""
 NEAREST_M = 15.0
 """Nearer to the emitter its direction is too uncertain (a metre of GPS error is four degrees)."""
+POINTING_FLOOR_DEG = 1.0
+FEW_SWEEPS_POINTING_DEG = 3.0
+"""Fewer than three sweeps do not show by how much each points elsewhere."""
 WORN_OFF_DB = 6.0
 ALLOWED_OFFSET_DEG = 10.0
 DEAD_RANGE_DB = 4.0
@@ -108,10 +111,28 @@ def calibrate(sweeps: Sequence[Sweep], emitter: Place, name: str, polarization: 
             (offset + 180.0) % 360.0 - 180.0,
             float(np.median([s.frequency_hz for s in sweeps])) or None,
             polarization,
+            pointing_sigma_deg=_pointing_sigma_deg(relative, gain[heard], angles, powers),
         )
     except PatternError as error:
         raise CalibrationError(error.reason) from error
     return Calibration(pattern, residual, len(angles), samples)
+
+
+def _pointing_sigma_deg(
+    relative_deg: NDArray[np.float64],
+    gain_db: NDArray[np.float64],
+    angles_deg: list[NDArray[np.float64]],
+    powers_db: list[NDArray[np.float64]],
+) -> float:
+    """How far the sweeps point beside the pattern they make together, standard deviation: by least squares each."""
+    if len(angles_deg) < 3:
+        return FEW_SWEEPS_POINTING_DEG
+    shift = np.arange(-30.0, 30.1, 0.5)
+    beside: list[float] = []
+    for angle, power in zip(angles_deg, powers_db, strict=True):
+        residual = power - np.interp(np.add.outer(shift, angle), relative_deg, gain_db, period=360.0)
+        beside.append(float(shift[int(np.argmin(np.var(residual, axis=1)))]))
+    return max(float(np.std(beside, ddof=1)), POINTING_FLOOR_DEG)
 
 
 def _front_deg(relative_deg: NDArray[np.float64], gain_db: NDArray[np.float64]) -> float:

@@ -9,7 +9,7 @@ bound exists; the simulated world of hardware/sim has physics of its own and is 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +61,11 @@ def beam(width_deg: float, floor_db: float = 12.0) -> AntennaPattern:
     angle = np.linspace(0.0, 359.0, 360)
     off = (angle + 180.0) % 360.0 - 180.0
     return make_pattern(f"{width_deg:g} deg beam", angle, -np.minimum(12.0 * (off / width_deg) ** 2, floor_db))
+
+
+def known_right(pattern: AntennaPattern) -> AntennaPattern:
+    """The pattern of the very antenna that hears: here the bound is compared with, not what mismatch adds."""
+    return replace(pattern, pointing_sigma_deg=0.0)
 
 
 def deviation_db(condition: Condition, gain_db: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -178,7 +183,7 @@ class Compared:
 def compare(condition: Condition, sweeps: int, seed: int) -> dict[str, Compared]:
     """The same sweeps through every finder."""
     rng = np.random.default_rng(seed)
-    pattern = beam(condition.beam_deg)
+    pattern = known_right(beam(condition.beam_deg))
     truths = [float(b) for b in rng.uniform(0.0, 360.0, sweeps)]
     made = [simulate(condition, pattern, truth, rng) for truth in truths]
     readings = {
@@ -195,7 +200,7 @@ def reliability(sweeps: int, seed: int) -> list[tuple[float, float, int]]:
     pairs: list[tuple[float, float]] = []
     finder = SparseDirectionFinder()
     for condition in CONDITIONS:
-        pattern = beam(condition.beam_deg)
+        pattern = known_right(beam(condition.beam_deg))
         for truth in rng.uniform(0.0, 360.0, sweeps):
             reading = finder.estimate(simulate(condition, pattern, float(truth), rng), pattern)
             error = (reading.bearing_deg - truth + 180.0) % 360.0 - 180.0

@@ -1,7 +1,8 @@
 """The direction finder: sparse reconstruction finds the directions, a pattern fit between the columns sharpens them.
 
 Steps: bin (sweep.py) -> reject what no method can use -> sparse non-negative reconstruction on linear power (sparse.py)
--> components -> posterior around the strongest, in decibels, echoes and look-down considered (refine.py) -> quality.
+-> components -> posterior around the strongest, in decibels, echoes and look-down considered (refine.py)
+-> another antenna than the pattern's considered (other_antenna.py) -> likelihood all round (circle.py), quality.
 
 Units of the sparse problem: linear power above the noise floor. Both the columns of A and m are scaled to unit norm
 over a full turn, so lambda = 0.3 has one meaning whatever the signal level, pattern or number of empty bins: a
@@ -18,6 +19,8 @@ from numpy.typing import NDArray
 
 from hardware.direction_finding.alternatives import Alternatives
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.circle import SweepLikelihood, sweep_likelihood
+from hardware.direction_finding.other_antenna import OtherAntenna, other_antenna
 from hardware.direction_finding.refine import PatternCurve, Refined, refine
 from hardware.direction_finding.sparse import COLUMN_DEG, COLUMNS, PatternBank, solve_sparse
 from hardware.direction_finding.sweep import BINS, IMPLAUSIBLE_DB, BinnedSweep, bin_sweep
@@ -26,11 +29,14 @@ from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import (
     ConstantPower,
     DirectionInGap,
+    LikelyOtherAntenna,
     NoDirection,
     NothingAboveNoise,
     Overdriven,
+    PatternBorrowed,
     PowerNotNumbers,
     SweepReason,
+    SweepRemark,
     TooFewDirections,
     TurnIncomplete,
     UnlikeAntenna,
@@ -39,12 +45,19 @@ from hardware.reasons.sweep import (
 PENALTY = 0.3
 MINIMUM_QUALITY = 0.7
 MINIMUM_BINS = 8
-MAXIMUM_GAP_DEG = 100.0
+MAXIMUM_GAP_DEG = 120.0
+"""Three quarters of a turn in slices of 22.5 degrees leave a gap of 112.5."""
+MAXIMUM_GAP_SIGMA_DEG = 25.0
+"""A bearing into a gap is used when what was heard beside the gap says it better than this."""
 MAXIMUM_CLIPPED = 0.05
 HEARD_DB = 3.0
 """Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
 MAXIMUM_SIGMA_DEG = 60.0
+OTHER_ODDS = 3.0
+"""Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
+OTHER_ODDS_BORROWED = 8.0
+OTHER_ODDS_CHECKED = 0.05
 EMITTER_AWAY_M = 100.0
 """How far away an emitter is taken to be when a place that is not sure is made an angle: the planner's places lie 50 to
 150 m from where it looks."""
@@ -63,7 +76,8 @@ class SparseDirectionFinder:
     """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices.
 
     Added in quadrature to the sweep's own sigma, since no sweep can show it: heading_sigma_deg, what the vehicle's
-    heading is uncertain by, and atan(drift / 100 m), what the uncertain place makes of it.
+    heading is uncertain by, the pattern's mismatch_sigma_deg, what its antenna may point beside by, and
+    atan(drift / 100 m), what the uncertain place makes of it.
     """
 
     minimum_quality: float = MINIMUM_QUALITY
@@ -91,7 +105,8 @@ class SparseDirectionFinder:
         refined = refine(curve, alternatives, binned, parts[0].bearing_deg, noise_db)
         if noise_db is not None and np.max(refined.fitted_db) < noise_db + HEARD_DB:
             return refused(binned, NothingAboveNoise(HEARD_DB))
-        return self._reading(curve, binned, parts, refined, noise_db, sweep.drift_m)
+        other = other_antenna(alternatives, binned, refined.bearing_deg, refined.peak_db, refined.fitted_db, noise_db)
+        return self._reading(pattern, curve, binned, parts, refined, other, noise_db, sweep.drift_m)
 
     def _prepare(self, pattern: AntennaPattern) -> tuple[PatternBank, PatternCurve, Alternatives]:
         key = pattern.relative_bearing_deg.tobytes() + pattern.gain_db.tobytes()
@@ -103,16 +118,24 @@ class SparseDirectionFinder:
 
     def _reading(
         self,
+        pattern: AntennaPattern,
         curve: PatternCurve,
         binned: BinnedSweep,
         parts: list[Component],
         refined: Refined,
+        other: OtherAntenna | None,
         noise_db: float | None,
         drift_m: float,
     ) -> BearingReading:
         place_sigma_deg = math.degrees(math.atan2(drift_m, EMITTER_AWAY_M))
-        bearing = refined.bearing_deg
-        sigma = math.hypot(refined.sigma_deg, self.heading_sigma_deg, place_sigma_deg)
+        probability = 0.0 if other is None else other_probability(other, pattern)
+        bearing, own_sigma = _of_both(refined, other, probability)
+        likelihood = sweep_likelihood(refined.circle, other, probability)
+        beyond = (bearing - binned.gap_start_deg) % 360.0
+        in_gap = binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg
+        if in_gap:
+            own_sigma = max(own_sigma, likelihood.spread_deg(bearing))
+        sigma = math.hypot(own_sigma, self.heading_sigma_deg, pattern.mismatch_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
         peaks = tuple(
             BearingPeak(p.bearing_deg, min(p.weight / parts[0].weight, 1.0))
@@ -120,10 +143,9 @@ class SparseDirectionFinder:
             if p.weight >= MINIMUM_PEAK_WEIGHT * parts[0].weight
         )
         reason: SweepReason | None = None
-        beyond = (bearing - binned.gap_start_deg) % 360.0
         if quality < self.minimum_quality:
             reason = UnlikeAntenna(quality, self.minimum_quality)
-        elif binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg:
+        elif in_gap and own_sigma > MAXIMUM_GAP_SIGMA_DEG:
             reason = DirectionInGap(binned.largest_gap_deg)
         elif sigma > MAXIMUM_SIGMA_DEG:
             reason = NoDirection()
@@ -131,6 +153,7 @@ class SparseDirectionFinder:
             bearing_deg=bearing % 360.0,
             sigma_deg=min(sigma, 180.0),
             heading_sigma_deg=self.heading_sigma_deg,
+            pattern_sigma_deg=pattern.mismatch_sigma_deg,
             quality=quality,
             accepted=reason is None,
             reason=reason,
@@ -138,7 +161,39 @@ class SparseDirectionFinder:
             binned_db=binned.power_db,
             fitted_db=refined.fitted_db,
             snr_db=None if noise_db is None else refined.peak_db - noise_db,
+            remarks=remarks_on(pattern, probability),
+            likelihood=_with_place(likelihood, place_sigma_deg).packed(),
         )
+
+
+def other_probability(other: OtherAntenna, pattern: AntennaPattern) -> float:
+    """Posterior of another antenna: Bayes' rule with the odds that the pattern's origin leaves."""
+    checked = OTHER_ODDS if pattern.pointing_sigma_deg is None else OTHER_ODDS_CHECKED
+    prior = math.log(OTHER_ODDS_BORROWED if pattern.borrowed else checked)
+    return 1.0 / (1.0 + math.exp(-min(max(other.log_odds + prior, -50.0), 50.0)))
+
+
+def remarks_on(pattern: AntennaPattern, other: float) -> tuple[SweepRemark, ...]:
+    """other: probability of another antenna."""
+    borrowed = (PatternBorrowed(pattern.name),) if pattern.borrowed else ()
+    return (*borrowed, *((LikelyOtherAntenna(pattern.name, other),) if other > 0.5 else ()))
+
+
+def _of_both(refined: Refined, other: OtherAntenna | None, probability: float) -> tuple[float, float]:
+    """(bearing of the likelier antenna, spread of both about it)."""
+    if other is None:
+        return refined.bearing_deg, refined.sigma_deg
+    apart = (other.bearing_deg - refined.bearing_deg + 180.0) % 360.0 - 180.0
+    chosen, to_known, to_other = (
+        (other.bearing_deg, apart, 0.0) if probability > 0.5 else (refined.bearing_deg, 0.0, apart)
+    )
+    known, another = refined.sigma_deg**2 + to_known**2, other.sigma_deg**2 + to_other**2
+    return chosen, math.sqrt((1.0 - probability) * known + probability * another)
+
+
+def _with_place(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:
+    """Convolved with what the uncertain place makes of it."""
+    return likelihood if sigma_deg < 0.5 else likelihood.blurred(sigma_deg)
 
 
 def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:

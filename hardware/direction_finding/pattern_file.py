@@ -3,14 +3,18 @@
 The JSON format (one object):
     {"format": "crossfix antenna pattern", "name": "...", "unit": "dB" | "dBi" | "linear power",
      "frequency_hz": 868300000 | null, "polarization": "vertical" | null, "measured_on": "2026-05-01" | null,
-     "offset_to_nose_deg": 0, "relative_bearing_deg": [0, 10, ...], "gain": [9.4, 9.3, ...]}
+     "offset_to_nose_deg": 0, "pointing_sigma_deg": 1.5 | null, "relative_bearing_deg": [0, 10, ...],
+     "gain": [9.4, 9.3, ...]}
 Angles: degrees clockwise from the antenna's front seen from above. The absolute level does not matter.
+pointing_sigma_deg: what bearings found with the pattern are uncertain by together, measured with the antenna on its
+vehicle (`crossfix calibrate` writes it); without it the antenna may point 10 degrees beside where it should.
 """
 
 from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
@@ -38,6 +42,7 @@ MINIMUM_POINTS = 8
 MAXIMUM_GAP_DEG = 60.0
 MINIMUM_DIRECTIVITY_DB = 3.0
 MAXIMUM_DIRECTIVITY_DB = 200.0
+MAXIMUM_POINTING_SIGMA_DEG = 90.0
 
 
 class PatternError(ReasonedError):
@@ -61,6 +66,7 @@ def make_pattern(
     frequency_hz: float | None = None,
     polarization: str | None = None,
     measured_on: str | None = None,
+    pointing_sigma_deg: float | None = None,
 ) -> AntennaPattern:
     """A checked pattern: angles taken modulo 360 and sorted. Raises PatternError."""
     angle = np.asarray(relative_bearing_deg, dtype=np.float64) % 360.0
@@ -83,12 +89,21 @@ def make_pattern(
         raise PatternError(ImplausibleGains(name, "small", MINIMUM_DIRECTIVITY_DB))
     if np.ptp(gain) > MAXIMUM_DIRECTIVITY_DB:
         raise PatternError(ImplausibleGains(name, "large", MAXIMUM_DIRECTIVITY_DB))
-    return AntennaPattern(name, angle, gain, float(offset_to_nose_deg), frequency_hz, polarization, measured_on)
+    if pointing_sigma_deg is not None and not 0.0 <= pointing_sigma_deg <= MAXIMUM_POINTING_SIGMA_DEG:
+        raise PatternError(NotAPattern(name, "numbers"))
+    return AntennaPattern(
+        name, angle, gain, float(offset_to_nose_deg), frequency_hz, polarization, measured_on, pointing_sigma_deg
+    )
 
 
 def load_pattern(path: Path | str) -> AntennaPattern:
     """Read a JSON pattern, or a turntable table (.csv, see `read_turntable`). Raises PatternError."""
     return parse_pattern(str(path), _text_of(path))
+
+
+def borrowed_pattern() -> AntennaPattern:
+    """The small Yagi that ships, for whoever has no pattern of their own: it says that it is another antenna's."""
+    return replace(load_pattern(SMALL_YAGI), borrowed=True)
 
 
 def parse_pattern(filename: str, text: str) -> AntennaPattern:
@@ -125,6 +140,7 @@ def _from_json(filename: str, parsed: object) -> AntennaPattern:
         gain = np.array(data["gain"], dtype=np.float64)
         offset = float(data.get("offset_to_nose_deg", 0.0))
         frequency = None if data.get("frequency_hz") is None else float(data["frequency_hz"])
+        pointing = None if data.get("pointing_sigma_deg") is None else float(data["pointing_sigma_deg"])
     except (TypeError, ValueError, OverflowError) as error:
         raise PatternError(NotAPattern(filename, "numbers")) from error
     return make_pattern(
@@ -135,6 +151,7 @@ def _from_json(filename: str, parsed: object) -> AntennaPattern:
         frequency,
         data.get("polarization"),
         data.get("measured_on"),
+        pointing,
     )
 
 
@@ -148,8 +165,8 @@ def _to_db(filename: str, gain: NDArray[np.float64], unit: str) -> NDArray[np.fl
     raise PatternError(PatternUnitUnknown(filename, unit))
 
 
-def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
-    """Write the JSON format above, unit dB."""
+def pattern_json(pattern: AntennaPattern) -> str:
+    """The JSON format above, unit dB."""
     data = {
         "format": FORMAT,
         "name": pattern.name,
@@ -158,11 +175,17 @@ def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
         "polarization": pattern.polarization,
         "measured_on": pattern.measured_on,
         "offset_to_nose_deg": pattern.offset_to_nose_deg,
+        "pointing_sigma_deg": pattern.pointing_sigma_deg,
         "relative_bearing_deg": [round(float(a), 3) for a in pattern.relative_bearing_deg],
         "gain": [round(float(g), 3) for g in pattern.gain_db],
     }
     rows = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items())
-    Path(path).write_text("{\n" + rows + "\n}\n", encoding="utf-8")
+    return "{\n" + rows + "\n}\n"
+
+
+def save_pattern(pattern: AntennaPattern, path: Path | str) -> None:
+    """Write `pattern_json` to a file."""
+    Path(path).write_text(pattern_json(pattern), encoding="utf-8")
 
 
 def read_turntable(path: Path | str, unit: str = "dB", offset_to_nose_deg: float = 0.0) -> AntennaPattern:

@@ -53,6 +53,8 @@ _FADING_GRID = np.array([0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 _FADING_EVIDENCE = 2.0
 """Fading is believed when it lowers -2 log likelihood by more than this."""
 _FINE_DEG = 0.25
+COARSE_DEG = 5.0
+LEAST_DENSITY = 1e-12
 _DB = 10.0 / np.log(10.0)
 _STEP_DEG = 0.5
 
@@ -89,7 +91,7 @@ class Refined:
     """bearing_deg, sigma_deg: of the direct wave. peak_db: its power where the antenna is strongest, without noise.
 
     fitted_db: (180,) the likeliest alternative at the bins' centres. kinds: probability of one wave alone, of an echo
-    besides, of a view from above.
+    besides, of a view from above. circle: log density of the bearing, all round.
     """
 
     bearing_deg: float
@@ -97,6 +99,20 @@ class Refined:
     peak_db: float
     fitted_db: NDArray[np.float64]
     kinds: tuple[float, ...]
+    circle: CircleDensity
+
+
+@dataclass(frozen=True, slots=True)
+class CircleDensity:
+    """Log density of the bearing over all shapes, unnormalized: every 5 degrees all round, and finely near the bearing.
+
+    coarse_deg, coarse_log: (72,). fine_deg, fine_log: (j,) ascending, 0.25 degrees apart, about the bearing.
+    """
+
+    coarse_deg: NDArray[np.float64]
+    coarse_log: NDArray[np.float64]
+    fine_deg: NDArray[np.float64]
+    fine_log: NDArray[np.float64]
 
 
 def refine(
@@ -116,7 +132,15 @@ def refine(
     look = grid.look(templates, k, place, _weights(look))
     templates = _Templates(alternatives, level_db + look.shift_db, noise_db)
     weight = _weights(look)
-    return _posterior(alternatives, templates, grid, look, weight, grid.cost(templates, weight))
+    circle = _Grid(binned, np.arange(0.0, 360.0, COARSE_DEG))
+    return _posterior(
+        alternatives,
+        templates,
+        grid,
+        look,
+        weight,
+        (grid.cost(templates, weight), circle.bearing_deg, circle.cost(templates, weight)),
+    )
 
 
 def profile_minimum(curve: PatternCurve, binned: BinnedSweep, bearing_deg: float, noise_db: float | None) -> float:
@@ -240,19 +264,29 @@ def _posterior(
     grid: _Grid,
     look: _Look,
     weight: NDArray[np.float64],
-    cost: NDArray[np.float64],
+    costs: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
 ) -> Refined:
+    """costs: (k, j) on the grid; (72,) bearings all round and (k, 72) there."""
     from scipy.interpolate import CubicSpline  # a seventh of a server's start, and only sweeps need it
 
     shape, turn = _alike(grid.heading_deg, look, weight)
+    cost, around_deg, cost_around = costs
     least = cost.min(axis=1, keepdims=True)
     score = alternatives.log_prior[:, None]
     score = score - 0.5 * max(grid.size / max(shape, turn), FEWEST_FREE) * np.log(least)
-    score = score - 0.5 * max(grid.size / turn, FEWEST_FREE) * np.log(cost / least)
+    by_bearing = 0.5 * max(grid.size / turn, FEWEST_FREE)
+    all_round = score - by_bearing * np.log(cost_around / least)
+    score = score - by_bearing * np.log(cost / least)
     kept = np.flatnonzero(score.max(axis=1) > score.max() - NEGLIGIBLE)
     off = grid.bearing_deg - grid.bearing_deg[0]
     fine = np.arange(0.0, off[-1] + 1e-9, _FINE_DEG)
     mass = np.exp(CubicSpline(off, score[kept].T)(fine) - score.max())
+    density = CircleDensity(
+        around_deg,
+        np.log(np.sum(np.exp(all_round - score.max()), axis=0) + LEAST_DENSITY),
+        grid.bearing_deg[0] + fine,
+        np.log(mass.sum(axis=1) + LEAST_DENSITY),
+    )
     mass /= mass.sum()
     kinds = tuple(float(mass[:, alternatives.kind[kept] == kind].sum()) for kind in range(KINDS))
     likeliest = mass[:, alternatives.kind[kept] == int(np.argmax(kinds))].sum(axis=1)
@@ -266,6 +300,7 @@ def _posterior(
         templates.level_db + shift_db,
         _drawn(templates, k, float(grid.bearing_deg[place]), shift_db),
         kinds,
+        density,
     )
 
 

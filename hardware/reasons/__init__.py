@@ -14,7 +14,7 @@ from hardware.reasons.preflight import PreflightReason
 from hardware.reasons.radio import RadioReason
 from hardware.reasons.receiver import ReceiverReason
 from hardware.reasons.simulation import SimulationReason
-from hardware.reasons.sweep import SweepReason
+from hardware.reasons.sweep import SweepReason, SweepRemark
 from hardware.reasons.table import TableReason
 from hardware.reasons.vehicle import VehicleReason
 from hardware.reasons.vehicle_news import VehicleNews
@@ -27,6 +27,7 @@ HardwareReason = (
     | PayloadLinkReason
     | SimulationReason
     | SweepReason
+    | SweepRemark
     | AntennaReason
     | PatternReason
     | TableReason
@@ -55,6 +56,7 @@ __all__ = [
     "RecordingReason",
     "SimulationReason",
     "SweepReason",
+    "SweepRemark",
     "TableReason",
     "VehicleNews",
     "VehicleReason",

@@ -104,8 +104,25 @@ class NoMagneticModel:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class NotTheMeasuredAntenna:
+    """name: of the pattern. repeats_db: what the sweeps deviate from it by alike. sweeps: how many show it."""
+
+    name: str
+    repeats_db: float
+    sweeps: int
+    code: Literal["not_the_measured_antenna"] = "not_the_measured_antenna"
+
+    english: ClassVar[Words] = Words(
+        "This is not the antenna that was measured: {sweeps} sweeps deviate from the pattern {name} by {repeats_db:1} "
+        "in the same way.",
+        "Check which antenna is mounted and how, or take over the proposed pattern.",
+    )
+
+
 AntennaReason = (
     AntennaAgrees
+    | NotTheMeasuredAntenna
     | EmitterTooNear
     | AntennaDead
     | AntennaUnlikePattern

@@ -161,6 +161,36 @@ class DirectionInGap:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class PatternBorrowed:
+    """name: of the pattern that was used."""
+
+    name: str
+    code: Literal["pattern_borrowed"] = "pattern_borrowed"
+
+    english: ClassVar[Words] = Words(
+        "The bearing was found with the pattern of another antenna ({name}), so it is less certain.",
+        "Measure the pattern of the antenna that flies: crossfix calibrate.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class LikelyOtherAntenna:
+    """probability: that the sweep was heard with another antenna than the pattern's."""
+
+    name: str
+    probability: float
+    code: Literal["likely_other_antenna"] = "likely_other_antenna"
+
+    english: ClassVar[Words] = Words(
+        "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
+        "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
+    )
+
+
+SweepRemark = PatternBorrowed | LikelyOtherAntenna
+"""What makes the bearing of a sweep less certain, without refusing it."""
+
 SweepReason = (
     NothingHeardInTurn
     | NoPulseHeard

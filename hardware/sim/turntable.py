@@ -12,10 +12,18 @@ import math
 import numpy as np
 
 from hardware.direction_finding.antenna import AntennaPattern
-from hardware.direction_finding.pattern_file import SMALL_YAGI, make_pattern, save_pattern
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern, make_pattern, save_pattern
 from hardware.readings import Place
 from hardware.sim.propagation import Fading
 from hardware.sim.world import Emitter, Pose, RadioLink, World
+
+OWN_POINTING_SIGMA_DEG = 0.5
+"""The simulated antenna is mounted as it was measured; its pattern is interpolated between the turntable's steps."""
+
+
+def simulated_antenna() -> AntennaPattern:
+    """The pattern that ships, for the simulated vehicle, on whose antenna it was measured."""
+    return dataclasses.replace(load_pattern(SMALL_YAGI), pointing_sigma_deg=OWN_POINTING_SIGMA_DEG)
 
 
 def measure_pattern(world: World, step_deg: float = 5.0, turns: int = 10) -> AntennaPattern:

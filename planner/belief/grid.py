@@ -171,9 +171,9 @@ def _update_soft(belief: GridBelief, bearing: Bearing) -> GridBelief:
     if not mass > 0:
         raise _no_common_point(belief)
     belief = replace(belief, density=density / mass, bearings=belief.bearings + 1, copies=1)
-    belief = _crop_to(belief, _extent_of(belief, smallest_set(belief, 1.0 - NEGLIGIBLE_MASS)))
+    belief = _crop_to(belief, extent_of(belief, smallest_set(belief, 1.0 - NEGLIGIBLE_MASS)))
     belief = replace(belief, density=belief.density / belief.density.sum())
-    x_min, y_min, x_max, y_max = _extent_of(belief, smallest_set(belief, 0.95))
+    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
     coarse = max(x_max - x_min, y_max - y_min) < (COARSE_CELLS - 0.5) * belief.h
     return _doubled(belief) if coarse and 4 * belief.density.size <= MOST_CELLS else belief
 
@@ -220,7 +220,7 @@ def aligned_range(low: float, high: float, h: float, n: int) -> tuple[int, int]:
     return first, min(max(int(np.ceil(high / h - _ALIGN)), first + 1), n)
 
 
-def _extent_of(belief: GridBelief, cells: BoolArray) -> tuple[float, float, float, float]:
+def extent_of(belief: GridBelief, cells: BoolArray) -> tuple[float, float, float, float]:
     """(x_min, y_min, x_max, y_max) of the marked cells' outer edges."""
     rows, columns = np.flatnonzero(cells.any(axis=1)), np.flatnonzero(cells.any(axis=0))
     x0, y0, h = belief.x0, belief.y0, belief.h

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from planner.belief.estimate import estimate
+from planner.belief.estimate import estimate, mass_within
 from planner.belief.grid import GridBelief
+from planner.belief.joint import JointBelief, corrected
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
 from planner.reasons import (
     CrossingAngleTooSmall,
+    ErrorMayBeFarLarger,
     EstimateContradicted,
     ExpectedErrorTooLarge,
     NoBearingYet,
@@ -20,7 +22,13 @@ from planner.reasons import (
     TooFewPlacesAgree,
     disagreement,
 )
-from planner.types import Bearing, FloatArray, LocalizationRule, Problem, Region, Verdict
+from planner.types import Bearing, Estimate, FloatArray, LocalizationRule, Problem, Region, Verdict
+
+FAR_ERRORS = 3.0
+"""Times the expected error."""
+MOST_BEYOND = 0.02
+"""Probability that the error is larger than that, at a claim by a joint belief. Twice what outliers at their usual rate
+leave of a belief of a few bearings, so that it only stops what is not yet settled."""
 
 
 def verdict(
@@ -28,11 +36,13 @@ def verdict(
 ) -> Verdict:
     """Localized, or why not yet. belief: None when the bearings are inconsistent.
 
+    With a joint belief the bearings are judged as it reads them, freed of the bias of their source.
     Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
     """
-    consistent = belief is not None and wedges_meet(problem.area, bearings)
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
+    bearings = corrected(belief, bearings)
+    consistent = wedges_meet(problem.area, bearings)
     spread = estimate(belief, problem.estimator)
     if not bearings:
         return Verdict(False, consistent, (NoBearingYet(),), spread)
@@ -48,7 +58,16 @@ def verdict(
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
         reasons.append(ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold))
+    elif isinstance(belief, JointBelief):
+        reasons.extend(_tail_reasons(belief, spread))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
+
+
+def _tail_reasons(belief: JointBelief, spread: Estimate) -> list[NotYetReason]:
+    """Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean error says too little."""
+    far = FAR_ERRORS * spread.expected_rmse
+    beyond = 1.0 - mass_within(belief, spread.x, spread.y, far)
+    return [] if beyond <= MOST_BEYOND else [ErrorMayBeFarLarger(100.0 * beyond, 100.0 * MOST_BEYOND, far)]
 
 
 def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:

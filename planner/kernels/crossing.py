@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.compiling import exact, exact_entry
 from planner.geometry import edges
-from planner.kernels.compiling import exact, exact_entry
 from planner.types import FloatArray, Region
 
 FREE, TOUCHES, CROSSES = 0, 1, 2

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from planner.kernels.compiling import entry
+from planner.compiling import entry
 from planner.types import FloatArray
 
 WEDGE = 4.0  # cells further than 4 sigma from the bearing are impossible (thesis 4.3.1)

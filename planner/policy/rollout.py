@@ -16,6 +16,7 @@ from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, DiscreteSelection, Sampling
 from planner.policy.actions import constrained_actions
+from planner.policy.fisher import telling_places
 from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, simulate
 from planner.reasons import (
     BudgetTooSmall,
@@ -37,6 +38,9 @@ SELECTIONS: Mapping[DiscreteSelection, Selection] = {"uniform": uniform, "sequen
 
 PATH_BLOCK = 64
 """Common random paths are drawn in blocks of this size, so that path j does not depend on who needs it first."""
+
+TELLING_SHARE = 0.8
+"""With a joint belief: of the best place's gain, what a place must offer to be compared at all."""
 
 MOST_LOOKS = 16
 """How often uniform allocation stops to see which actions have lost: every call of the kernel costs some time."""
@@ -169,7 +173,7 @@ class Rollout:
         reachable = np.isfinite(simulation.first_actions(places).costs)
         if not reachable.any():
             raise PlannerError(NoPlaceInReach())
-        return places[reachable]
+        return telling_places(problem, belief, places[reachable], TELLING_SHARE)
 
 
 def _decision(places: FloatArray, result: SelectionResult, sampler: RolloutSampler) -> Decision:

@@ -114,6 +114,22 @@ class ExpectedErrorTooLarge:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class ErrorMayBeFarLarger:
+    """beyond_percent: probability that the emitter is further than far_m, three times the expected error, away."""
+
+    beyond_percent: float
+    most_percent: float
+    far_m: float
+    code: Literal["error_may_be_far_larger"] = "error_may_be_far_larger"
+
+    english: ClassVar[Words] = Words(
+        "With {beyond_percent} probability the emitter is more than {far_m} from the estimate, if bearings are wrong "
+        "altogether or by the same angle; at most {most_percent} is tolerated.",
+        "Take another bearing, best from the other side.",
+    )
+
+
 NotYetReason = (
     NoBearingYet
     | TooFewPlaces
@@ -123,6 +139,7 @@ NotYetReason = (
     | BearingsDisagree
     | BearingMissesArea
     | ExpectedErrorTooLarge
+    | ErrorMayBeFarLarger
 )
 
 

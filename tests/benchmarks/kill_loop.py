@@ -42,7 +42,7 @@ DOWN = "ground"
 FLYING = ("taking_off", "planning", "flying", "measuring")
 """The mission in the server's hands: no phase in which one is after a restart."""
 STEERING = (176, 192)
-"""MAV_CMD_DO_SET_MODE, MAV_CMD_DO_REPOSITION: how a vehicle is told to hold."""
+"""MAV_CMD_DO_SET_MODE, MAV_CMD_DO_REPOSITION: the commands that hold a vehicle."""
 LONG_SEARCH = {"localization": {"expected_rmse_m": 1.0, "maximum_bearings": 60}, "planner": {"budget": 400}}
 
 

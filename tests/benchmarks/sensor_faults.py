@@ -27,10 +27,10 @@ from backend.simulation.walls import walls
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.heading_offset import heading_offset
-from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import BearingReading, Place, Sweep
 from hardware.sim.turn import turn_once
+from hardware.sim.turntable import simulated_antenna
 from hardware.sim.world import Emitter, FrontEnd, RadioLink, World
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
@@ -320,7 +320,7 @@ def main() -> None:
     add_out(parser)
     arguments = parser.parse_args()
     begun = begin(__file__)
-    pattern, finder = load_pattern(SMALL_YAGI), SparseDirectionFinder(heading_sigma_deg=arguments.heading_sigma)
+    pattern, finder = simulated_antenna(), SparseDirectionFinder(heading_sigma_deg=arguments.heading_sigma)
     seeds = range(arguments.first_seed, arguments.first_seed + arguments.missions)
     outcomes: dict[Fault, list[Outcome]] = {}
     for fault in (*FAULTS, *UNCOVERED):

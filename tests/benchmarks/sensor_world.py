@@ -19,11 +19,11 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.comparison import Score, paired_deg, score
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import LeastSquaresDirectionFinder
-from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Sweep
 from hardware.sim.propagation import Fading
 from hardware.sim.turn import turn_once
+from hardware.sim.turntable import simulated_antenna
 from hardware.sim.world import Emitter, RadioLink, Reflector, World
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
@@ -141,7 +141,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     add_out(parser)
     arguments = parser.parse_args()
-    begun, pattern, heard = begin(__file__), load_pattern(SMALL_YAGI), dict[Situation, Heard]()
+    begun, pattern, heard = begin(__file__), simulated_antenna(), dict[Situation, Heard]()
     for situation in SITUATIONS:
         print(situation.name, file=sys.stderr, flush=True)
         heard[situation] = heard_at(situation, arguments.sweeps, arguments.seed, pattern)

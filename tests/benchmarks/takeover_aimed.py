@@ -99,7 +99,7 @@ class Trial:
                 amsl = (self.vehicle.telemetry().home_amsl_m or 0.0) + HEIGHT_M
                 leg = asyncio.create_task(self.vehicle.goto(there, amsl, 5.0))
                 try:
-                    await asyncio.wait((leg,), timeout=0.5)  # planned anew before it arrives: many commands
+                    await asyncio.wait((leg,), timeout=0.5)  # the next place comes before it arrives: many commands
                     if leg.done():
                         leg.result()
                 finally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -61,7 +62,7 @@ def test_is_pure(finder: DirectionFinder) -> None:
         {"heading_deg": np.full(HEADING.size, 12.0)},
     ],
 )
-def test_useless_sweeps_are_rejected_with_a_reason(finder: DirectionFinder, bad: dict[str, object]) -> None:
+def test_useless_sweeps_are_rejected_with_a_reason(finder: DirectionFinder, bad: dict[str, Any]) -> None:
     reading = finder.estimate(sweep(10.0, **bad), PATTERN)
     assert not reading.accepted
     assert reading.reason

@@ -93,7 +93,7 @@ def sigmf_recording(tmp_path: Path) -> Receiver:
 
 
 def recorded(tmp_path: Path) -> Receiver:
-    at_s = 0.05 * np.arange(200)
+    at_s = np.linspace(0.0, 9.95, 200)
     sweep = Sweep(at_s, 30.0 * at_s, np.full(200, -60.0), FREQUENCY_HZ, HOME, 100.0)
     return RecordedReceiver(sweep, SteppedClock())
 

@@ -12,7 +12,6 @@ import numpy as np
 from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
 from hardware.authority import Authority, CommandSent, ModeHeard, ModeKind, OperatorTookControl
 from hardware.autopilot.control import Control
-from hardware.clock import ScaledClock
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.fence import MissionNets, Nets, NetsPlan, ParameterValue
 from hardware.frame import LocalFrame
@@ -256,7 +255,7 @@ class HummingReceiver:
     `mute` and `gone` are its faults; while `unheard`, no pulse that is due is heard.
     """
 
-    def __init__(self, clock: ScaledClock) -> None:
+    def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.mute = False
         self.gone = False

@@ -20,7 +20,7 @@ from tests.strikes.wire import Send, datagrams, vehicle_end
 HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE = 0, 1, 75, 76, 77, 253, 436
 ATTITUDE, GLOBAL_POSITION = 30, 33
 KEPT = frozenset({HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE})
-"""Numbers of the messages in the record, unless a proxy is told others."""
+"""Numbers of the messages in the record, unless a proxy is given others."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from backend.craft import inputs
-from backend.craft.machine import kept_of
+from backend.craft.who_flies import kept_of
 from hardware.authority import Authority
 from hardware.readings import Telemetry
 

@@ -16,6 +16,7 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   mission: () => import("../pages/FlyPage").then((m) => m.FlyPage),
   area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
+  health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
   sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
 };
 

@@ -80,6 +80,16 @@ export const sections: readonly Section[] = [
       number("sensor.turn_rate_deg_s", "edit.turnRate", "°/s", { min: 5, max: 90, more: true }),
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),
+      {
+        kind: "choice",
+        path: "sensor.bearing_errors",
+        label: "edit.bearingErrors",
+        options: [
+          { value: "joint", label: "edit.bearingErrors.joint" },
+          { value: "independent", label: "edit.bearingErrors.independent" },
+        ],
+        more: true,
+      },
     ],
   },
   {

@@ -66,6 +66,10 @@ export const reasonsEn: ReasonTable = {
     text: "The expected error is {expected_error_m:1}; it must fall below {threshold_m:1}.",
     remedy: "Take another bearing.",
   },
+  error_may_be_far_larger: {
+    text: "With {beyond_percent} probability the emitter is more than {far_m} from the estimate, if bearings are wrong altogether or by the same angle; at most {most_percent} is tolerated.",
+    remedy: "Take another bearing, best from the other side.",
+  },
   no_place_to_fly: {
     text: "The vehicle has nowhere to fly: the fence and the no-fly areas leave no room.",
     remedy: "Enlarge the fence.",
@@ -400,9 +404,21 @@ export const reasonsEn: ReasonTable = {
     text: "The strongest direction lies in a gap of {gap_deg} where the receiver did not listen.",
     remedy: "",
   },
+  pattern_borrowed: {
+    text: "The bearing was found with the pattern of another antenna ({name}), so it is less certain.",
+    remedy: "Measure the pattern of the antenna that flies: crossfix calibrate.",
+  },
+  likely_other_antenna: {
+    text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
+    remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
+  },
   antenna_agrees: {
     text: "Measured {measured_deg}, true {true_deg}, quality {quality:2}.",
     remedy: "",
+  },
+  not_the_measured_antenna: {
+    text: "This is not the antenna that was measured: {sweeps} sweeps deviate from the pattern {name} by {repeats_db:1} in the same way.",
+    remedy: "Check which antenna is mounted and how, or take over the proposed pattern.",
   },
   emitter_too_near: {
     text: "The emitter is only {distance_m} away.",
@@ -1354,6 +1370,10 @@ export const reasonsEn: ReasonTable = {
   headings_askew: {
     text: "All bearings seem to be off by the same angle, about {offset_deg} ± {std_error_deg}: the place found may be wrong.",
     remedy: "Check compass and antenna mounting; a single wrong place can look the same.",
+  },
+  bearings_corrected: {
+    text: "All bearings are turned by about {bias_deg} ± {std_error_deg}; the belief takes that into account.",
+    remedy: "Check compass and antenna mounting before the next flight.",
   },
   localized: {
     text: "Localized: the expected error is below the threshold.",

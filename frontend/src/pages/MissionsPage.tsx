@@ -5,6 +5,7 @@ import { t } from "../i18n";
 import { ProblemBox, problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { readRecording, replays } from "../sources/replay";
+import { type Library, withFirstPage, withNextPage } from "../state/library";
 import { isOver } from "../state/mission";
 import { go, missionAddress } from "../state/route";
 import { change, settings } from "../state/settings";
@@ -14,6 +15,8 @@ import { formatDuration } from "../units/quantities";
 import type { MissionSummary, Problem } from "../wire";
 
 const REFRESH_MS = 5000;
+/** Until a name that is being typed is asked for. */
+const TYPING_MS = 250;
 
 /** What each is called where it is opened; null: everything in one file. */
 const FORMATS: readonly [api.ExportFormat, string | null][] = [
@@ -100,25 +103,42 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
   );
 }
 
-export function MissionsPage() {
-  const [list, setList] = useState<readonly MissionSummary[] | null>(null);
+/** The list of missions with this part in their name, kept current; `more` reads the page that follows. */
+function useLibrary(named: string) {
+  const [library, setLibrary] = useState<Library | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
-  const [broken, setBroken] = useState<string | null>(null);
-  const [wanted, setWanted] = useState("");
   useEffect(() => {
+    let current = true;
     const read = () =>
-      api.missions().then(
-        ({ missions }) => {
-          setList(missions);
+      api.missions(named, null).then(
+        (page) => {
+          if (!current) return;
+          setLibrary((before) => withFirstPage(before, named, page));
           setProblem(null);
         },
-        (error: unknown) => setProblem(asProblem(error)),
+        (error: unknown) => current && setProblem(asProblem(error)),
       );
-    void read();
+    const first = setTimeout(() => void read(), named ? TYPING_MS : 0);
     const timer = setInterval(() => void read(), REFRESH_MS);
-    return () => clearInterval(timer);
-  }, []);
-  const shown = list?.filter((m) => m.name.toLowerCase().includes(wanted.toLowerCase()));
+    return () => {
+      current = false;
+      clearTimeout(first);
+      clearInterval(timer);
+    };
+  }, [named]);
+  const more = (from: Library) =>
+    api.missions(from.named, from.next).then(
+      (page) => setLibrary((now) => (now?.named === from.named ? withNextPage(now, page) : now)),
+      (error: unknown) => setProblem(asProblem(error)),
+    );
+  return { library, problem, more };
+}
+
+export function MissionsPage() {
+  const [broken, setBroken] = useState<string | null>(null);
+  const [wanted, setWanted] = useState("");
+  const { library, problem, more } = useLibrary(wanted.trim());
+  const shown = library?.missions;
   return (
     <div class="page" data-testid="missions">
       <div class="page-head">
@@ -152,8 +172,8 @@ export function MissionsPage() {
         </p>
       )}
       {problem && <ProblemBox problem={problem} />}
-      {!list && !problem && <p class="muted">{t("missions.loading")}</p>}
-      {list?.length === 0 && <p class="card">{t("missions.empty")}</p>}
+      {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
+      {shown?.length === 0 && <p class="card">{t(library?.named ? "missions.noneNamed" : "missions.empty")}</p>}
       {shown && shown.length > 0 && (
         <table class="table">
           <thead>
@@ -174,6 +194,11 @@ export function MissionsPage() {
             ))}
           </tbody>
         </table>
+      )}
+      {library?.next && (
+        <button type="button" data-testid="more-missions" onClick={() => void more(library)}>
+          {t("missions.more")}
+        </button>
       )}
     </div>
   );

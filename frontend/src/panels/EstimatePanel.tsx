@@ -14,8 +14,8 @@ import { supposedHere } from "../state/supposed";
 import { remainingTime } from "../state/timeLeft";
 import { vehicle } from "../state/vehicle";
 import { type CoordinateFormat, formatPlace } from "../units/coordinates";
-import { formatArea, formatBearing, formatDuration, formatLength } from "../units/quantities";
-import type { MissionEnded } from "../wire";
+import { formatArea, formatBearing, formatDuration, formatLength, formatNumber, signedDegrees } from "../units/quantities";
+import type { MissionEnded, SourceErrors } from "../wire";
 import { copyText } from "./clipboard";
 import { WhichShown } from "./WhichShown";
 
@@ -124,6 +124,30 @@ function Goal({ length }: { length: string }) {
   );
 }
 
+const sourceName = (source: SourceErrors["source"]): string => {
+  switch (source.kind) {
+    case "craft":
+      return t("estimate.source.craft");
+    case "import":
+      return t("estimate.source.import");
+    case "person":
+      return t("estimate.source.named", { name: source.name });
+  }
+};
+
+/** What all bearings of a source are turned by, as far as they tell; the estimate has taken it off. */
+function Compass({ errors }: { errors: SourceErrors }) {
+  return (
+    <div data-testid="compass-bias" data-bias={errors.bias_deg}>
+      <dt>{sourceName(errors.source)}</dt>
+      <dd>
+        {t("estimate.bias", { bias: signedDegrees(errors.bias_deg), error: Math.max(1, Math.round(errors.bias_std_error_deg)) })}
+        <small> {t("estimate.biasUsed", { scale: formatNumber(errors.sigma_scale, 1) })}</small>
+      </dd>
+    </div>
+  );
+}
+
 /** Every reason but that of a failure names the outcome itself. */
 const endWords = ({ outcome, reason }: MissionEnded): string =>
   outcome === "failed" ? `${t("outcome.failed")}: ${reasonText(reason)}` : reasonText(reason);
@@ -176,6 +200,9 @@ export function EstimatePanel() {
                 </small>
               </dd>
             </div>
+            {fact.sources.map((source) => (
+              <Compass key={JSON.stringify(source.source)} errors={source} />
+            ))}
             <TimeLeft />
             <BatteryThen />
           </dl>

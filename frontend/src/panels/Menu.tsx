@@ -48,6 +48,11 @@ export function Menu() {
             </a>
           </li>
           <li>
+            <a href="#/health" onClick={close} data-testid="menu-health">
+              {t("menu.health")}
+            </a>
+          </li>
+          <li>
             <button type="button" onClick={show("settings")} data-testid="menu-settings">
               {t("menu.settings")}
             </button>

@@ -87,6 +87,11 @@ function Facts({ sweep }: { sweep: Sweep }) {
           })}
         </div>
       )}
+      {fact.remarks.map((remark) => (
+        <div class="refused" data-testid="sweep-remark" key={remark.code}>
+          {reasonText(remark)}
+        </div>
+      ))}
       {!excluded && cursor.value === null && !mission.value.ended && id && (
         <button
           type="button"

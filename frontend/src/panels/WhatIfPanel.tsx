@@ -8,7 +8,7 @@ import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { flownBearings, supposed, supposedHere } from "../state/supposed";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
-import type { BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
+import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
 
@@ -72,6 +72,44 @@ function Steps({ answer }: { answer: WhatIf }) {
         })}
       </tbody>
     </table>
+  );
+}
+
+/** Whether the flight's own sweeps fit the antenna that was measured, and the pattern that they show instead. */
+function Review({ missionId }: { missionId: string }) {
+  const [found, setFound] = useState<AntennaReview | null>(null);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const ask = async () => {
+    setProblem(null);
+    try {
+      setFound(await api.antennaReview(missionId));
+    } catch (error) {
+      setProblem(asProblem(error));
+    }
+  };
+  const proposed = found?.proposed;
+  return (
+    <div class="what-if-pattern" data-testid="antenna-review">
+      <button type="button" class="small" data-testid="antenna-review-ask" onClick={() => void ask()}>
+        {t("whatIf.antenna.check")}
+      </button>
+      {problem && <ProblemBox problem={problem} />}
+      {found && (
+        <p class={found.doubt ? "refused" : "muted"} data-testid="antenna-review-answer">
+          {found.doubt ? reasonText(found.doubt) : t("whatIf.antenna.fits", { count: found.sweeps })}
+        </p>
+      )}
+      {proposed && (
+        <button
+          type="button"
+          class="small"
+          data-testid="antenna-review-take"
+          onClick={() => (pattern.value = new File([proposed.text], proposed.filename, { type: "application/json" }))}
+        >
+          {t("whatIf.antenna.take")}
+        </button>
+      )}
+    </div>
   );
 }
 
@@ -173,6 +211,7 @@ export function WhatIfPanel() {
           />
         </label>
         <Antenna />
+        <Review missionId={missionId} key={missionId} />
         <label>
           {t("whatIf.planner")}
           <select

@@ -1,6 +1,7 @@
 // REST, one function an endpoint. Every failure becomes a RequestFailed with a problem to show.
 import { t } from "../i18n";
 import type {
+  AntennaReview,
   AreaImport,
   AreaOutlook,
   CheckFact,
@@ -13,6 +14,7 @@ import type {
   EventPage,
   ExpectedTime,
   ExportedMission,
+  Health,
   Mission,
   MissionList,
   MissionSpec,
@@ -86,9 +88,13 @@ export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" |
 
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 
+export const health = () => json<Health>("/health");
+
 export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
-export const missions = () => json<MissionList>("/missions");
+/** A page of the list. after: `next` of the page before. */
+export const missions = (named: string, after: string | null) =>
+  json<MissionList>(`/missions?${new URLSearchParams(after === null ? { named } : { named, after })}`);
 export const mission = (id: string) => json<Mission>(missionPath(id));
 export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", withBody("POST", spec));
 export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));
@@ -126,6 +132,7 @@ export const importRecording = (id: string, form: FormData) =>
 export const readExported = (text: string) =>
   json<ExportedMission>("/recordings/read", { method: "POST", headers: { "content-type": "application/json" }, body: text }, LONG_MS);
 
+export const antennaReview = (id: string) => json<AntennaReview>(`${missionPath(id)}/antenna`);
 export const whatIf = (id: string, wanted: WhatIfRequest) => json<WhatIf>(`${missionPath(id)}/what-if`, withBody("POST", wanted));
 
 export const importArea = (text: string, filename: string) => json<AreaImport>("/areas", withBody("POST", { text, filename }));

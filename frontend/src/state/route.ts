@@ -7,13 +7,14 @@ export type Route =
   | { page: "edit"; missionId: string }
   | { page: "mission"; missionId: string }
   | { page: "area"; missionId: string }
-  | { page: "maps" };
+  | { page: "maps" }
+  | { page: "health" };
 
 export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
-  if (parts[0] === "maps") return { page: "maps" };
+  if (parts[0] === "maps" || parts[0] === "health") return { page: parts[0] };
   if (parts[0] === "mission" && id) {
     return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };
   }

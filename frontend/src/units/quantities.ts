@@ -63,3 +63,9 @@ export const formatBearing = (degrees: number): string => `${String(Math.round((
 export const formatAge = (seconds: number): string => (seconds < 100 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`);
 
 export const formatClock = (iso: string): string => new Date(iso).toISOString().slice(11, 19);
+
+/** An angle with its sign, whole degrees: 6.4 -> "+6", -0.2 -> "0". */
+export const signedDegrees = (degrees: number): string => {
+  const whole = Math.round(degrees);
+  return whole > 0 ? `+${whole}` : whole < 0 ? `−${-whole}` : "0";
+};

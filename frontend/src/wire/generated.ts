@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * List Missions
-         * @description All missions, newest first.
+         * @description Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name.
          */
         get: operations["list_missions"];
         put?: never;
@@ -307,6 +307,26 @@ export interface paths {
          * @description What would have been believed and chosen with another sensor model, antenna or planner. Nothing is recorded.
          */
         post: operations["ask_what_if"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/antenna": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Antenna
+         * @description Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show.
+         */
+        get: operations["get_antenna"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -957,7 +977,7 @@ export interface components {
         };
         /**
          * @description relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
-         *     front points so far clockwise of the nose.
+         *     front points so far clockwise of the nose. pointing_sigma_deg, borrowed: as in hardware's AntennaPattern.
          */
         AntennaFact: {
             name: string;
@@ -965,6 +985,20 @@ export interface components {
             gain_db: number[];
             offset_to_nose_deg: number;
             frequency_hz: number | null;
+            pointing_sigma_deg: number | null;
+            /** @default false */
+            borrowed: boolean;
+        };
+        /**
+         * @description What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
+         *     what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
+         *     measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is.
+         */
+        AntennaReview: {
+            sweeps: number;
+            repeats_db: number | null;
+            doubt: components["schemas"]["Reason"] | null;
+            proposed: components["schemas"]["PatternUpload"] | null;
         };
         AntennaUnlikePattern: {
             because: components["schemas"]["NothingHeardInTurn"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"];
@@ -1331,7 +1365,9 @@ export interface components {
          *     bins of 2 degrees of antenna heading (true), None where nothing was heard.
          *
          *     measurement_time_s: from the order to turn to the bearing, by the mission's clock; None for an imported sweep.
-         *     heading_sigma_deg: the share of sigma_deg that all bearings of a flight have in common, the heading's.
+         *     heading_sigma_deg, pattern_sigma_deg: the shares of sigma_deg that all bearings of a flight have in common, the
+         *     heading's and the antenna's. remarks: what makes the bearing less certain.
+         *     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
          *     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
          */
         BearingMeasured: {
@@ -1358,6 +1394,10 @@ export interface components {
             measurement_time_s: number | null;
             /** @default 0 */
             heading_sigma_deg: number;
+            /** @default 0 */
+            pattern_sigma_deg: number;
+            remarks: components["schemas"]["Reason"][];
+            likelihood: string | null;
             /** @default 0 */
             samples_without_heading: number;
         };
@@ -1724,7 +1764,10 @@ export interface components {
              */
             code: "crossing_angle_too_small";
         };
-        /** @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. */
+        /**
+         * @description `reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. `refused`: entries
+         *     that it will never take, kept in a file.
+         */
         DatabaseHealth: {
             /** @enum {string} */
             state: "ok" | "slow" | "lost";
@@ -1732,6 +1775,7 @@ export interface components {
             kind: "sqlite" | "postgresql";
             reason: components["schemas"]["Reason"] | null;
             spooled: number;
+            refused: number;
         };
         /** @description detail: what its driver says. */
         DatabaseSilent: {
@@ -2514,7 +2558,10 @@ export interface components {
              */
             code: "headings_of_other_length";
         };
-        /** @description ok: everything answers; degraded: the server works, a part it needs does not. */
+        /**
+         * @description ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
+         *     system does not say. keep_sweeps_days: of missions that are over; None for ever.
+         */
         Health: {
             /** @enum {string} */
             state: "ok" | "degraded";
@@ -2523,6 +2570,8 @@ export interface components {
             database: components["schemas"]["DatabaseHealth"];
             vehicles: components["schemas"]["VehicleHealth"][];
             viewers: number;
+            disk_free_bytes: number | null;
+            keep_sweeps_days: number | null;
             simulated: boolean;
             time_factor: number;
         };
@@ -2794,6 +2843,16 @@ export interface components {
              * @enum {string}
              */
             code: "least_entropy";
+        };
+        /** @description probability: that the sweep was heard with another antenna than the pattern's. */
+        LikelyOtherAntenna: {
+            name: string;
+            probability: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "likely_other_antenna";
         };
         /** @description Time = distance / speed + `constant_s` (both defaults: thesis 6.4.3). */
         LinearConstantMotionSpec: {
@@ -3129,9 +3188,10 @@ export interface components {
              */
             code: "mission_flies";
         };
-        /** @description Newest first. */
+        /** @description Newest first. next: what `after` asks for the missions that follow, None when these are the last. */
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
+            next: string | null;
         };
         MissionOver: {
             /**
@@ -3801,6 +3861,17 @@ export interface components {
              */
             code: "not_terrain";
         };
+        /** @description name: of the pattern. repeats_db: what the sweeps deviate from it by alike. sweeps: how many show it. */
+        NotTheMeasuredAntenna: {
+            name: string;
+            repeats_db: number;
+            sweeps: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_the_measured_antenna";
+        };
         NothingAboveNoise: {
             needed_db: number;
             /**
@@ -4230,6 +4301,15 @@ export interface components {
              * @enum {string}
              */
             code: "part_left_out";
+        };
+        /** @description name: of the pattern that was used. */
+        PatternBorrowed: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "pattern_borrowed";
         };
         /** @description after_deg: clockwise from the antenna's front. */
         PatternGap: {
@@ -4846,7 +4926,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -5406,7 +5486,7 @@ export interface components {
              */
             code: "server_is_ending";
         };
-        /** @description From here on beliefs are computed anew; a craft that we flew is held until an operator resumes. */
+        /** @description From here on beliefs are computed afresh; a craft that we flew is held until an operator resumes. */
         ServerRestarted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5663,7 +5743,7 @@ export interface components {
             heading_deg: (number | null)[];
             power_db: (number | null)[];
         };
-        /** @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db: as in BearingMeasured. */
+        /** @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured. */
         SweepRejected: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5680,6 +5760,7 @@ export interface components {
             place: components["schemas"]["Place"];
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
+            likelihood: string | null;
         };
         /** @description attempt: counts the turns at this place from 1. */
         SweepStarted: {
@@ -6541,7 +6622,11 @@ export interface operations {
     };
     list_missions: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+                after?: string | null;
+                named?: string;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -6948,6 +7033,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["WhatIf"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_antenna: {
+        parameters: {
+            query?: {
+                emitter?: string | null;
+            };
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AntennaReview"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -80,9 +80,9 @@ class Faults:
     """Seconds each way."""
     no_prearm: bool = False
     fence_mute: int = 0
-    """So many answers about the fence get lost."""
+    """Number of answers about the fence that get lost."""
     fence_deaf_after: int = -1
-    """After so many messages about the fence every other gets lost; -1: none."""
+    """After this number of messages about the fence every other one gets lost; -1: none."""
     fence_altered: bool = False
     """It keeps another fence than it is sent."""
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.compiling import inlined, jit
 from planner.kernels.compiled.lanes import BLOCK, copy_block, copy_doubled_block, store_ramp
-from planner.kernels.compiling import inlined, jit
 from planner.kernels.reference import NEARLY
 
 

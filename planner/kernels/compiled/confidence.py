@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.compiling import inlined, jit
 from planner.kernels.compiled.lanes import bits
-from planner.kernels.compiling import inlined, jit
 from planner.kernels.reference import CONFIDENCE, HISTOGRAM_BINS, HISTOGRAM_SHIFT, NEARLY
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.kernels.compiling import jit
+from planner.compiling import jit
 from planner.kernels.reference import MEDIAN_STEPS, NEARLY
 
 _CHUNK = 128

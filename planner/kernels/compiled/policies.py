@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.compiling import inlined, jit
 from planner.kernels.compiled.confidence import clear, confidence_hull, distance_to_hull
-from planner.kernels.compiling import inlined, jit
 from planner.kernels.reference import NEARLY
 
 

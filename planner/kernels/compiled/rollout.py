@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planner.belief.grid import COARSE_CELLS
+from planner.compiling import SOURCES, allocating, entry, inlined, jit
 from planner.kernels.compiled.estimate import below_threshold, distance_sum, geometric_median
 from planner.kernels.compiled.lanes import BLOCK
 from planner.kernels.compiled.policies import ellipse_action, fisher_action
 from planner.kernels.compiled.update import measure
-from planner.kernels.compiling import SOURCES, allocating, entry, inlined, jit
 from planner.kernels.model import (
     ELLIPSE,
     EXPECTED_VALUE,

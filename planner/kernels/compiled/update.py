@@ -6,9 +6,9 @@ import numpy as np
 
 from planner.belief.estimate import TIE_BITS
 from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS
+from planner.compiling import inlined, jit
 from planner.kernels.compiled.cells import gather, gather_all
 from planner.kernels.compiled.lanes import bits
-from planner.kernels.compiling import inlined, jit
 from planner.kernels.reference import DEEPEST_DOUBLING, NEARLY
 
 _INDEX_MASK = (1 << TIE_BITS) - 1

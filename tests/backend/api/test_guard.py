@@ -5,6 +5,8 @@ from __future__ import annotations
 import httpx
 import pytest
 import websockets
+from narrowing import a
+from websockets.typing import Origin
 
 OWN = ["127.0.0.1", "127.0.0.1:8600", "localhost:8600", "[::1]:8600", "192.168.1.7:8600"]
 FOREIGN = [
@@ -36,7 +38,7 @@ async def test_a_rebound_name_is_refused(client, host):
 async def test_a_foreign_page_changes_nothing(client, origin):
     reply = await client.post("/api/areas", json={"text": "{}"}, headers={"origin": origin})
     assert reply.status_code == 403
-    assert (await client.get("/api/missions")).json() == {"missions": []}
+    assert (await client.get("/api/missions")).json() == {"missions": [], "next": None}
 
 
 async def test_our_own_page_and_programs_may_write(client):
@@ -46,10 +48,10 @@ async def test_our_own_page_and_programs_may_write(client):
 
 async def test_a_foreign_page_gets_no_websocket(served):
     with pytest.raises(websockets.InvalidStatus) as refused:
-        await websockets.connect(f"ws://{served}/api/live", origin="http://evil.example")
+        await websockets.connect(f"ws://{served}/api/live", origin=Origin("http://evil.example"))
     assert refused.value.response.status_code == 403
-    async with websockets.connect(f"ws://{served}/api/live", origin=f"http://{served}") as websocket:
-        assert "hello" in await websocket.recv()
+    async with websockets.connect(f"ws://{served}/api/live", origin=Origin(f"http://{served}")) as websocket:
+        assert "hello" in a(str, await websocket.recv())
 
 
 async def test_every_answer_carries_the_security_headers(client: httpx.AsyncClient):

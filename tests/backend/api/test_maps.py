@@ -8,6 +8,7 @@ from dataclasses import replace
 import httpx
 import pytest
 from fastapi import FastAPI
+from narrowing import known
 from PIL import Image
 from pmtiles.reader import Reader
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
@@ -70,7 +71,7 @@ async def test_tiles_are_read_by_ranges_as_the_pmtiles_client_does(client: httpx
         asked.append((offset, length))
         return whole[offset : offset + length]
 
-    assert Reader(note).get(14, 8519, 5512).startswith(b"\x89PNG")
+    assert known(Reader(note).get(14, 8519, 5512)).startswith(b"\x89PNG")
     for offset, length in asked:
         reply = await client.get(url, headers={"Range": f"bytes={offset}-{offset + length - 1}"})
         assert reply.status_code == 206

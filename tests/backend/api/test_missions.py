@@ -43,6 +43,27 @@ async def test_a_drafted_mission_is_listed_and_opens_again(client):
     assert second["mission_id"] != first["mission_id"]
 
 
+async def test_the_list_comes_in_pages_without_gap_or_double_and_by_name(client):
+    """All are drafted in the same microsecond: the id decides."""
+    made = [(await draft(client, name=f"Owl_{n}" if n % 2 else f"fox % {n}"))["mission_id"] for n in range(7)]
+    seen, after = [], None
+    while True:
+        asked = {"limit": 3} if after is None else {"limit": 3, "after": after}
+        page = (await client.get("/api/missions", params=asked)).json()
+        seen += [mission["mission_id"] for mission in page["missions"]]
+        after = page["next"]
+        if after is None:
+            break
+        assert len(page["missions"]) == 3
+    assert len(seen) == 7
+    assert set(seen) == set(made)
+    for part, count in (("owl_", 3), ("OWL", 3), ("%", 4), ("owlx", 0), ("", 7)):
+        found = (await client.get("/api/missions", params={"named": part})).json()
+        assert (len(found["missions"]), found["next"]) == (count, None), part
+    for wrong in ({"after": "x"}, {"limit": 0}, {"after": f"{10**30}.m"}, {"named": "\x00"}):
+        is_problem(await client.get("/api/missions", params=wrong), 422)
+
+
 async def test_editing_replaces_the_specification(client):
     mission = await draft(client)
     url = f"/api/missions/{mission['mission_id']}"

@@ -69,7 +69,7 @@ async def test_what_the_server_exports_it_reads(client):
 
 async def test_nothing_is_stored(client):
     assert (await read(client, TODAY)).status_code == 200
-    assert (await client.get("/api/missions")).json() == {"missions": []}
+    assert (await client.get("/api/missions")).json() == {"missions": [], "next": None}
 
 
 async def test_points_of_a_path_without_a_place_are_left_out(client):

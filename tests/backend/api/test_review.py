@@ -118,17 +118,19 @@ async def test_the_mission_tells_how_it_ended_and_what_is_known_of_each_emitter(
 
 
 async def test_events_come_in_pages(client, flown):
-    seqs, after, more = [], 0, True
-    while more:
+    seqs, page = [], {"last_seq": 0, "more": True}
+    while page["more"]:
+        after = seqs[-1] if seqs else 0
         page = (await client.get(f"{flown}/events", params={"after": after, "limit": 4})).json()
         seqs += [record["seq"] for record in page["events"]]
-        after, more = seqs[-1], page["more"]
     assert seqs == list(range(1, page["last_seq"] + 1))
 
 
 async def test_a_past_belief_is_rebuilt_as_it_was(client, services, flown):
     """At every event: the belief of the last BeliefUpdated until then, with that event's number."""
-    told, seq = [], 0
+    told: list[BearingMeasured] = []
+    counted: list[BearingMeasured] = []
+    seq = 0
     for record in await services.journal.read("flown"):
         match record.event:
             case BearingMeasured(emitter_id="emitter-1") as measured:

@@ -12,6 +12,7 @@ import websockets
 import zstandard
 from fastapi import FastAPI
 from viser import _messages
+from websockets.typing import Origin, Subprotocol
 
 from backend.api.scene import close_scene_views
 from backend.events import MissionDrafted
@@ -103,7 +104,7 @@ async def test_a_browser_gets_the_scene_over_the_websocket(scenes: FastAPI, serv
         async with (
             asyncio.timeout(30),
             websockets.connect(
-                f"ws://{served}/scene/{VIEW}", subprotocols=[SUBPROTOCOL], max_size=None, proxy=None
+                f"ws://{served}/scene/{VIEW}", subprotocols=[Subprotocol(SUBPROTOCOL)], max_size=None, proxy=None
             ) as socket,
         ):
             assert socket.subprotocol == SUBPROTOCOL
@@ -120,12 +121,15 @@ async def test_a_browser_gets_the_scene_over_the_websocket(scenes: FastAPI, serv
 
 async def test_a_page_of_another_version_is_told_to_load_again(scenes: FastAPI, served: str) -> None:
     with pytest.raises(websockets.InvalidStatus) as refused:
-        await websockets.connect(f"ws://{served}/scene/{VIEW}", subprotocols=["viser-v0.0.1"], proxy=None)
+        await websockets.connect(f"ws://{served}/scene/{VIEW}", subprotocols=[Subprotocol("viser-v0.0.1")], proxy=None)
     assert refused.value.response.status_code == 403
 
 
 async def test_a_page_of_another_site_gets_nothing(scenes: FastAPI, served: str) -> None:
     with pytest.raises(websockets.InvalidStatus):
         await websockets.connect(
-            f"ws://{served}/scene/{VIEW}", subprotocols=[SUBPROTOCOL], origin="http://evil.example", proxy=None
+            f"ws://{served}/scene/{VIEW}",
+            subprotocols=[Subprotocol(SUBPROTOCOL)],
+            origin=Origin("http://evil.example"),
+            proxy=None,
         )

@@ -14,8 +14,21 @@ GONE = Telemetry(connected=False, at_s=0.0)
 async def test_all_is_well(client):
     health = (await client.get("/api/health")).json()
     assert health["state"] == "ok"
-    assert health["database"] == {"state": "ok", "kind": "sqlite", "reason": None, "spooled": 0}
+    assert health["database"] == {"state": "ok", "kind": "sqlite", "reason": None, "spooled": 0, "refused": 0}
     assert health["vehicles"] == [{"craft_id": "craft-1", "connected": True, "autopilot": "px4", "reason": None}]
+
+
+async def test_the_disk_and_the_rule_of_retention_are_told(client):
+    health = (await client.get("/api/health")).json()
+    assert health["disk_free_bytes"] > 0
+    assert health["keep_sweeps_days"] is None
+
+
+async def test_a_probe_gets_200_as_long_as_the_server_answers(client, vehicle):
+    assert (await client.get("/health")).json() == {"state": "ok"}
+    vehicle.heard_last = GONE
+    reply = await client.get("/health")
+    assert (reply.status_code, reply.json()) == (200, {"state": "degraded"})
 
 
 async def test_a_missing_vehicle_is_said_with_its_reason(client, vehicle):

@@ -7,6 +7,7 @@ import json
 import math
 import struct
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +38,7 @@ YAGI = load_pattern(SMALL_YAGI)
 OWN = CraftSource(craft_id="craft-1")
 
 
-def started(**more: object) -> MissionStarted:
+def started(**more: Any) -> MissionStarted:
     return MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0", **more)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ def bearing_to(x: float, y: float, east: float, north: float) -> float:
     return math.degrees(math.atan2(east - x, north - y)) % 360.0
 
 
-def written(tmp_path: Path, rows: list[tuple[float, float, float]], sigma: float = 4.0) -> Path:
+def written(tmp_path: Path, rows: Sequence[tuple[float, float, float]], sigma: float = 4.0) -> Path:
     """rows: east, north, bearing."""
     lines = ["lat,lon,bearing_deg,sigma_deg"]
     for east, north, bearing in rows:
@@ -107,3 +108,20 @@ def test_an_unknown_estimator_is_named_with_the_known_ones(tmp_path: Path) -> No
     result = CliRunner().invoke(APP, [str(written(tmp_path, [(0, 0, 45.0)])), "--estimator", "mode"])
     assert result.exit_code == 2
     assert '"mode" is no estimator: choose one of map, expected_value, geometric_median' in result.stderr
+
+
+def test_a_common_offset_of_all_bearings_is_found_and_taken_off(tmp_path: Path) -> None:
+    places = ((0, 0), (250, 0), (100, 350), (-80, 150), (260, 300), (120, -60))
+    rows = [(x, y, (bearing_to(x, y, 120.0, 140.0) + 9.0) % 360.0) for x, y in places]
+    path = str(written(tmp_path, rows, sigma=2.0))
+    answer = json.loads(CliRunner().invoke(APP, [path, "--json"]).stdout)
+    (source,) = answer["sources"]
+    assert source["bias_deg"] == pytest.approx(9.0, abs=2.0)
+    found = FRAME.to_enu(Place(answer["estimate"]["lat"], answer["estimate"]["lon"]))
+    assert math.dist(found, (120.0, 140.0)) < 5.0
+    assert "turned clockwise by +9" in CliRunner().invoke(APP, [path]).stdout
+    alone = json.loads(CliRunner().invoke(APP, [path, "--json", "--errors", "independent"]).stdout)
+    assert alone["sources"] == []
+    wrong = CliRunner().invoke(APP, [path, "--errors", "some"])
+    assert wrong.exit_code == 2
+    assert "choose one of independent, joint" in wrong.stderr

@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import typer
+from narrowing import a
 from typer.testing import CliRunner
 
 from backend.cli.study import app
@@ -37,7 +38,7 @@ def test_several_cells_print_a_list_and_a_report_reads_them(tmp_path):
     result = call("run", "--planner", "base", "--planner", "vander_hook", "--config", "slow", *common)
     assert [cell["planner"] for cell in json.loads(result.stdout)] == ["base", "vander_hook"]
     figures, table = tmp_path / "figures", tmp_path / "table.md"
-    result = call("report", tmp_path / "results", "--figures", figures, "--markdown", table, "--paths", 10, "--json")
+    result = call("report", tmp_path / "results", "--figures", figures, "--markdown", table, "--paths", "10", "--json")
     answer = json.loads(result.stdout)
     assert len(answer["cells"]) == 2
     assert {Path(name) for name in answer["figures"]} == set(figures.glob("*.png"))
@@ -98,7 +99,7 @@ def test_a_dask_cluster_of_processes_flies_the_same_missions(tmp_path):
     with LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address="127.0.0.1:0"
     ) as cluster:
-        there = call(*asked, "--scheduler", cluster.scheduler_address, "--results", tmp_path / "there")
+        there = call(*asked, "--scheduler", a(LocalCluster, cluster).scheduler_address, "--results", tmp_path / "there")
     here = call(*asked, "--workers", "1", "--results", tmp_path / "here")
     assert there.exit_code == here.exit_code == 0
     assert json.loads(there.stdout) == json.loads(here.stdout)

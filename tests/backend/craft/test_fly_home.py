@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import AsyncIterator
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from craft_walk import CraftWalk
@@ -33,7 +34,7 @@ def polygon(shape: object) -> Polygon:
     return Polygon(coordinates=[[(p.lon, p.lat) for p in ring]])
 
 
-def behind(*walls: object, **flight: object) -> MissionSpec:
+def behind(*walls: object, **flight: Any) -> MissionSpec:
     return spec(no_fly=[polygon(wall) for wall in walls], **flight)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections import deque
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,8 +19,9 @@ from backend.craft import effects, inputs
 from backend.craft.effects import CraftEffect
 from backend.craft.ladder import Ladder
 from backend.craft.low_battery import COUNTDOWN_S
-from backend.craft.machine import kept_of, transition
+from backend.craft.machine import transition
 from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, evolve, pilot_has
+from backend.craft.who_flies import kept_of
 from backend.events import MissionEnded, OrderDone, OrderNotDone, PreflightChecked
 from backend.reasons.flight import OrderName
 from backend.reasons.search import Localized
@@ -29,7 +31,8 @@ from backend.search.machine import transition as transition_search
 from backend.search.state import SearchState, Stage
 from backend.search.state import evolve as evolve_search
 
-pytestmark = pytest.mark.timeout(900)  # the first test of a worker makes all steps; minutes beside others on two cores
+# A million steps, made once: by one worker, and without the tracer that would make them five times as slow.
+pytestmark = [pytest.mark.xdist_group("craft sweep"), pytest.mark.no_cover, pytest.mark.timeout(900)]
 
 STAGES: tuple[Stage, ...] = get_args(Stage)
 
@@ -93,10 +96,12 @@ def key_of(craft: CraftState, search: SearchState) -> tuple[object, ...]:
 
 
 @cache
-def reachable() -> tuple[tuple[CraftState, SearchState], ...]:
-    """One state of each kind that is reached from the ground by inputs and by what the search learns meanwhile."""
+def swept() -> tuple[tuple[tuple[CraftState, SearchState], ...], tuple[Step, ...]]:
+    """One state of each kind that is reached from the ground by inputs and by what the search learns meanwhile,
+    and what each does with every input."""
     found: dict[tuple[object, ...], tuple[CraftState, SearchState]] = {}
     ahead: deque[tuple[CraftState, SearchState]] = deque()
+    taken: list[Step] = []
 
     def reach(craft: CraftState, search: SearchState) -> None:
         key = key_of(craft, search)
@@ -107,22 +112,29 @@ def reachable() -> tuple[tuple[CraftState, SearchState], ...]:
     for spec in (SPEC, WAITING_SPEC):
         walk = CraftWalk(spec)
         reach(walk.craft, walk.search)
+    gc.disable()  # all of it is kept, and the collector would walk through it over and over
     while ahead:
         craft, search = ahead.popleft()
         for given in every_craft_input(craft, search):
             step = stepped(craft, search, given)
+            taken.append(step)
             reach(step.after, search_after(step))
         for localized in (False, True):
             known = CraftWalk()
             known.craft, known.search = craft, search
             known.believe(localized)
             reach(known.craft, known.search)
-    return tuple(found.values())
+    gc.freeze()
+    gc.enable()
+    return tuple(found.values()), tuple(taken)
 
 
-@cache
+def reachable() -> tuple[tuple[CraftState, SearchState], ...]:
+    return swept()[0]
+
+
 def steps() -> tuple[Step, ...]:
-    return tuple(stepped(*state, given) for state in reachable() for given in every_craft_input(*state))
+    return swept()[1]
 
 
 def test_the_sweep_reaches_every_phase_with_whoever_may_fly_then_before_and_after_the_end() -> None:
@@ -270,8 +282,8 @@ def test_a_newer_order_takes_the_place_of_the_one_under_way() -> None:
 def test_whoever_takes_the_vehicle_ends_every_order_of_ours() -> None:
     for step in steps():
         heard = step.given.authority if isinstance(step.given, inputs.AuthorityHeard) else None
-        taken = heard is not None and (pilot_has(heard) or heard.who == "failsafe")
-        if taken and step.craft.engaged and kept_of(heard) != kept_of(step.craft.authority):
+        taken = heard if heard is not None and (pilot_has(heard) or heard.who == "failsafe") else None
+        if taken is not None and step.craft.engaged and kept_of(taken) != kept_of(step.craft.authority):
             assert step.after.ladder is None, step.about
             assert effects.CancelTimer("order") in step.asked, step.about
         if step.after.taken_over or step.after.authority.who == "failsafe":

@@ -20,6 +20,7 @@ from facts import (
     bearing,
     plan,
 )
+from narrowing import known
 
 from backend import commands
 from backend.craft import effects, inputs
@@ -125,7 +126,7 @@ def test_an_override_replaces_the_running_flight_and_measurement() -> None:
 
 
 def test_a_flight_starts_at_the_altitude_that_was_foreseen_for_its_place_else_at_the_missions() -> None:
-    for foreseen, expected in ((187.5, 187.5), (None, START.home_amsl_m + SPEC.flight.altitude_relative_m)):
+    for foreseen, expected in ((187.5, 187.5), (None, known(START.home_amsl_m) + SPEC.flight.altitude_relative_m)):
         walk = craft_in("waiting")
         walk.order(commands.Override(place=HOME), altitude_amsl_m=foreseen)
         assert walk.of_kind(FlightStarted)[-1].altitude_amsl_m == expected

@@ -15,7 +15,7 @@ from stage import Stage
 from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.runner import CraftRunner
-from backend.reasons.flight import StepBroke
+from backend.reasons.flight import StepBroke, Way
 from backend.reasons.safety import BatteryShort, NotGivenBack, OutsideFence
 from backend.search.task import search_task
 from backend.spec import Place
@@ -103,7 +103,11 @@ async def test_safety_is_asked_again_right_before_the_flight(rig: Rig) -> None:
 
 async def test_what_the_vehicle_was_told_is_carried_out_once_telemetry_shows_it(rig: Rig) -> None:
     rig.flies()
-    told = {"hold": effects.HoldVehicle(), "return": effects.ReturnHome(), "land": effects.Land()}
+    told: dict[Way, effects.CraftEffect] = {
+        "hold": effects.HoldVehicle(),
+        "return": effects.ReturnHome(),
+        "land": effects.Land(),
+    }
     for way, effect in told.items():
         rig.runner.carry_out(effect)
         await rig.until(lambda way=way: rig.given == [inputs.CarriedOut(way)])

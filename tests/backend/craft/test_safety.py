@@ -204,8 +204,8 @@ def test_a_start_needs_the_ground_and_a_place_inside_the_fence() -> None:
 def test_nothing_takes_off_to_or_flies_at_an_altitude_outside_the_band(
     altitude: float, low: float, high: float
 ) -> None:
-    band = {"minimum_altitude_relative_m": low, "maximum_altitude_relative_m": high}
-    limits = replace(LIMITS, flight=FlightSpec(altitude_relative_m=altitude, **band))
+    flight = FlightSpec(altitude_relative_m=altitude, minimum_altitude_relative_m=low, maximum_altitude_relative_m=high)
+    limits = replace(LIMITS, flight=flight)
     outside = not low - 0.5 <= altitude <= high + 0.5
     start = kinds(start_vetoes(limits, situation(in_air=False)))
     place = kinds(place_vetoes(limits, situation(), FRAME.to_geo(50, 100), limits.home_amsl_m + altitude))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from typing import Literal
 
 import pytest
 
@@ -12,7 +13,7 @@ from backend.reasons.maps import MapDrawnPlainly
 from backend.wire.maps import MapPackage, VectorLayer
 
 
-def package(kind: str, layers: list[str], fields: list[str] | None = None) -> MapPackage:
+def package(kind: Literal["raster", "vector"], layers: list[str], fields: list[str] | None = None) -> MapPackage:
     return MapPackage(
         map_id="0123456789abcdef",
         name="m",

@@ -135,8 +135,8 @@ async def test_a_part_file_of_a_dead_server_is_removed(folder: MapFolder, make_a
     old, fresh = folder.directory / ".upload-old.part", folder.directory / ".upload-fresh.part"
     old.write_bytes(b"x")
     fresh.write_bytes(b"x")
-    os.utime(old, (NOW.timestamp() - 10 * upload_module.ABANDONED_S,) * 2)
-    os.utime(fresh, (NOW.timestamp(),) * 2)
+    os.utime(old, (NOW.timestamp() - 10 * upload_module.ABANDONED_S, NOW.timestamp() - 10 * upload_module.ABANDONED_S))
+    os.utime(fresh, (NOW.timestamp(), NOW.timestamp()))
     await folder.store(pieces(make_archive().read_bytes()), "m", None, NOW, workers)
     assert not old.exists()
     assert fresh.exists()

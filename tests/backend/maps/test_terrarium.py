@@ -2,9 +2,11 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from PIL import Image
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
@@ -22,7 +24,10 @@ ZOOM = 12
 HOME = Place(50.62, 7.2)
 
 
-def slope(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+Pixels = TypeVar("Pixels", float, NDArray[np.floating])
+
+
+def slope(x: Pixels, y: Pixels) -> Pixels:
     """Over the pixels of the whole world at ZOOM."""
     return 200.0 + 0.5 * (x - 2130 * 256) - 0.25 * (y - 1377 * 256)
 

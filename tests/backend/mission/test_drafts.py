@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from equipment import spec
 from facts import CHECK
@@ -53,7 +55,7 @@ async def test_drafts_are_checked_edited_and_refused_with_reasons(stage: Stage) 
     ],
 )
 async def test_an_altitude_outside_its_band_is_refused_where_it_is_drafted_and_where_it_is_edited(
-    stage: Stage, flight: dict[str, float], outside: tuple[float, float, float]
+    stage: Stage, flight: dict[str, Any], outside: tuple[float, float, float]
 ) -> None:
     mission_id = await stage.room.drafts.create(spec(altitude_relative_m=120.0), "anna")
     for refused in (

@@ -41,10 +41,10 @@ class Shelf:
     async def around(self, home: Place) -> Terrain | None:
         return self.found
 
-    async def keep(self, ground: Terrain) -> None:
+    async def keep(self, terrain: Terrain) -> None:
         if self.full:
             raise OSError(28, "No space left on device")
-        self.stored[ground.digest] = ground
+        self.stored[terrain.digest] = terrain
 
     async def kept(self, digest: str) -> Terrain | None:
         return self.stored.get(digest)

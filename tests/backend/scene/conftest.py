@@ -69,7 +69,7 @@ class Log:
 def bearing(number: int, x: float, y: float) -> BearingMeasured:
     direction = bearing_to(x, y)
     off = np.radians((np.arange(180) * 2 + 1) - direction)
-    power = [float(value) for value in -60 + 10 * np.log10(np.maximum(np.cos(off / 2) ** 8, 0.003))]
+    power: list[float | None] = [float(value) for value in -60 + 10 * np.log10(np.maximum(np.cos(off / 2) ** 8, 0.003))]
     return BearingMeasured(
         emitter_id=FIRST_EMITTER,
         source=CraftSource(craft_id=FIRST_CRAFT),

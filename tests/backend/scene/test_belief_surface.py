@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from narrowing import known
 
 from backend.scene.belief_surface import (
     FOOT_Z,
@@ -34,7 +35,7 @@ def hill(n: int = 10, spread: float = 20.0) -> GridBelief:
 
 
 def test_the_summit_stands_over_the_most_probable_cell() -> None:
-    surface = belief_surface(hill(), 50.0)
+    surface = known(belief_surface(hill(), 50.0))
     top = surface.vertices[surface.vertices[:, 2].argmax()]
     assert top == pytest.approx((65.0, 35.0, 50.0 + FOOT_Z))
     assert surface.vertices[:, 2].min() == pytest.approx(FOOT_Z)
@@ -42,7 +43,7 @@ def test_the_summit_stands_over_the_most_probable_cell() -> None:
 
 def test_height_is_proportional_to_probability() -> None:
     uneven = belief(np.array([[1.0, 2.0], [4.0, 0.0]]), 50.0)
-    surface = belief_surface(uneven, 40.0)
+    surface = known(belief_surface(uneven, 40.0))
     heights = {(x, y): z - FOOT_Z for x, y, z in surface.vertices.tolist()}
     assert heights[(25.0, 25.0)] == pytest.approx(10.0)
     assert heights[(75.0, 25.0)] == pytest.approx(20.0)
@@ -52,7 +53,7 @@ def test_height_is_proportional_to_probability() -> None:
 
 
 def test_it_fades_to_nothing_where_nothing_is() -> None:
-    surface = belief_surface(hill(50, 4.0), 50.0)
+    surface = known(belief_surface(hill(50, 4.0), 50.0))
     assert len(surface.vertices) < 50 * 50 / 4
     alpha, height = surface.colours[:, 3], surface.vertices[:, 2] - FOOT_Z
     assert alpha[height < 0.1].max() < 30
@@ -60,7 +61,7 @@ def test_it_fades_to_nothing_where_nothing_is() -> None:
 
 
 def test_every_face_refers_to_a_vertex_and_every_vertex_is_used() -> None:
-    surface = belief_surface(hill(), 10.0)
+    surface = known(belief_surface(hill(), 10.0))
     assert set(np.unique(surface.faces)) == set(range(len(surface.vertices)))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from narrowing import known
 
 from backend.events import BearingExcluded, MissionEnded, Recorded
 from backend.reasons.search import Localized
@@ -12,7 +13,7 @@ from backend.spec import FIRST_EMITTER
 
 
 def at_end(recorded, track=(), upto_seq=None):
-    return content(read_story(recorded, upto_seq), track, None)
+    return content(known(read_story(recorded, upto_seq)), track, None)
 
 
 def more(recorded, *events):
@@ -55,7 +56,7 @@ def test_review_shows_what_was_known_then(recorded, track) -> None:
     assert then.next_places == ()
     at_s = recorded[first_belief - 1].at_utc.timestamp()
     assert len(then.path) == sum(point.at_s <= at_s for point in track)
-    assert then.vehicle.y == pytest.approx(then.path[-1][1])
+    assert known(then.vehicle).y == pytest.approx(then.path[-1][1])
     assert [mark.emitter_id for mark in then.estimates] == [FIRST_EMITTER]
 
 

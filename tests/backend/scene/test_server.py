@@ -12,7 +12,9 @@ import msgspec
 import pytest
 import websockets
 import zstandard
-from viser import _messages
+from narrowing import a
+from viser import ClientHandle, _messages
+from websockets.typing import Subprotocol
 
 from backend.scene.server import SUBPROTOCOL, SceneServer
 
@@ -65,7 +67,11 @@ async def connect(server: SceneServer, own: socket.socket) -> websockets.ClientC
     own.setblocking(False)
     await asyncio.get_running_loop().sock_connect(own, ("127.0.0.1", server.port))
     return await websockets.connect(
-        f"ws://127.0.0.1:{server.port}/", sock=own, subprotocols=[SUBPROTOCOL], compression=None, proxy=None
+        f"ws://127.0.0.1:{server.port}/",
+        sock=own,
+        subprotocols=[Subprotocol(SUBPROTOCOL)],
+        compression=None,
+        proxy=None,
     )
 
 
@@ -82,7 +88,7 @@ async def test_an_announced_connection_becomes_a_window_of_its_view(server: Scen
         await connection.send(camera_message())
         view_id, window = await asyncio.to_thread(heard.opened.get, True, 10)
         assert view_id == "view-one"
-        window.scene.add_glb("/hello", b"only for this window")
+        a(ClientHandle, window).scene.add_glb("/hello", b"only for this window")
         async with asyncio.timeout(10):
             while b"only for this window" not in unpacked(await connection.recv()):
                 pass

@@ -6,13 +6,16 @@ import asyncio
 from collections.abc import AsyncIterator, Callable
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import cast
 
 import pytest
+from narrowing import a, known
+from viser import ClientHandle
 
 from backend.events import Recorded
 from backend.ports import TrackPoint
 from backend.scene import views as views_module
-from backend.scene.items import Scene
+from backend.scene.items import Scene, Surface
 from backend.scene.views import MOST_VIEWS, SceneViews, TooManyViews
 from backend.terrain import Terrain
 from backend.wire.scene import SceneRequest
@@ -87,7 +90,7 @@ async def views(source: PaperSource, monkeypatch: pytest.MonkeyPatch) -> AsyncIt
 
 def open_window(views: SceneViews, view_id: str, number: int = 1) -> list[Scene | None]:
     window = SimpleNamespace(client_id=number, shown=[])
-    views._opened(view_id, window)
+    views._opened(view_id, cast(ClientHandle, window))
     return window.shown
 
 
@@ -107,7 +110,7 @@ async def test_a_window_gets_the_scene_of_its_view(views: SceneViews, recorded) 
     shown = open_window(views, "view-one")
     await until(lambda: bool(shown))
     assert "sweeps/3/rose" in names(shown[-1])
-    told = views.view("view-one")
+    told = known(views.view("view-one"))
     assert (told.shown_seq, told.watchers, told.mission_id) == (len(recorded), 1, "m1")
 
 
@@ -119,7 +122,7 @@ async def test_scrubbing_changes_the_open_window(views: SceneViews) -> None:
     await until(lambda: len(shown) == 2)
     assert "sweeps/0/bearing" in names(shown[-1])
     assert "sweeps/1/rose" not in names(shown[-1])
-    assert views.view("view-one").shown_seq == 3
+    assert known(views.view("view-one")).shown_seq == 3
 
 
 async def test_two_viewers_watch_different_moments(views: SceneViews, recorded) -> None:
@@ -127,8 +130,8 @@ async def test_two_viewers_watch_different_moments(views: SceneViews, recorded) 
     views.show("view-two", SceneRequest(mission_id="m1", seq=1))
     one, two = open_window(views, "view-one", 1), open_window(views, "view-two", 2)
     await until(lambda: bool(one) and bool(two))
-    assert views.view("view-one").shown_seq == len(recorded)
-    assert views.view("view-two").shown_seq == 1
+    assert known(views.view("view-one")).shown_seq == len(recorded)
+    assert known(views.view("view-two")).shown_seq == 1
     assert not any(name.startswith("sweeps") for name in names(two[-1]))
 
 
@@ -137,9 +140,9 @@ async def test_it_follows_new_events(views: SceneViews, source: PaperSource, rec
     views.show("view-one", SceneRequest(mission_id="m1"))
     shown = open_window(views, "view-one")
     await until(lambda: bool(shown))
-    assert views.view("view-one").shown_seq == 4
+    assert known(views.view("view-one")).shown_seq == 4
     source.recorded = list(recorded)
-    await until(lambda: views.view("view-one").shown_seq == len(recorded))
+    await until(lambda: known(views.view("view-one")).shown_seq == len(recorded))
     await until(lambda: "sweeps/3/rose" in names(shown[-1]))
 
 
@@ -153,11 +156,12 @@ async def test_the_vehicle_moves_without_reading_the_journal_again(views: SceneV
     source.heard = replace(source.heard, position=Place(50.6250, 7.2046), altitude_relative_m=45.0)
 
     def height() -> float:
-        return next(item for item in shown[-1].items if item.name == "vehicle/body").position[2]
+        (body,) = [item for item in known(shown[-1]).items if item.name == "vehicle/body"]
+        return a(Surface, body).position[2]
 
     await until(lambda: height() == 45.0)
     assert source.reads == reads
-    assert views.view("view-one").mission_id == "m1"
+    assert known(views.view("view-one")).mission_id == "m1"
 
 
 async def test_after_the_flight_the_mission_stays_in_view(views: SceneViews, source: PaperSource) -> None:
@@ -168,7 +172,7 @@ async def test_after_the_flight_the_mission_stays_in_view(views: SceneViews, sou
     source.flies = None
     await until(lambda: source.reads >= 2)
     assert shown[-1] is not None
-    assert views.view("view-one").mission_id == "m1"
+    assert known(views.view("view-one")).mission_id == "m1"
 
 
 async def test_an_unknown_mission_is_an_empty_window(views: SceneViews) -> None:
@@ -178,7 +182,7 @@ async def test_an_unknown_mission_is_an_empty_window(views: SceneViews) -> None:
     assert names(shown[-1])
     views.show("view-one", SceneRequest(mission_id="gone"))
     await until(lambda: shown[-1] is None)
-    told = views.view("view-one")
+    told = known(views.view("view-one"))
     assert (told.mission_id, told.shown_seq) == ("gone", 0)
 
 
@@ -190,9 +194,9 @@ async def test_the_scene_stays_while_the_database_is_away(views: SceneViews, sou
     source.away = True
     views.show("view-one", SceneRequest(mission_id="m1", seq=2))
     await until(lambda: views._views["view-one"].faults > 2)
-    assert views.view("view-one").shown_seq == 4
+    assert known(views.view("view-one")).shown_seq == 4
     source.away = False
-    await until(lambda: views.view("view-one").shown_seq == 2)
+    await until(lambda: known(views.view("view-one")).shown_seq == 2)
     assert shown[-1] is not None
 
 
@@ -201,7 +205,7 @@ async def test_a_window_that_comes_back_is_served_again(views: SceneViews) -> No
     first = open_window(views, "view-one", 1)
     await until(lambda: bool(first))
     views._closed("view-one", 1)
-    assert views.view("view-one").watchers == 0
+    assert known(views.view("view-one")).watchers == 0
     again = open_window(views, "view-one", 2)
     await until(lambda: bool(again))
 

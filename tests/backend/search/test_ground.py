@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from narrowing import known
 from relief import hill, level, terrain
 from shapely import Point, box
 
@@ -35,15 +36,16 @@ def test_without_terrain_the_ground_is_level_with_home_and_the_altitude_the_miss
 def test_a_hill_beside_the_way_counts_within_tolerance_only() -> None:
     beside = over(lambda east, north: np.where(north > 15.0, 150.0, 100.0), spacing_m=2.0)
     way = [(0.0, 0.0), (400.0, 0.0)]
-    assert beside.below(way).highest_m == pytest.approx(100.0)
-    assert beside.below([(x, 8.0) for x, _ in way]).highest_m == pytest.approx(150.0)
+    assert known(beside.below(way)).highest_m == pytest.approx(100.0)
+    assert known(beside.below([(x, 8.0) for x, _ in way])).highest_m == pytest.approx(150.0)
 
 
 def test_a_single_summit_between_the_samples_counts() -> None:
     ground = over(level(), spacing_m=20.0)
-    middle = ground.terrain.heights.shape[0] // 2
-    ground.terrain.heights[middle, middle + 10] = 130.0
-    assert ground.below([(0.0, 3.0), (400.0, -4.0)]).highest_m == 130.0
+    heights = known(ground.terrain).heights
+    middle = heights.shape[0] // 2
+    heights[middle, middle + 10] = 130.0
+    assert known(ground.below([(0.0, 3.0), (400.0, -4.0)])).highest_m == 130.0
 
 
 def test_where_the_terrain_ends_nothing_is_known() -> None:
@@ -55,7 +57,7 @@ def test_where_the_terrain_ends_nothing_is_known() -> None:
     ("home_amsl_m", "expected"), [(100.0, (100.0, 100.0)), (108.0, (100.0, 108.0)), (92.0, (92.0, 100.0))]
 )
 def test_of_two_opinions_about_home_the_worse_counts(home_amsl_m: float, expected: tuple[float, float]) -> None:
-    below = over(level(), home_amsl_m).below([(0.0, 0.0)])
+    below = known(over(level(), home_amsl_m).below([(0.0, 0.0)]))
     assert (below.lowest_m, below.highest_m) == pytest.approx(expected)
 
 
@@ -90,8 +92,8 @@ def test_nothing_within_tolerance_is_higher_or_lower_than_what_is_said(
     length = max(float(np.hypot(x1 - x0, y1 - y0)), 1e-9)
     x = x0 + along * (x1 - x0) - beside * (y1 - y0) / length
     y = y0 + along * (y1 - y0) + beside * (x1 - x0) / length
-    below, here = ground.below([(x0, y0), (x1, y1)]), ground.height_at(FRAME.to_geo(x, y))
-    assert below.lowest_m - 0.5 <= here <= below.highest_m + 0.5
+    below, here = known(ground.below([(x0, y0), (x1, y1)])), ground.height_at(FRAME.to_geo(x, y))
+    assert below.lowest_m - 0.5 <= known(here) <= below.highest_m + 0.5
 
 
 def test_a_mountain_and_what_lies_behind_it_are_closed_to_the_planner() -> None:

@@ -54,7 +54,7 @@ def test_crossing_bearings_localize_where_they_cross() -> None:
     assert fact.localized
     assert fact.not_yet == []
     assert fact.estimate is not None
-    x, y = FRAME.to_enu(fact.estimate)
+    x, y = FRAME.to_enu(Place(lat=fact.estimate.lat, lon=fact.estimate.lon))
     assert math.dist((x, y), target) < 5.0
     assert fact.digest == digest(belief)
     assert fact.estimate.c95_area_m2 < math.pi * (3 * fact.estimate.major_axis_m) ** 2
@@ -192,7 +192,8 @@ def test_each_emitter_has_its_own_prior_and_belief_in_one_frame() -> None:
     assert (fact.emitter_id, fact.localized) == ("emitter-1", True)
     assert (untouched.emitter_id, untouched.bearings, untouched.localized) == ("tag", 0, False)
     assert untouched.estimate is not None
-    assert FRAME.to_enu(untouched.estimate) == pytest.approx((50, 60), abs=5.0)
+    middle = Place(lat=untouched.estimate.lat, lon=untouched.estimate.lon)
+    assert FRAME.to_enu(middle) == pytest.approx((50, 60), abs=5.0)
 
 
 def test_flight_area_and_zones_reach_the_planner_and_whoever_flies() -> None:

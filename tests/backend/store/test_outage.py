@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from narrowing import a, known
 from sqlalchemy import make_url
 
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
@@ -21,11 +22,13 @@ from backend.ports import TrackPoint
 from backend.reasons.storage import DatabaseSilent, DiskLow
 from backend.settings import Settings
 from backend.spec import MissionSpec, Polygon
-from backend.store import opening
+from backend.store import delivery, opening
 from backend.store.engine import migrate
+from backend.store.entries import TrackEntry
 from backend.store.journal import SqlJournal
 from backend.store.opening import DatabaseUnusable, open_journal
 from backend.store.reading import JournalUnavailable
+from backend.store.spool import Spool
 from hardware.readings import Place, Sweep
 from planner.reason import remedy_of, sentence_of
 
@@ -77,7 +80,7 @@ class Flight:
     async def check(self, stored: SqlJournal) -> None:
         read = await stored.read("m")
         assert [record.seq for record in read] == list(range(1, self.count + 3))
-        assert [record.event.by for record in read[2:]] == [str(n) for n in range(self.count)]
+        assert [a(HoldOrdered, record.event).by for record in read[2:]] == [str(n) for n in range(self.count)]
         assert len((await stored.tracks("m"))["craft-1"]) == self.count
         for n in range(self.count):
             assert await stored.sweep("m", f"s{n}") is not None
@@ -95,7 +98,7 @@ class Locked:
     stops_reading = False
 
     def __init__(self, bench, _request) -> None:
-        self.path = make_url(bench.url).database
+        self.path = known(make_url(bench.url).database)
 
     def begin(self) -> None:
         self.other = sqlite3.connect(self.path, isolation_level=None, check_same_thread=False)
@@ -226,6 +229,77 @@ async def test_an_entry_the_database_refuses_is_kept_aside_and_blocks_nothing(be
     await flight.check(journal)
 
 
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("error", [RuntimeError("unforeseen"), OSError(5, "Input/output error"), KeyError("x")])
+async def test_no_error_ends_the_watch_and_it_drains_afterwards(bench, monkeypatch, error):
+    """Whatever fails while the spool is emptied: the flight goes on, and all is stored once it no longer fails."""
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    outage = Locked(bench, None)
+    outage.begin()
+    await flight.go_on(2)
+    failed = 0
+
+    def failing(self: Spool) -> None:
+        nonlocal failed
+        failed += 1
+        if failed < 3:
+            raise error
+        clear(self)
+
+    clear = Spool.clear
+    monkeypatch.setattr(Spool, "clear", failing)
+    outage.end()
+    async with watched(journal):
+        await flight.go_on(2)
+        await until(journal, "ok")
+        await flight.go_on(2)
+    assert failed == 3
+    assert journal.report().refused == 0
+    await flight.check(await bench.open("other.spool"))
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_a_spooled_entry_that_always_fails_is_kept_aside_and_holds_up_nothing(bench, monkeypatch, tmp_path):
+    monkeypatch.setattr(delivery, "RETRY_FIRST_S", 0.01)
+    journal = await bench.open()
+    flight = Flight(journal)
+    await flight.begin()
+    outage = Locked(bench, None)
+    outage.begin()
+    await flight.go_on(1)
+    point = TrackPoint(1.7e9, 50.6, 7.2, 140.0, 40.0, 0.0, None, None)
+    await journal.save_track("poisoned", "craft-1", [point])
+    await flight.go_on(1)
+
+    async def written(self: TrackEntry, connection: object) -> None:
+        if self.mission_id == "poisoned":
+            raise ZeroDivisionError
+        await write(self, connection)  # type: ignore[arg-type]
+
+    write = TrackEntry.write
+    monkeypatch.setattr(TrackEntry, "write", written)
+    outage.end()
+    async with watched(journal):
+        await until(journal, "ok")
+    assert journal.report().refused == 1
+    assert "poisoned" in (tmp_path / "journal.refused").read_text()
+    await flight.check(await bench.open("other.spool"))
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_an_entry_of_the_spool_that_cannot_be_read_stops_no_start(bench, tmp_path):
+    spool = Spool(tmp_path / "journal.spool", 64 * 1024)
+    spool.append(b'{"entry": "of a later version", "fields": {}}')
+    spool.close()
+    journal = await bench.open()
+    await journal.start_up()
+    await Flight(journal).begin()
+    assert journal.report().refused == 1
+    assert "of a later version" in (tmp_path / "journal.refused").read_text()
+
+
 @pytest.fixture
 def small_disk(tmp_path: Path):
     """A file system of 2 MB of its own."""
@@ -249,7 +323,7 @@ async def test_a_full_disk_stops_nothing_and_spoils_nothing(small_disk):
                 file.write(bytes(4096))
         await flight.go_on(60)
         assert journal.report().state == "lost"
-        assert "full" in sentence_of(journal.report().reason)
+        assert "full" in sentence_of(known(journal.report().reason))
         with pytest.raises(JournalUnavailable, match="the disk is full"):
             await flight.go_on(1000)
         filler.unlink()
@@ -295,10 +369,10 @@ async def test_what_was_acknowledged_survives_kill_9(bench, tmp_path):
         writer = await asyncio.create_subprocess_exec(
             sys.executable, "-c", WRITER, tmp_path, bench.url, stdout=subprocess.PIPE
         )
-        acknowledged = int(await writer.stdout.readline())
+        acknowledged = int(await known(writer.stdout).readline())
         await asyncio.sleep(wait.uniform(0.0, 0.2))
         writer.kill()
-        rest = (await writer.stdout.read()).split()
+        rest = (await known(writer.stdout).read()).split()
         await writer.wait()
         acknowledged = int(rest[-1]) if rest else acknowledged
         stored = await (await bench.open("check.spool")).read("m")

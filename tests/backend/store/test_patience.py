@@ -1,4 +1,4 @@
-"""What took its time is told from what only this program kept waiting."""
+"""A slow database is kept apart from one that only this program kept waiting."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ async def test_an_answer_that_came_while_this_program_stood_still_counts() -> No
     standing = asyncio.create_task(stand_still())
     async with patience(0.5):
         await answered.wait()
+    assert answered.is_set()
     await standing
 
 
@@ -35,3 +36,7 @@ async def test_nothing_is_left_over_once_it_is_answered() -> None:
     async with patience(0.15):
         pass
     await asyncio.sleep(0.3)
+    this = asyncio.current_task()
+    assert this is not None
+    assert this.cancelling() == 0
+    assert asyncio.all_tasks() == {this}

@@ -57,6 +57,8 @@ WANTED = (
     Wanted(3, "sparse_optimum", "its objective against a convex solver's, relative", "", at_most=1e-6),
     Wanted(3, "bearing_rms", "bearing RMS over the Cramer-Rao bound, reference condition", "times", at_most=1.25),
     Wanted(3, "least_squares", "bearing RMS minus least squares' on the same sweeps, at worst", "deg", at_most=0.0),
+    Wanted(17, "mismatch_sigma", "wrong pattern, each row: errors inside two sigma", "%", at_least=90.0),
+    Wanted(17, "mismatch_axis", "wrong pattern, bearing RMS minus the principal axis', at worst", "deg", at_most=0.0),
     Wanted(14, "fault_crashes", "missions with a sensor fault that crashed", "", at_most=0),
     Wanted(14, "fault_truth", "truth in C95 of the claims with a sensor fault", "%", at_least=95.0),
     Wanted(17, "truth", "`crossfix study truth`, each row: truth in C95", "%", at_least=93.0, at_most=97.0),

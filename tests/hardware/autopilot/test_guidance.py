@@ -38,7 +38,7 @@ async def test_steering_never_asks_for_a_mode_and_px4_is_taken_at_its_deeds(flyi
 
 
 async def test_what_denies_steering_may_be_in_the_pilots_hands_so_its_next_word_is_heard_first(flying: Scene) -> None:
-    """Who is told of a refusal alone might order a hold, and take the vehicle from the pilot."""
+    """With no more than the refusal, the caller might order a hold and take the vehicle from the pilot."""
     flying.link.result = DENIED
     command = steering(flying)
     await all_that_can_go_on_has()

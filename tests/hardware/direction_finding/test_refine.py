@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from hardware.direction_finding.comparison import Condition, beam, paired_deg, simulate
+from hardware.direction_finding.comparison import Condition, beam, known_right, paired_deg, simulate
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.least_squares import LeastSquaresDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
@@ -16,6 +16,7 @@ from hardware.frame import LocalFrame
 from hardware.readings import BearingReading, Place, Sweep
 from hardware.reasons.sweep import NothingAboveNoise
 from hardware.sim.turn import turn_once
+from hardware.sim.turntable import simulated_antenna
 from hardware.sim.world import Emitter, RadioLink, Reflector, World
 
 HERE = Place(50.6, 7.2)
@@ -42,7 +43,7 @@ def rms(values: np.ndarray) -> float:
     ids=lambda condition: condition.name,
 )
 def test_sigma_is_true_and_least_squares_no_better(condition: Condition) -> None:
-    rng, pattern = np.random.default_rng(3), beam(condition.beam_deg)
+    rng, pattern = np.random.default_rng(3), known_right(beam(condition.beam_deg))
     truths = [float(b) for b in rng.uniform(0.0, 360.0, 60)]
     sweeps = [simulate(condition, pattern, truth, rng) for truth in truths]
     ours = [FINDER.estimate(sweep, pattern) for sweep in sweeps]
@@ -74,7 +75,7 @@ def world_sweep(rng: np.random.Generator, distance_m: float, power_dbm: float, r
     ids=["clear", "looking 44 degrees down", "a reflector", "weak"],
 )
 def test_sigma_covers_the_error_in_the_simulated_world(distance_m: float, power_dbm: float, reflectors: int) -> None:
-    rng, pattern = np.random.default_rng(8), load_pattern(SMALL_YAGI)
+    rng, pattern = np.random.default_rng(8), simulated_antenna()
     taken = [world_sweep(rng, distance_m, power_dbm, reflectors) for _ in range(40)]
     readings = [(FINDER.estimate(sweep, pattern), truth) for truth, sweep in taken]
     heard = [(r, truth) for r, truth in readings if r.accepted]
@@ -85,7 +86,7 @@ def test_sigma_covers_the_error_in_the_simulated_world(distance_m: float, power_
 
 def test_hidden_echo_widens_sigma() -> None:
     condition = Condition("clear", slices=36, jitter_db=0.5)
-    pattern, rng = beam(60.0), np.random.default_rng(5)
+    pattern, rng = known_right(beam(60.0)), np.random.default_rng(5)
     echoed = dataclasses.replace(condition, echo_db=-5.0)
     clear_deg = np.median(
         [FINDER.estimate(simulate(condition, pattern, 90.0, rng), pattern).sigma_deg for _ in range(25)]

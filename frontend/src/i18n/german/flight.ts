@@ -68,6 +68,10 @@ export const flight = {
     text: "Alle Peilungen scheinen um denselben Winkel falsch zu sein, etwa {offset_deg} ± {std_error_deg}: Der gefundene Ort kann falsch sein.",
     remedy: "Kompass und Befestigung der Antenne prüfen; ein einzelner falscher Ort kann ebenso aussehen.",
   },
+  bearings_corrected: {
+    text: "Alle Peilungen sind um etwa {bias_deg} ± {std_error_deg} verdreht; bei der Ortung ist das berücksichtigt.",
+    remedy: "Kompass und Befestigung der Antenne vor dem nächsten Flug prüfen.",
+  },
   localized: { text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle.", remedy: "" },
   localized_against: {
     text: "Gefunden: Der erwartete Fehler liegt unter der Schwelle; {against} von {bearings|Peilung|Peilungen} {against?1=spricht|*=sprechen} dagegen.",

@@ -60,6 +60,10 @@ export const planner = {
     text: "Die Peilung zeigt am Suchgebiet vorbei.",
     remedy: "Das Gebiet, die Antenne und den Ort der Peilung prüfen.",
   },
+  error_may_be_far_larger: {
+    text: "Mit {beyond_percent} Wahrscheinlichkeit ist der Sender weiter als {far_m} vom Schätzort entfernt, falls Peilungen ganz oder um denselben Winkel falsch sind; geduldet werden höchstens {most_percent}.",
+    remedy: "Noch eine Peilung nehmen, am besten von der anderen Seite.",
+  },
   expected_error_too_large: {
     text: "Der erwartete Fehler ist {expected_error_m:1}; er muss unter {threshold_m:1} fallen.",
     remedy: "Noch eine Peilung nehmen.",

@@ -56,6 +56,18 @@ export const sweep = {
     text: "Die stärkste Richtung liegt in einer Lücke von {gap_deg}, in der der Empfänger nicht gehört hat.",
     remedy: "",
   },
+  pattern_borrowed: {
+    text: "Die Peilung beruht auf dem Diagramm einer anderen Antenne ({name}) und ist deshalb unsicherer.",
+    remedy: "Das Diagramm der Antenne messen, die mitfliegt: crossfix calibrate.",
+  },
+  likely_other_antenna: {
+    text: "Die Drehung sieht nach einer anderen Antenne als {name} aus: Nur die Hauptkeule wurde verwendet.",
+    remedy: "Prüfen, welche Antenne montiert ist, und ihr Diagramm messen: crossfix calibrate.",
+  },
+  not_the_measured_antenna: {
+    text: "Das ist nicht die Antenne, die gemessen wurde: {sweeps} Drehungen weichen auf die gleiche Weise um {repeats_db:1} vom Diagramm {name} ab.",
+    remedy: "Prüfen, welche Antenne montiert ist und wie, oder das vorgeschlagene Diagramm übernehmen.",
+  },
 
   antenna_agrees: { text: "Gemessen {measured_deg}, wahr {true_deg}, Güte {quality:2}.", remedy: "" },
   emitter_too_near: {

@@ -311,7 +311,7 @@ def test_a_speed_that_is_none_is_denied_and_it_flies_on(flavour: type[Px4], spee
 
 
 def test_px4_flies_past_its_stop_point_and_turns_back() -> None:
-    """Slow for a moment with metres to go: a hold that is told then is told too early."""
+    """Slow for a moment with metres to go: a hold reported then is reported too early."""
     firmware = flying(Px4)
     firmware.command(goto(300.0, 0.0))
     run(firmware, 10.0)

@@ -40,7 +40,14 @@ exact = cast(Compiler, njit(nogil=True))
 exact_entry = cast(Compiler, njit(cache=True, nogil=True))
 """As `exact`, for what Python calls."""
 
-COMPILED_IN = ("kernels/**/*.py", "belief/estimate.py", "belief/grid.py", "observation.py")
+COMPILED_IN = (
+    "kernels/**/*.py",
+    "belief/compiled_evidence.py",
+    "belief/estimate.py",
+    "belief/grid.py",
+    "compiling.py",
+    "observation.py",
+)
 """Code or constants of these files are in the machine code."""
 SOURCES = int(digest(COMPILED_IN)[:15], 16)
 """For entry points to close over: numba's cache looks at their own file only, and at the values they close over."""

@@ -5,12 +5,12 @@ import sys
 
 import pytest
 
-from planner.kernels.compiling import COMPILED_IN
+from planner.compiling import COMPILED_IN
 from planner.plan import warm_up
 from planner.sources import PLANNER
 
 ENTRY_POINT = """
-from planner.kernels.compiling import entry
+from planner.compiling import entry
 
 def entry_point(sources):
     @entry

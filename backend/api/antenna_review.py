@@ -1,0 +1,75 @@
+"""What a mission's stored sweeps say of the antenna that took them. Nothing is recorded, and nothing flies by it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from backend.events import BearingExcluded, BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
+from backend.reasons import carried
+from backend.search.antenna import antenna_flown
+from backend.wire.resources import AntennaReview, PatternUpload
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.pattern_file import pattern_json
+from hardware.direction_finding.residuals import KeptSweep, refined_pattern, repeating
+from hardware.readings import Place
+from hardware.reasons.antenna import NotTheMeasuredAntenna
+
+PROPOSED_FILENAME = "refined_in_flight.json"
+
+
+def antenna_review(recorded: Sequence[Recorded], emitter_id: str | None, ours: AntennaPattern) -> AntennaReview | None:
+    """None when the mission has no such emitter. ours: the pattern of missions that kept none.
+
+    recorded: the what-if's kinds, in order. Heavy (some tenths of a second): call it off the event loop.
+    """
+    chosen = _emitter(recorded, emitter_id)
+    if chosen is None:
+        return None
+    pattern = antenna_flown(recorded) or ours
+    kept = [_kept(fact) for fact in _counted(recorded, chosen) if fact.source.kind != "person" and fact.binned_db]
+    found = repeating(kept, pattern)
+    doubt = None
+    if found is not None and found.significant:
+        doubt = NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps)
+    place = _localized_at(recorded, chosen)
+    refined = None if place is None or doubt is None else refined_pattern(kept, place, pattern)
+    return AntennaReview(
+        sweeps=len(kept),
+        repeats_db=None if found is None else found.repeats_db,
+        doubt=None if doubt is None else carried(doubt),
+        proposed=None if refined is None else PatternUpload(text=pattern_json(refined), filename=PROPOSED_FILENAME),
+    )
+
+
+def _emitter(recorded: Sequence[Recorded], emitter_id: str | None) -> str | None:
+    drafts = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
+    known = [emitter.emitter_id for emitter in drafts[-1].emitters] if drafts else []
+    if emitter_id is None:
+        return known[0] if known else None
+    return emitter_id if emitter_id in known else None
+
+
+def _counted(recorded: Sequence[Recorded], emitter_id: str) -> list[BearingMeasured]:
+    excluded = {r.event.bearing_id for r in recorded if isinstance(r.event, BearingExcluded)}
+    facts = [r.event for r in recorded if isinstance(r.event, BearingMeasured)]
+    return [fact for fact in facts if fact.emitter_id == emitter_id and fact.bearing_id not in excluded]
+
+
+def _kept(fact: BearingMeasured) -> KeptSweep:
+    binned = np.array([math.nan if value is None else value for value in fact.binned_db])
+    noise = None
+    if fact.snr_db is not None:
+        fitted = np.array([math.nan if value is None else value for value in fact.fitted_db])
+        noise = float(np.nanmax(fitted)) - fact.snr_db
+    return KeptSweep(fact.place, fact.bearing_deg, binned, noise)
+
+
+def _localized_at(recorded: Sequence[Recorded], emitter_id: str) -> Place | None:
+    """Where the last belief has it, when that claims it."""
+    beliefs = [r.event for r in recorded if isinstance(r.event, BeliefUpdated) and r.event.emitter_id == emitter_id]
+    if not beliefs or not beliefs[-1].localized or beliefs[-1].estimate is None:
+        return None
+    return Place(beliefs[-1].estimate.lat, beliefs[-1].estimate.lon)

@@ -1,0 +1,221 @@
+"""An archive put back onto an empty server: everything or nothing."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Generator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import Connection, make_url, select
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+from sqlalchemy.ext.asyncio import AsyncConnection
+
+from backend.backup.archive import Archive
+from backend.backup.manifest import DATABASE, FILES, PATTERN, SPOOL, BackupError, Member, of_the_machine
+from backend.backup.rows import reflected, write_lines
+from backend.settings import Settings
+from backend.store.engine import engine_for_once, known_revisions, migrate
+from backend.store.opening import DatabaseUnusable, claimed
+from backend.store.reading import why
+from backend.store.spool import Spool, SpoolForeign, SpoolFull, SpoolTaken, entries_beside
+from planner.reason import sentence_of
+
+ANSWERS_S = 30.0
+PATTERNS = "patterns"
+"""The folder of the data directory that an antenna pattern comes back to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """rows: of all tables; pattern: where the antenna pattern lies now, None when the archive holds none."""
+
+    missions: int
+    rows: int
+    files: int
+    pattern: Path | None
+
+
+def restore(settings: Settings, source: Path, told: Callable[[str], None] = lambda _: None) -> Restored:
+    """Everything of the archive, or an error and nothing. No server may run on the target.
+
+    Blocking, with an event loop of its own. Raises BackupError: the target is not empty; the archive is of a later
+    version, cut off, changed or hostile.
+    """
+    with Archive(source) as archive:
+        _must_be_known(archive)
+        _must_have_room(archive, settings)
+        told("checking the archive")
+        archive.verify()
+        try:
+            with claimed(settings.async_database_url):
+                return asyncio.run(_put_back(archive, settings, told))
+        except DatabaseUnusable as error:
+            raise BackupError(sentence_of(error.reason)) from error
+        except SpoolTaken as error:
+            raise BackupError(f"a server uses {settings.spool_path}: stop it first") from error
+        except SpoolForeign as error:
+            raise BackupError(sentence_of(error.reason)) from error
+        except DBAPIError as error:
+            raise BackupError(f"the database refuses what the archive holds: {why(error)}") from error
+        except (SQLAlchemyError, OSError, SpoolFull) as error:
+            raise BackupError(f"the archive could not be restored: {' '.join(str(error).split())}") from error
+
+
+def _must_be_known(archive: Archive) -> None:
+    if archive.manifest.schema_revision not in known_revisions():
+        by, revision = archive.manifest.software[:40], archive.manifest.schema_revision[:40]
+        raise BackupError(
+            f"the archive was made by a later Crossfix ({by}, schema {revision}): update this one, then restore"
+        )
+
+
+def _must_have_room(archive: Archive, settings: Settings) -> None:
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    free = shutil.disk_usage(settings.data_dir).free - settings.disk_low_bytes
+    tables = sum(member.size_bytes for member in archive.manifest.members if member.rows is not None)
+    needed = archive.manifest.size_bytes + tables  # the database writes its rows twice: its log, then its file
+    if needed > free:
+        raise BackupError(
+            f"the archive unpacks to {archive.manifest.size_bytes:,} bytes and needs {needed:,}; "
+            f"{max(free, 0):,} are free in {settings.data_dir}"
+        )
+
+
+async def _put_back(archive: Archive, settings: Settings, told: Callable[[str], None]) -> Restored:
+    url, members = settings.async_database_url, archive.manifest.members
+    _must_hold_no_files(settings)
+    engine = engine_for_once(url, ANSWERS_S)
+    try:
+        async with engine.connect() as connection:
+            new = await _must_hold_no_rows(connection)
+        if new:
+            await migrate(url, revision=archive.manifest.schema_revision)
+        with _unpacked(archive, settings) as keep:
+            async with engine.execution_options(write=True).begin() as connection:
+                await _write_tables(connection, archive, told)
+                told("files")
+                pattern = keep()  # before the rows are committed: they are what a server finds
+                _write_spool(archive, settings)
+        await migrate(url)
+    finally:
+        await engine.dispose()
+    counted = {member.name: member.rows or 0 for member in members}
+    files = sum(member.name.startswith((FILES, PATTERN)) for member in members)
+    return Restored(counted.get(f"{DATABASE}missions.jsonl", 0), archive.manifest.rows, files, pattern)
+
+
+def _must_hold_no_files(settings: Settings) -> None:
+    database = Path(make_url(settings.async_database_url).database or "").name
+    found = [
+        path.relative_to(settings.data_dir).as_posix()
+        for path in sorted(settings.data_dir.rglob("*"))
+        if path.is_file() and not path.name.startswith(database)
+    ]
+    foreign = [name for name in found if not of_the_machine(name)]
+    if foreign:
+        raise BackupError(
+            f"{settings.data_dir} is not empty (it holds {foreign[0]}): restore into an empty data directory "
+            "(--data-dir)"
+        )
+    if entries_beside(settings.spool_path):
+        raise BackupError(
+            f"facts wait for the database in {settings.spool_path}: start the server once, or move it away"
+        )
+
+
+async def _must_hold_no_rows(connection: AsyncConnection) -> bool:
+    """True for a database without tables: it gets the archive's schema. Raises BackupError when a table holds a row,
+    or is none of ours."""
+
+    def look(connection: Connection) -> bool:
+        tables = reflected(connection).sorted_tables
+        for table in tables:
+            if connection.execute(select(table).limit(1)).first() is not None:
+                raise BackupError(
+                    f"the database is not empty (table {table.name} holds rows): restore into a new one (--database)"
+                )
+        return not tables
+
+    return await connection.run_sync(look)
+
+
+async def _write_tables(connection: AsyncConnection, archive: Archive, told: Callable[[str], None]) -> None:
+    metadata = await connection.run_sync(reflected)
+    listed = {
+        member.name.removeprefix(DATABASE).removesuffix(".jsonl"): member
+        for member in archive.manifest.members
+        if member.name.startswith(DATABASE)
+    }
+    unknown = sorted(set(listed) - set(metadata.tables))
+    if unknown:
+        raise BackupError(f"the archive holds a table {unknown[0][:60]!r} that its schema does not have")
+    for table in metadata.sorted_tables:
+        if member := listed.get(table.name):
+            told(table.name)
+            with closing(archive.lines(member)) as lines:
+                rows = await write_lines(connection, table, lines)
+            if rows != member.rows:
+                raise BackupError(f"table {table.name} has {rows} rows in the archive, and {member.rows} by its list")
+
+
+@contextmanager
+def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Path | None]]:
+    """The files in a folder beside their places; the function that is given moves them there, and returns where the
+    antenna pattern went. Whatever fails afterwards, moved files are taken away again."""
+    root = settings.data_dir
+    folder = Path(tempfile.mkdtemp(prefix=".restoring-", dir=root))
+    moved: list[Path] = []
+    places = {member: _place(member) for member in archive.manifest.members if _place(member)}
+
+    def keep() -> Path | None:
+        pattern = None
+        for member, place in places.items():
+            target = root / str(place)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(folder / str(place), target)
+            moved.append(target)
+            pattern = target if member.name.startswith(PATTERN) else pattern
+        return pattern
+
+    try:
+        for member, place in places.items():
+            path = folder / str(place)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("xb") as file:
+                for block in archive.blocks(member):
+                    file.write(block)
+                file.flush()
+                os.fsync(file.fileno())
+        yield keep
+    except BaseException:
+        for path in moved:
+            path.unlink(missing_ok=True)
+        raise
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _place(member: Member) -> str | None:
+    """Inside the data directory; None for what is no file there. Names were checked when the archive was opened."""
+    if member.name.startswith(PATTERN):
+        return f"{PATTERNS}/{member.name.removeprefix(PATTERN)}"
+    return member.name.removeprefix(FILES) if member.name.startswith(FILES) else None
+
+
+def _write_spool(archive: Archive, settings: Settings) -> None:
+    """The next start stores what had waited; what had been stored meanwhile is known by its number."""
+    waiting = [line for member in archive.manifest.members if member.name == SPOOL for line in archive.lines(member)]
+    if not waiting:
+        return
+    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
+    try:
+        spool.clear()
+        for payload in waiting:
+            spool.append(payload)
+    finally:
+        spool.close()

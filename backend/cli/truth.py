@@ -1,0 +1,94 @@
+"""`crossfix study truth`: is what a search claims true, in worlds whose errors know nothing of the belief's model?"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from backend.api.suggestion import suggested_mission
+from backend.cli.edge import print_json, remark, stop
+from backend.search.localization import error_prior, localization
+from hardware.readings import Place
+from planner.study.errors import StudyError
+from planner.study.truth import Claim, Model, Search, Truth, learn, missions, row_named, truth_of
+
+HOME = Place(50.6234, 7.2046)
+"""Anywhere: the worlds are flat."""
+MODELS: tuple[Model, ...] = ("joint", "independent")
+REMARK_EVERY = 50
+FIRST_LESSON = 1_000_000
+"""Seed of the first flight that is only learned from."""
+
+
+def truth(
+    row: Annotated[
+        str,
+        typer.Option(
+            help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
+            "walls or walls_bias5: how the bearings are wrong (degrees of compass bias, percent of outliers)."
+        ),
+    ],
+    missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,
+    model: Annotated[
+        str, typer.Option(help="What the search believes of the errors: joint (new missions) or independent.")
+    ] = "joint",
+    flights: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            help="joint: flights before these, of the same sensor, from whose bearings alone it learns.",
+        ),
+    ] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Fly the suggested mission in a world of errors and count what the claims were worth.
+
+    Example: crossfix study truth --row bias5 --missions 200 --json
+    """
+    try:
+        found = study_row(row, missions_, model, seed, flights)
+    except StudyError as error:
+        if json_:
+            print_json({"error": str(error)})
+        stop(error)
+    if json_:
+        print_json(found.as_json())
+    else:
+        typer.echo(sentence(found))
+
+
+def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0) -> Truth:
+    """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before."""
+    wanted = row_named(row)
+    known = next((one for one in MODELS if one == model), None)
+    if known is None:
+        raise StudyError(f"there is no model {model!r}: choose one of {', '.join(MODELS)}")
+    if count < 1:
+        raise StudyError(f"--missions must be 1 or more, got {count}")
+    mission = suggested_mission(HOME)
+    task = localization(mission, HOME)
+    search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
+    prior = error_prior(mission.sensor.outlier_probability)
+    if flights and known == "joint":
+        prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
+        remark(f"{row}: learned from {flights} flights")
+    claims: list[Claim] = []
+    for claim in missions(search, wanted, range(first_seed, first_seed + count), known, prior):
+        claims.append(claim)
+        if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
+            remark(f"{row}: {len(claims)} of {count} missions")
+    return truth_of(row, known, claims)
+
+
+def sentence(found: Truth) -> str:
+    """For a terminal."""
+    if not found.claimed:
+        return f"{found.row}: none of {found.missions} missions said localized"
+    return (
+        f"{found.row}, {found.model} errors: {found.missions} missions, {found.claimed:.1%} localized in "
+        f"{found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; truth in C95 {found.in_c95:.1%} "
+        f"[{found.in_c95_low:.1%}, {found.in_c95_high:.1%}], beyond three times stated {found.beyond_3x:.1%} "
+        f"(error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
+    )

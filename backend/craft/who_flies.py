@@ -1,0 +1,67 @@
+"""What the craft machine makes of who has the vehicle, heard in flight or after a restart of the server."""
+
+from __future__ import annotations
+
+from backend.craft.effects import CancelTimer, CancelWork
+from backend.craft.state import AUTOMATIC, HOMEWARD, ours_to_order, pilot_has
+from backend.craft.step import CraftStep, alert, cancel_timers, clear_alerts, clear_failsafe, insist
+from backend.events import AuthorityChanged
+from backend.reasons import flight
+from hardware.authority import Authority
+
+
+def authority_heard(step: CraftStep, heard: Authority) -> None:
+    """Somebody else flies, or the same one differently. Nothing is sent; only an operator takes control back."""
+    craft, before = step.craft, step.craft.authority
+    if not craft.engaged or kept_of(heard) == kept_of(before):
+        return
+    taken = pilot_has(heard) and not craft.taken_over
+    if taken:
+        step.do(CancelWork())
+        cancel_timers(step)
+    step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
+    if not ours_to_order(heard):
+        step.do(CancelTimer("order"))
+        clear_alerts(step, "order")
+    if taken:
+        clear_failsafe(step)
+        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
+        alert(step, "pilot", "caution", reason)
+        step.go("manual", reason)
+    elif heard.who == "failsafe" and before.who != "failsafe" and craft.phase in AUTOMATIC | {"hold"}:
+        step.do(CancelWork())
+        silent = "link_lost" if "vehicle" in craft.links_down else "silence"
+        _failsafe_flies(step, flight.FailsafeFlies(silent))
+
+
+def kept_of(authority: Authority) -> tuple[object, ...]:
+    """What of it is a fact to keep: the bookkeeping of each command is not."""
+    a = authority
+    return a.who, a.taken_by, a.given_back, a.perhaps_failsafe, a.undone, a.mode
+
+
+def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
+    alert(step, "vehicle", "caution", reason)
+    step.go("hold", reason)
+
+
+def restarted(step: CraftStep, heard: Authority) -> None:
+    """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
+    craft = step.craft
+    if not craft.engaged:
+        return
+    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps")
+    if kept_of(heard) != kept_of(craft.authority):
+        step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
+    if craft.taken_over:
+        return
+    if pilot_has(heard):
+        reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
+        alert(step, "pilot", "caution", reason)
+        step.go("manual", reason)
+    elif heard.who == "failsafe":
+        ordered = craft.phase in HOMEWARD
+        _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
+    else:
+        insist(step, "hold")
+        step.go("hold", flight.BackAfterRestart())

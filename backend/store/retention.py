@@ -1,0 +1,91 @@
+"""How long raw sweeps are kept: of missions that are over, for as many days as the setting says; everything else for
+ever. A bearing's power samples take some 18 kB, and all other facts of it a tenth of that."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+from sqlalchemy import ColumnElement, delete, func, select
+from sqlalchemy.ext.asyncio import AsyncEngine
+
+from backend.store.digest import to_us
+from backend.store.tables import missions, sweeps
+
+log = logging.getLogger("crossfix.store")
+
+AT_ONCE = 50
+"""Sweeps in one transaction: a flight that writes meanwhile waits for no more than that."""
+PAUSE_S = 0.05
+EVERY_S = 6 * 3600.0
+FIRST_AFTER_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Thinned:
+    """size_bytes: of the samples as they are stored."""
+
+    missions: int
+    sweeps: int
+    size_bytes: int
+
+
+def _old(keep_days: float, now: datetime) -> ColumnElement[bool]:
+    """Ended, every craft down, and all that longer ago than this. A mission that is open, or that never ended, is not
+    among them."""
+    before = to_us(now - timedelta(days=keep_days))
+    return missions.c.ended_at_us.is_not(None) & (missions.c.ended_at_us < before) & ~missions.c.flying
+
+
+async def old_sweeps(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
+    """What the rule would take. Raises what the driver raises."""
+    query = select(
+        func.count(sweeps.c.mission_id.distinct()),
+        func.count(),
+        func.coalesce(func.sum(func.length(sweeps.c.samples)), 0),
+    ).where(sweeps.c.mission_id == missions.c.mission_id, _old(keep_days, now))
+    async with engine.connect() as connection:
+        of, count, size = (await connection.execute(query)).one()
+    return Thinned(int(of), int(count), int(size))
+
+
+async def thin(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
+    """Take the raw sweeps that are older than the rule, a few at a time. Raises what the driver raises."""
+    found = await old_sweeps(engine, keep_days, now)
+    writer = engine.execution_options(write=True)
+    taken = 0
+    while taken < found.sweeps:
+        async with writer.begin() as connection:
+            chosen = (
+                select(sweeps.c.mission_id, sweeps.c.sweep_id)
+                .where(sweeps.c.mission_id == missions.c.mission_id, _old(keep_days, now))
+                .limit(AT_ONCE)
+            )
+            keys = [tuple(row) for row in await connection.execute(chosen)]
+            for mission_id, sweep_id in keys:
+                here = (sweeps.c.mission_id == mission_id) & (sweeps.c.sweep_id == sweep_id)
+                await connection.execute(delete(sweeps).where(here))
+        if not keys:
+            break
+        taken += len(keys)
+        await asyncio.sleep(PAUSE_S)
+    return found
+
+
+async def keep_thin(engine: AsyncEngine, keep_days: float) -> None:
+    """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
+
+    The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it.
+    """
+    wait_s = FIRST_AFTER_S
+    while True:
+        await asyncio.sleep(wait_s)
+        wait_s = EVERY_S
+        try:
+            taken = await thin(engine, keep_days, datetime.now(UTC))
+            if taken.sweeps:
+                log.info("took %d raw sweeps older than %g days (%d bytes)", taken.sweeps, keep_days, taken.size_bytes)
+        except Exception:
+            log.exception("old raw sweeps could not be taken; tried again later")

@@ -1,0 +1,98 @@
+// How the server is, in words: each part, what is wrong with it, and how to mend it.
+import type { ComponentChildren } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { asProblem } from "../commands/send";
+import { reasonRemedy, reasonText, t } from "../i18n";
+import { ProblemBox } from "../panels/ProblemNote";
+import * as api from "../sources/api";
+import { formatDuration, formatNumber } from "../units/quantities";
+import type { Health, Problem, Reason } from "../wire";
+
+const REFRESH_MS = 3000;
+const DATABASES = { sqlite: "SQLite", postgresql: "PostgreSQL" } as const;
+
+function Part({ name, good, children }: { name: string; good: boolean; children: ComponentChildren }) {
+  return (
+    <section class="card" data-testid="health-part" data-good={good}>
+      <h2>{name}</h2>
+      {children}
+    </section>
+  );
+}
+
+const Why = ({ reason }: { reason: Reason }) => (
+  <p class="refused">
+    {reasonText(reason)} {reasonRemedy(reason)}
+  </p>
+);
+
+function Parts({ health }: { health: Health }) {
+  const { database } = health;
+  return (
+    <>
+      <p role="status" data-testid="health-state" data-state={health.state}>
+        <strong>{t(`health.${health.state}`)}</strong>
+      </p>
+      <Part name={t("health.server")} good>
+        <p>{t("health.serverRuns", { version: health.version, time: formatDuration(health.uptime_s) })}</p>
+        {health.simulated && <p>{t("health.simulated", { factor: formatNumber(health.time_factor) })}</p>}
+        <p>{t("health.viewers", { count: health.viewers })}</p>
+      </Part>
+      <Part name={t("health.database")} good={database.state === "ok" && database.refused === 0}>
+        {database.reason ? <Why reason={database.reason} /> : <p>{t("health.databaseOk", { kind: DATABASES[database.kind] })}</p>}
+        {database.spooled > 0 && <p>{t("health.spooled", { count: database.spooled })}</p>}
+        {database.refused > 0 && <p class="refused">{t("health.refused", { count: database.refused })}</p>}
+        <p class="muted">
+          {health.keep_sweeps_days === null
+            ? t("health.keepForever")
+            : t("health.keepDays", { days: formatNumber(health.keep_sweeps_days) })}
+        </p>
+      </Part>
+      <Part name={t("health.disk")} good>
+        <p>
+          {health.disk_free_bytes === null
+            ? t("health.diskUnknown")
+            : t("health.diskFree", { size: `${formatNumber(health.disk_free_bytes / 1e9, 1)} GB` })}
+        </p>
+      </Part>
+      {health.vehicles.map((vehicle) => (
+        <Part name={t("health.vehicle", { craft: vehicle.craft_id })} good={vehicle.connected} key={vehicle.craft_id}>
+          {vehicle.reason ? <Why reason={vehicle.reason} /> : <p>{t("health.vehicleOk", { autopilot: vehicle.autopilot })}</p>}
+        </Part>
+      ))}
+    </>
+  );
+}
+
+export function HealthPage() {
+  const [health, setHealth] = useState<Health | null>(null);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  useEffect(() => {
+    const read = () =>
+      api.health().then(
+        (told) => {
+          setHealth(told);
+          setProblem(null);
+        },
+        (error: unknown) => {
+          setHealth(null);
+          setProblem(asProblem(error));
+        },
+      );
+    void read();
+    const timer = setInterval(() => void read(), REFRESH_MS);
+    return () => clearInterval(timer);
+  }, []);
+  return (
+    <div class="page" data-testid="health">
+      <h1>{t("health.title")}</h1>
+      {problem && (
+        <>
+          <p>{t("health.unknown")}</p>
+          <ProblemBox problem={problem} />
+        </>
+      )}
+      {health && <Parts health={health} />}
+    </div>
+  );
+}

@@ -1,0 +1,83 @@
+"""How well each place explains the bearings of one source, its bias, scale and outlier rate marginalized: in numpy.
+
+The specification of `compiled_evidence`, and its oracle in the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from planner.belief.source_errors import Nodes
+from planner.observation import expected_bearing, wrap
+from planner.types import Bearing, FloatArray, IntArray
+
+
+class Sightings(NamedTuple):
+    """The bearings of one source as arrays. x, y: (n,) m. sigma: (n,) rad, of each bearing's own error.
+
+    first: (n + 1,) where the peaks of each bearing begin in angle (p,) rad and weight (p,); a bearing's weights sum
+    to 1.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    sigma: FloatArray
+    first: IntArray
+    angle: FloatArray
+    weight: FloatArray
+
+
+class Evidence(NamedTuple):
+    """Of c places. log: (c,) the logarithm of p(bearings | place), up to the same constant everywhere.
+
+    bias (c, b), scale (c, k), rate (c, e): the errors' masses if the emitter is there; rows sum to 1.
+    """
+
+    log: FloatArray
+    bias: FloatArray
+    scale: FloatArray
+    rate: FloatArray
+
+
+def sightings(bearings: Sequence[Bearing]) -> Sightings:
+    """The bearings' outlier probability is not used: the source's rate stands for it."""
+    peaks = [[(b.angle, 1.0), *((peak.angle, peak.weight) for peak in b.peaks)] for b in bearings]
+    first = np.concatenate([[0], np.cumsum([len(some) for some in peaks])]).astype(np.int64)
+    weights = [w / sum(v for _, v in some) for some in peaks for _, w in some]
+    return Sightings(
+        np.array([b.x for b in bearings], dtype=float),
+        np.array([b.y for b in bearings], dtype=float),
+        np.array([b.sigma for b in bearings], dtype=float),
+        first,
+        np.array([angle for some in peaks for angle, _ in some], dtype=float),
+        np.array(weights, dtype=float),
+    )
+
+
+def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evidence:
+    """Of the places (c,) x, y, m ENU.
+
+    p(z | x) = sum_b,s,e p(b) p(s) p(e) prod_i [(1 - e) sum_j w_ij N(z_ij - dir_i(x) - b; 0, (s sigma_i)^2) + e / 2 pi],
+    each bearing's density in units of that at the peak of N(0, sigma_i^2).
+    """
+    prior = nodes.scale_weight[:, None, None] * nodes.rate_weight[:, None] * nodes.bias_weight
+    log = np.broadcast_to(np.log(prior), (len(x), *prior.shape)).copy()
+    for i in range(len(seen.x)):
+        direction = expected_bearing(seen.x[i], seen.y[i], x, y)
+        sigma = nodes.scale * seen.sigma[i]
+        density = np.zeros((len(x), len(sigma), len(nodes.bias)))
+        for j in range(seen.first[i], seen.first[i + 1]):
+            error = wrap(seen.angle[j] - direction)[:, None] - nodes.bias
+            density += seen.weight[j] * np.exp(-0.5 * (error[:, None, :] / sigma[:, None]) ** 2)
+        honest = (1.0 - nodes.rate[:, None]) * density[:, :, None, :] / nodes.scale[:, None, None]
+        log += np.log(honest + nodes.rate[:, None] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
+    top = log.max(axis=(1, 2, 3), keepdims=True)
+    mass = np.exp(log - top)
+    whole = mass.sum(axis=(1, 2, 3))
+    mass /= whole[:, None, None, None]
+    return Evidence(
+        np.log(whole) + top[:, 0, 0, 0], mass.sum(axis=(1, 2)), mass.sum(axis=(2, 3)), mass.sum(axis=(1, 3))
+    )

@@ -1,0 +1,188 @@
+"""The joint belief: place x bias x scale x outlier rate of each source of bearings, marginalized exactly.
+
+What is common to a source's bearings counts once. Given the place the sources are independent, so the belief over
+places is prior(x) prod_s p(bearings of s | x), each factor summed over its source's errors (planner.belief.evidence).
+Nothing but the grid's geometry is carried on from bearing to bearing: all of them are weighed again on the cells of the
+grid as it stands, so that a refined grid knows what a coarse one could not.
+
+A joint belief is a `GridBelief`: planner, forecast and page take its mass over places as they take any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+
+from planner.belief import compiled_evidence, evidence
+from planner.belief.evidence import Evidence, sightings
+from planner.belief.grid import (
+    COARSE_CELLS,
+    MOST_CELLS,
+    NEGLIGIBLE_MASS,
+    GridBelief,
+    aligned_range,
+    extent_of,
+    prior_belief,
+    smallest_set,
+)
+from planner.belief.source_errors import ErrorPrior, Nodes, SourceErrors, nodes
+from planner.observation import validate_bearing
+from planner.types import Bearing, FloatArray, Problem
+
+UNKNOWN_SOURCE = ErrorPrior()
+"""What is assumed of a source of which nothing is known."""
+
+MANY_CELLS = 128 * 128
+"""A larger grid is refined only where COARSEST_CELLS are too few: every bearing is weighed on every cell."""
+COARSEST_CELLS = 12
+"""Cells along the longer side of the 95 % region that any grid must have."""
+DEEPEST_REFINEMENT = 16
+SMALLEST_SIGMA = np.deg2rad(1.0)
+"""A source's bearings are never taken to be better than this: neither the position nor the pattern is."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointBelief(GridBelief):
+    """prior: (ny, nx) mass of the cells before any bearing. folded: all bearings so far. priors: what was known of a
+    source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
+    now of the errors of each source that took a bearing.
+    """
+
+    prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    folded: tuple[Bearing, ...] = ()
+    priors: Mapping[str, ErrorPrior] = field(default_factory=dict[str, ErrorPrior])
+    otherwise: ErrorPrior = UNKNOWN_SOURCE
+    errors: tuple[SourceErrors, ...] = ()
+
+    def errors_of(self, source: str) -> SourceErrors | None:
+        """None for a source that took no bearing."""
+        return next((one for one in self.errors if one.source == source), None)
+
+
+def joint_prior(
+    problem: Problem, priors: Mapping[str, ErrorPrior] | None = None, otherwise: ErrorPrior = UNKNOWN_SOURCE
+) -> JointBelief:
+    """The belief before any bearing; priors and otherwise as in `JointBelief`.
+
+    PlannerError when area or prior is unusable.
+    """
+    found = prior_belief(problem)
+    same = {one.name: getattr(found, one.name) for one in fields(GridBelief)}
+    return JointBelief(**same, prior=found.density, priors={} if priors is None else priors, otherwise=otherwise)
+
+
+Weighing = Callable[..., Evidence]
+"""`evidence.evidence` or its compiled twin."""
+
+
+def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = compiled_evidence.evidence) -> JointBelief:
+    """Bayes' rule for one bearing more (3.26-3.28), then crop to what holds mass and refine where that is coarse."""
+    validate_bearing(bearing)
+    folded = (*belief.folded, bearing)
+    belief = _weighed(replace(belief, folded=folded, bearings=len(folded), copies=1), weighing)
+    belief = _cropped(belief)
+    for _ in range(DEEPEST_REFINEMENT):
+        if not _coarse(belief):
+            break
+        belief = _cropped(_weighed(_refined(belief), weighing))
+    return belief
+
+
+def by_source(bearings: Sequence[Bearing]) -> dict[str, list[Bearing]]:
+    """In the order in which the sources first took one."""
+    found: dict[str, list[Bearing]] = {}
+    for bearing in bearings:
+        found.setdefault(bearing.source, []).append(bearing)
+    return found
+
+
+def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
+    """All bearings on the cells of the grid: mass of each cell, and of the errors of each source."""
+    rows, columns = np.nonzero(belief.prior)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    log = np.log(belief.prior[rows, columns])
+    found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
+    for source, taken in by_source(belief.folded).items():
+        honest = [replace(b, sigma=max(b.sigma, SMALLEST_SIGMA)) for b in taken]
+        prior = belief.priors.get(source, belief.otherwise)
+        grid = nodes(prior, min(b.sigma for b in honest), len(honest))
+        weighed = weighing(x, y, sightings(honest), grid)
+        log = log + weighed.log
+        found.append((source, len(taken), prior, grid, weighed))
+    mass = np.exp(log - log.max())
+    mass /= mass.sum()
+    density = np.zeros_like(belief.prior)
+    density[rows, columns] = mass
+    errors = tuple(_errors(*one, mass=mass, x=x, y=y) for one in found)
+    return replace(belief, density=density, errors=errors)
+
+
+def _errors(
+    source: str,
+    bearings: int,
+    prior: ErrorPrior,
+    grid: Nodes,
+    weighed: Evidence,
+    mass: FloatArray,
+    x: FloatArray,
+    y: FloatArray,
+) -> SourceErrors:
+    """The errors' masses, summed over the places."""
+    mean = weighed.bias @ grid.bias
+    off = mass * (mean - float(mass @ mean))
+    with_place = np.array([off @ x, off @ y])
+    return SourceErrors(
+        source, bearings, prior, grid, mass @ weighed.bias, mass @ weighed.scale, mass @ weighed.rate, with_place
+    )
+
+
+def _cropped(belief: JointBelief) -> JointBelief:
+    """The cells that hold all but a negligible share of the mass, normalized."""
+    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 1.0 - NEGLIGIBLE_MASS))
+    i0, i1 = aligned_range(x_min - belief.x0, x_max - belief.x0, belief.h, belief.nx)
+    j0, j1 = aligned_range(y_min - belief.y0, y_max - belief.y0, belief.h, belief.ny)
+    density = belief.density[j0:j1, i0:i1]
+    return replace(
+        belief,
+        density=np.ascontiguousarray(density / density.sum()),
+        prior=np.ascontiguousarray(belief.prior[j0:j1, i0:i1]),
+        x0=belief.x0 + i0 * belief.h,
+        y0=belief.y0 + j0 * belief.h,
+    )
+
+
+def _coarse(belief: JointBelief) -> bool:
+    x_min, y_min, x_max, y_max = extent_of(belief, smallest_set(belief, 0.95))
+    across, refined = max(x_max - x_min, y_max - y_min) / belief.h, 4 * belief.density.size
+    if refined <= MANY_CELLS:
+        return across < COARSE_CELLS - 0.5
+    return across < COARSEST_CELLS - 0.5 and refined <= MOST_CELLS
+
+
+def _refined(belief: JointBelief) -> JointBelief:
+    """Both resolutions doubled; the four children share their parent's prior mass."""
+    prior = 0.25 * belief.prior.repeat(2, axis=0).repeat(2, axis=1)
+    return replace(belief, prior=prior, density=prior, h=belief.h / 2.0)
+
+
+def corrected(belief: GridBelief, bearings: Sequence[Bearing]) -> tuple[Bearing, ...]:
+    """The bearings as the belief reads them: freed of their source's bias, sigma with its scale and the bias' spread.
+
+    Those of a belief that knows no sources' errors stay as they are.
+    """
+    if not isinstance(belief, JointBelief):
+        return tuple(bearings)
+    return tuple(_corrected(belief.errors_of(b.source), b) for b in bearings)
+
+
+def _corrected(errors: SourceErrors | None, bearing: Bearing) -> Bearing:
+    if errors is None:
+        return bearing
+    peaks = tuple(replace(peak, angle=peak.angle - errors.bias) for peak in bearing.peaks)
+    sigma = float(np.hypot(errors.scale * max(bearing.sigma, SMALLEST_SIGMA), errors.bias_sd))
+    return replace(bearing, angle=bearing.angle - errors.bias, sigma=sigma, peaks=peaks)
+
+
+reference_weighing: Weighing = evidence.evidence

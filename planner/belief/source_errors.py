@@ -1,0 +1,139 @@
+"""What the bearings of one source are wrong by together: a bias, a scale of their sigmas, a rate of outliers.
+
+A source is whoever took the bearings: a craft's antenna, a person, another receiver. Its bearing i from place x_i is
+
+    z_i = atan2(y - y_i, x - x_i) + b + w_i,    w_i ~ (1 - e) N(0, (s sigma_i)^2) + e / (2 pi)
+
+with one bias b, scale s and outlier rate e for all its bearings of a flight. Before the flight b ~ N(0, tau^2) with tau
+one of several standard deviations: how good the compass is, is not known either. Angles: rad ccw from east, so a
+compass that reads too large has a negative b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import erf, sqrt
+
+import numpy as np
+
+from planner.types import FloatArray
+
+LARGEST_BIAS = np.deg2rad(27.0)
+"""A bias beyond this is not looked for: 2.7 standard deviations of the worst compass."""
+NODE_SIGMAS = 1.0
+"""Spacing of the bias' nodes, in standard errors of the mean of the bearings at the smallest scale: a sum over nodes
+one standard deviation apart is good to 2 exp(-2 pi^2), 5e-9, of a Gaussian's integral."""
+NARROWEST_SCALE = 0.7
+FINEST_SPACING = np.deg2rad(0.25)
+COARSEST_SPACING = np.deg2rad(2.5)
+NEGLIGIBLE_WEIGHT = 1e-7
+"""Nodes at the ends of the range that are less probable than this are left out."""
+
+
+def _degrees(*values: float) -> FloatArray:
+    return np.deg2rad(np.array(values))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ErrorPrior:
+    """What is known of a source's errors before the flight, as discrete distributions.
+
+    spread: (t,) rad, standard deviations tau that the bias may have. scale: (k,) of the stated sigmas. rate: (e,) of
+    outliers, in (0, 1). Each with weights that sum to 1. The defaults know nothing of the compass.
+    """
+
+    spread: FloatArray = field(default_factory=lambda: _degrees(0.5, 1.0, 2.0, 3.5, 6.0, 10.0))
+    spread_weight: FloatArray = field(default_factory=lambda: np.full(6, 1.0 / 6.0))
+    scale: FloatArray = field(default_factory=lambda: np.array([0.7, 1.0, 1.45]))
+    scale_weight: FloatArray = field(default_factory=lambda: np.array([0.25, 0.5, 0.25]))
+    rate: FloatArray = field(default_factory=lambda: np.array([0.05, 0.2]))
+    rate_weight: FloatArray = field(default_factory=lambda: np.array([0.6, 0.4]))
+
+    @property
+    def bias_sd(self) -> float:
+        """rad, of the bias before any bearing."""
+        return float(np.sqrt(self.spread_weight @ self.spread**2))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nodes:
+    """The grid on which a source's errors are marginalized: values and weights of bias (b,), scale (k,), rate (e,).
+
+    The bias' values are equally spaced; spacing: rad, of one that stands alone, too.
+    """
+
+    bias: FloatArray
+    bias_weight: FloatArray
+    scale: FloatArray
+    scale_weight: FloatArray
+    rate: FloatArray
+    rate_weight: FloatArray
+    spacing: float
+
+
+def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:
+    """The grid for this many bearings of about `sigma` rad: fine enough for the bias that they leave.
+
+    The weight of a node is the prior's mass between its neighbours' middles, so a tau smaller than the spacing counts.
+    """
+    error = NARROWEST_SCALE * sigma / np.sqrt(max(bearings, 1))
+    spacing = float(np.clip(NODE_SIGMAS * error, FINEST_SPACING, COARSEST_SPACING))
+    side = int(np.ceil(LARGEST_BIAS / spacing))
+    bias = spacing * np.arange(-side, side + 1)
+    weight = bias_weights(bias, spacing, prior.spread) @ prior.spread_weight
+    weight = weight / weight.sum()
+    kept = np.flatnonzero(weight > NEGLIGIBLE_WEIGHT)
+    where = slice(int(kept[0]), int(kept[-1]) + 1)
+    return Nodes(
+        bias[where],
+        weight[where] / weight[where].sum(),
+        prior.scale,
+        prior.scale_weight,
+        prior.rate,
+        prior.rate_weight,
+        spacing,
+    )
+
+
+def bias_weights(bias: FloatArray, spacing: float, spread: FloatArray) -> FloatArray:
+    """(b, t) probability of the surroundings of each node, half a spacing to each side, under N(0, spread^2)."""
+    edges = np.append(bias - 0.5 * spacing, bias[-1] + 0.5 * spacing)
+    below = [[0.5 * (1.0 + erf(edge / (sqrt(2.0) * tau))) for tau in spread] for edge in edges]
+    return np.diff(np.array(below), axis=0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SourceErrors:
+    """What the bearings say of their source: masses over the nodes, and how bias and place hang together.
+
+    bias_mass (b,), scale_mass (k,), rate_mass (e,) sum to 1. covariance_with_place: (2,) m rad, of (x, y) and the bias.
+    """
+
+    source: str
+    bearings: int
+    prior: ErrorPrior
+    nodes: Nodes
+    bias_mass: FloatArray
+    scale_mass: FloatArray
+    rate_mass: FloatArray
+    covariance_with_place: FloatArray
+
+    @property
+    def bias(self) -> float:
+        """rad, its expected value."""
+        return float(self.bias_mass @ self.nodes.bias)
+
+    @property
+    def bias_sd(self) -> float:
+        """rad, its standard deviation."""
+        return float(np.sqrt(max(self.bias_mass @ (self.nodes.bias - self.bias) ** 2, 0.0)))
+
+    @property
+    def scale(self) -> float:
+        """Root mean square of the factor on the stated sigmas."""
+        return float(np.sqrt(self.scale_mass @ self.nodes.scale**2))
+
+    @property
+    def outlier_rate(self) -> float:
+        """Its expected value."""
+        return float(self.rate_mass @ self.nodes.rate)

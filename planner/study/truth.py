@@ -1,0 +1,226 @@
+"""Is what the search claims true? Whole missions in worlds whose errors know nothing of the filter's model.
+
+Every mission has an emitter anywhere in the area and a sensor with errors of its own (planner.study.error_worlds). The
+base policy chooses the places, and the mission ends when the verdict says "localized" or with its last bearing. What is
+counted is counted at the claim: belief and estimate are those that the operator would act on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Any, Literal
+
+import numpy as np
+
+from planner.belief.estimate import confidence_region, estimate
+from planner.belief.grid import GridBelief, prior_belief, update
+from planner.belief.joint import JointBelief, joint_prior, update_joint
+from planner.belief.learning import FlightEvidence, flight_evidence, learned
+from planner.belief.source_errors import ErrorPrior
+from planner.belief.verdict import verdict
+from planner.geometry import bounds, contains, distance_to_convex
+from planner.motion import flight_time
+from planner.policy.fisher import fisher
+from planner.study.error_worlds import ROWS, Row
+from planner.types import Bearing, FloatArray, InconsistentBearings, LocalizationRule, Problem
+
+Model = Literal["joint", "independent"]
+DOUBT = 0.1
+"""Outlier probability of the independent model: the default of a mission."""
+BEYOND = 3.0
+"""Times the stated error."""
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """What came of one mission. time_s: until its end. error_m, stated_m, in_c95: at the claim.
+
+    bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
+    (NaN: it knows none).
+    """
+
+    claimed: bool
+    in_c95: bool
+    error_m: float
+    stated_m: float
+    bearings: int
+    time_s: float
+    bias_off_deg: float
+    bias_sd_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1], the last two of those that claimed.
+
+    in_c95_low, in_c95_high: Wilson's 95 % interval. mean_s: s until the claim or the last bearing. bias_inside: share
+    in which the bias was within two of its stated standard deviations.
+    """
+
+    row: str
+    model: Model
+    missions: int
+    claimed: float
+    in_c95: float
+    in_c95_low: float
+    in_c95_high: float
+    beyond_3x: float
+    mean_s: float
+    bearings_mean: float
+    error_mean_m: float
+    stated_mean_m: float
+    bias_inside: float
+
+    def as_json(self) -> dict[str, Any]:
+        """Shares and times rounded to what the missions can tell; None: no mission told."""
+        return {name: _rounded(value) for name, value in asdict(self).items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """The task that is flown. platform: m ENU, where it starts. most_bearings: a mission ends unclaimed after these."""
+
+    problem: Problem
+    rule: LocalizationRule
+    platform: tuple[float, float]
+    most_bearings: int = 20
+
+
+def missions(
+    search: Search, row: Row, seeds: Sequence[int], model: Model = "joint", prior: ErrorPrior | None = None
+) -> Iterator[Claim]:
+    """Mission by mission, each with its own emitter and errors; the seed decides both. prior: of the joint model."""
+    for seed in seeds:
+        yield fly(search, row, seed, model, prior)
+
+
+def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: ErrorPrior | None = None) -> Claim:
+    """One mission."""
+    return _flown(search, row, seed, model, prior)[0]
+
+
+def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -> ErrorPrior:
+    """What flights of the row teach of its sensor, one after the other, each with what was learned before it.
+
+    Only bearings are learned from: where the emitter was, nobody says.
+    """
+    found: list[FlightEvidence] = []
+    prior = unknown
+    for seed in seeds:
+        _, belief = _flown(search, row, seed, "joint", prior)
+        assert isinstance(belief, JointBelief)
+        found.append(flight_evidence(belief.errors[0]))
+        prior = learned(found, unknown)
+    return prior
+
+
+def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior | None) -> tuple[Claim, GridBelief]:
+    problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
+    target = _anywhere(problem, rng)
+    sensor = row.sensor(target, rng)
+    belief = _prior(problem, model, prior)
+    here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
+    while True:
+        choice = fisher(problem, belief, (float(here[0]), float(here[1])))
+        place = np.array([choice.x, choice.y])
+        time += float(flight_time(problem.motion, float(np.hypot(*(place - here))), 0.0)) + problem.measurement_time
+        here = place
+        angle, sigma = sensor.bearing(place, len(bearings))
+        bearings.append(_bearing(model, place, angle, sigma, row.heading_sigma))
+        belief = _updated(problem, belief, bearings, model)
+        said = verdict(problem, search.rule, bearings, belief)
+        if said.localized or len(bearings) == search.most_bearings:
+            break
+    spread = estimate(belief, problem.estimator)
+    errors = belief.errors[0] if isinstance(belief, JointBelief) else None
+    claim = Claim(
+        claimed=said.localized,
+        in_c95=bool(distance_to_convex(target[None], confidence_region(belief))[0] <= 0.0),
+        error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
+        stated_m=spread.expected_rmse,
+        bearings=len(bearings),
+        time_s=time,
+        bias_off_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias - sensor.bias)),
+        bias_sd_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias_sd)),
+    )
+    return claim, belief
+
+
+ROWS_SEED = 14
+"""Keeps these missions' chance apart from that of other studies with the same seeds."""
+
+
+def truth_of(row: str, model: Model, claims: Sequence[Claim]) -> Truth:
+    """Sums up the missions of a row; shares of claims are NaN when there is none."""
+    claimed = [c for c in claims if c.claimed]
+    nothing = float("nan")
+    inside = sum(c.in_c95 for c in claimed)
+    low, high = wilson(inside, len(claimed)) if claimed else (nothing, nothing)
+    known = [c for c in claims if np.isfinite(c.bias_off_deg)]
+    return Truth(
+        row=row,
+        model=model,
+        missions=len(claims),
+        claimed=len(claimed) / len(claims),
+        in_c95=inside / len(claimed) if claimed else nothing,
+        in_c95_low=low,
+        in_c95_high=high,
+        beyond_3x=float(np.mean([c.error_m > BEYOND * c.stated_m for c in claimed])) if claimed else nothing,
+        mean_s=float(np.mean([c.time_s for c in claims])),
+        bearings_mean=float(np.mean([c.bearings for c in claims])),
+        error_mean_m=float(np.mean([c.error_m for c in claimed])) if claimed else nothing,
+        stated_mean_m=float(np.mean([c.stated_m for c in claimed])) if claimed else nothing,
+        bias_inside=float(np.mean([abs(c.bias_off_deg) <= 2.0 * c.bias_sd_deg for c in known])) if known else nothing,
+    )
+
+
+def _rounded(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return round(value, 4) if isfinite(value) else None
+
+
+def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
+    """Wilson's interval of a share (Wilson 1927)."""
+    share, square = successes / trials, z * z / trials
+    middle = (share + square / 2.0) / (1.0 + square)
+    half = z * np.sqrt(share * (1.0 - share) / trials + square / (4.0 * trials)) / (1.0 + square)
+    return float(middle - half), float(middle + half)
+
+
+def row_named(name: str) -> Row:
+    """StudyError for a row that does not exist."""
+    return ROWS.named(name)
+
+
+def _anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
+    x_min, y_min, x_max, y_max = bounds(problem.area)
+    while True:
+        target = rng.uniform((x_min, y_min), (x_max, y_max))
+        if contains(problem.area, target[None])[0]:
+            return target
+
+
+def _prior(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBelief:
+    if model == "independent":
+        return prior_belief(problem)
+    return joint_prior(problem) if prior is None else joint_prior(problem, otherwise=prior)
+
+
+def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float) -> Bearing:
+    """The independent model takes the heading's error for each bearing's own."""
+    x, y = float(place[0]), float(place[1])
+    if model == "independent":
+        return Bearing(x, y, angle, float(np.hypot(sigma, heading_sigma)), outlier_probability=DOUBT)
+    return Bearing(x, y, angle, sigma, source="craft")
+
+
+def _updated(problem: Problem, belief: GridBelief, bearings: Sequence[Bearing], model: Model) -> GridBelief:
+    if isinstance(belief, JointBelief):
+        return update_joint(belief, bearings[-1])
+    try:
+        return update(belief, bearings[-1])
+    except InconsistentBearings:
+        return prior_belief(problem)

@@ -1,0 +1,55 @@
+"""`crossfix study truth` at its edge."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from backend.cli.study import app
+from planner.study.truth import Truth
+
+PROMISED = {"row", "missions", "claimed", "in_c95", "beyond_3x", "mean_s", "bearings_mean"}
+
+
+def run(*arguments: str) -> tuple[int, str, str]:
+    result = CliRunner().invoke(app, ["truth", *arguments])
+    return result.exit_code, result.stdout, result.stderr
+
+
+def test_a_row_is_one_json_object_with_what_was_promised() -> None:
+    code, out, _ = run("--row", "right", "--missions", "2", "--json")
+    found = json.loads(out)
+    assert code == 0
+    assert set(found) >= PROMISED
+    assert (found["row"], found["missions"], found["claimed"]) == ("right", 2, 1.0)
+    assert run("--row", "right", "--missions", "2", "--json")[1] == out
+
+
+def test_for_people_it_is_a_sentence() -> None:
+    code, out, _ = run("--row", "right", "--missions", "1", "--model", "independent")
+    assert code == 0
+    assert "independent errors: 1 missions" in out
+
+
+def test_earlier_flights_are_learned_from() -> None:
+    code, out, err = run("--row", "right", "--missions", "1", "--flights", "2", "--json")
+    assert code == 0
+    assert "learned from 2 flights" in err
+    assert Truth(**json.loads(out)).claimed == 1.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("--row", "bias6"), "there is no row 'bias6'"),
+        (("--row", "bias5", "--missions", "0"), "--missions must be 1 or more"),
+        (("--row", "bias5", "--model", "some"), "there is no model 'some'"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_one_line(arguments: tuple[str, ...], says: str) -> None:
+    code, out, err = run(*arguments, "--json")
+    assert code == 2
+    assert says in err
+    assert says in json.loads(out)["error"]

@@ -1,0 +1,115 @@
+"""A mission whose bearings' errors are estimated with the place, and one that does not name a model of them."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from ground import AREA, FRAME, HOME, towards
+
+from backend.api.suggestion import suggested_mission
+from backend.events import BearingMeasured, BeliefUpdated, PersonSource
+from backend.reasons.search import BearingsCorrected
+from backend.search.localization import Localization, error_prior, localization, source_name
+from backend.search.machine import SearchStep, doubt_headings
+from backend.search.planning import foreseen
+from backend.search.state import SearchState
+from backend.spec import MissionSpec, SensorSpec, with_todays_errors
+from planner.belief.joint import JointBelief
+
+TARGET = (120.0, 60.0)
+AROUND = ((60.0, -40.0), (180.0, -40.0), (200.0, 100.0), (40.0, 110.0), (120.0, 160.0), (10.0, 20.0))
+
+
+def task(**sensor: object) -> Localization:
+    return localization(MissionSpec(name="m", area=AREA, sensor=SensorSpec.model_validate(sensor)), HOME)
+
+
+JOINT = task(bearing_errors="joint")
+
+
+def turned(degrees: float, count: int = 6) -> list[BearingMeasured]:
+    """Bearings with 2 degrees of their own and a heading that is stated to be good to 4."""
+    exact = [towards(x, y, TARGET, sigma=math.hypot(2.0, 4.0)) for x, y in AROUND[:count]]
+    return [
+        b.model_copy(update={"bearing_deg": (b.bearing_deg + degrees) % 360.0, "heading_sigma_deg": 4.0}) for b in exact
+    ]
+
+
+def test_a_new_mission_is_joint_and_one_that_names_no_model_is_what_it_was() -> None:
+    bare = {"name": "m", "area": AREA.model_dump(mode="json")}
+    stored = MissionSpec.model_validate(bare)
+    assert stored.sensor.bearing_errors == "independent"
+    assert not isinstance(localization(stored, HOME).prior, JointBelief)
+    assert with_todays_errors(stored).sensor.bearing_errors == "joint"
+    assert suggested_mission(HOME).sensor.bearing_errors == "joint"
+    named = MissionSpec.model_validate(bare | {"sensor": {"bearing_errors": "independent"}})
+    assert with_todays_errors(named) == named
+    assert json.loads(stored.model_dump_json())["sensor"]["bearing_errors"] == "independent"
+
+
+def test_a_turned_compass_is_found_used_and_said_clockwise() -> None:
+    fact, belief = JOINT.belief_fact(turned(11.0))
+    (errors,) = fact.sources
+    assert isinstance(belief, JointBelief)
+    assert errors.source == turned(0.0)[0].source
+    assert errors.bias_deg == pytest.approx(11.0, abs=2.0)
+    assert errors.bias_std_error_deg < 2.5
+    assert fact.localized
+    assert fact.heading_offset_deg is None
+    assert fact.estimate is not None
+    assert math.dist(FRAME.to_enu(fact.estimate), TARGET) < 4.0
+    blocked, _ = task().belief_fact(turned(11.0))
+    assert not blocked.localized
+    assert blocked.sources == []
+
+
+def test_the_same_bearings_give_the_same_belief() -> None:
+    seen = turned(4.0)
+    grown = [JOINT.belief_fact(seen[:count])[0].digest for count in range(1, 7)]
+    assert [task(bearing_errors="joint").belief_fact(seen[:count])[0].digest for count in (6, 3)] == [
+        grown[5],
+        grown[2],
+    ]
+
+
+def test_a_person_and_a_craft_are_wrong_each_in_their_own_way() -> None:
+    person = PersonSource(name="Ada")
+    by_hand = [b.model_copy(update={"source": person, "bearing_id": f"p{k}"}) for k, b in enumerate(turned(-9.0))]
+    fact, _ = JOINT.belief_fact([*turned(8.0), *by_hand])
+    craft, hand = fact.sources
+    assert (craft.bias_deg > 4.0, hand.bias_deg < -4.0) == (True, True)
+    assert hand.source == person
+    assert source_name(person) != source_name(craft.source)
+
+
+def test_a_large_bias_is_a_caution_that_says_it_is_used() -> None:
+    for degrees, expected in ((0.0, []), (12.0, [BearingsCorrected])):
+        fact, _ = JOINT.belief_fact(turned(degrees))
+        step = SearchStep(SearchState(), 0.0)
+        doubt_headings(step, fact)
+        assert [type(alert.reason) for alert in step.state.open_alerts] == expected
+
+
+def test_the_sigma_to_come_is_their_own_and_what_is_open_of_the_bias() -> None:
+    seen = turned(5.0)
+    belief = JOINT.planning_belief(JOINT.planner_bearings(seen))
+    few = JOINT.planning_belief(JOINT.planner_bearings(seen[:1]))
+    plain = foreseen(JOINT.problem, seen)
+    assert foreseen(JOINT.problem, seen, belief).sigma < 0.8 * plain.sigma
+    assert foreseen(JOINT.problem, seen[:1], few).sigma > foreseen(JOINT.problem, seen, belief).sigma
+    assert foreseen(JOINT.problem, (), JOINT.prior).sigma == pytest.approx(JOINT.problem.sigma)
+
+
+def test_outliers_are_half_or_twice_as_frequent_as_specified() -> None:
+    assert error_prior(0.1).rate == pytest.approx([0.05, 0.2])
+    assert error_prior(0.5).rate.max() < 1.0
+    assert len(error_prior(0.0).rate) == 1
+
+
+def test_a_belief_of_before_has_no_sources() -> None:
+    fact, _ = task().belief_fact(turned(0.0))
+    stored = json.loads(fact.model_dump_json())
+    del stored["sources"]
+    assert BeliefUpdated.model_validate(stored) == fact

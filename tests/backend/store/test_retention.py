@@ -1,0 +1,97 @@
+"""Raw sweeps go by rule: those of missions that are long over, and nothing else."""
+
+from __future__ import annotations
+
+import asyncio
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from facts import HOME, SPEC
+from sqlalchemy import make_url
+from typer.testing import CliRunner
+
+from backend.cli.main import app
+from backend.events import MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
+from backend.reasons.flight import Ordered
+from backend.reasons.search import Localized
+from backend.store.engine import engine_for_once
+from backend.store.retention import old_sweeps, thin
+from hardware.readings import Sweep
+
+DRAFT = MissionDrafted(spec=SPEC)
+STARTED = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
+SWEEP = Sweep(np.arange(3.0), np.arange(3.0), np.arange(3.0), 868e6, HOME, 140.0)
+NOW = datetime(2026, 6, 1, tzinfo=UTC)
+ENDED = MissionEnded(outcome="localized", reason=Localized(), mission_time_s=200.0)
+
+
+def craft(before: str, after: str) -> PhaseChanged:
+    reason = Ordered("abort", "operator")
+    return PhaseChanged(craft_id="craft-1", before=before, after=after, reason=reason)
+
+
+STORIES = {
+    "draft": [DRAFT],
+    "flying": [DRAFT, STARTED],
+    "on its way home": [DRAFT, STARTED, craft("ground", "returning"), ENDED],
+    "over": [DRAFT, STARTED, craft("ground", "returning"), ENDED, craft("returning", "ground")],
+}
+
+
+async def fill(bench, days_ago: float, suffix: str = "") -> list[str]:
+    bench.now_s = (NOW - timedelta(days=days_ago)).timestamp()
+    journal = await bench.open(f"{days_ago}.spool")
+    for name, events in STORIES.items():
+        await journal.append(name + suffix, events)
+        for n in range(60):
+            await journal.save_sweep(name + suffix, f"s{n}", "craft-1", "emitter-1", 1, 1, SWEEP)
+    return [name + suffix for name in STORIES]
+
+
+async def left(bench, missions: list[str]) -> set[str]:
+    journal = await bench.open(f"{len(bench.opened)}.read.spool")
+    return {name for name in missions for n in (0, 59) if await journal.sweep(name, f"s{n}") is not None}
+
+
+async def test_only_missions_long_over_lose_their_samples(bench):
+    old, new = await fill(bench, 400.0), await fill(bench, 3.0, " lately")
+    engine = engine_for_once(bench.url, 5.0)
+    try:
+        would = await old_sweeps(engine, 365.0, NOW)
+        assert await left(bench, old + new) == {*old, *new}
+        assert await thin(engine, 365.0, NOW) == would
+        assert (would.missions, would.sweeps) == (1, 60)
+        assert would.size_bytes > 60 * 20
+        assert (await old_sweeps(engine, 365.0, NOW)).sweeps == 0
+    finally:
+        await engine.dispose()
+    assert await left(bench, old + new) == {*old, *new} - {"over"}
+    journal = await bench.open("after.spool")
+    assert [record.event for record in await journal.read("over")] == STORIES["over"]
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+async def test_the_command_takes_them_and_the_file_shrinks(bench, tmp_path):
+    wide = np.random.default_rng(1).normal(size=4000)
+    journal = await bench.open()
+    bench.now_s = (datetime.now(UTC) - timedelta(days=20)).timestamp()
+    await journal.append("over", STORIES["over"])
+    for n in range(20):
+        sweep = type(SWEEP)(wide, wide, wide, 868e6, SWEEP.position, 140.0)
+        await journal.save_sweep("over", f"s{n}", "craft-1", "emitter-1", 1, 1, sweep)
+    await bench.close()
+    file = tmp_path / "crossfix.sqlite"
+    assert str(file) == make_url(bench.url).database
+    before = file.stat().st_size
+
+    def crossfix(*more: str) -> str:
+        result = CliRunner().invoke(app, ["thin", "--data-dir", str(tmp_path), *more])
+        return f"{result.exit_code} {result.output}"
+
+    assert (await asyncio.to_thread(crossfix)).startswith("2 crossfix: for how many days")
+    assert "0 would take 20 raw sweeps of 1 missions" in await asyncio.to_thread(
+        crossfix, "--keep-days", "10", "--dry-run"
+    )
+    assert "0 took 20 raw sweeps" in await asyncio.to_thread(crossfix, "--keep-days", "10")
+    assert file.stat().st_size < before / 4

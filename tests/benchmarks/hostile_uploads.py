@@ -1,0 +1,146 @@
+"""Files from outside while a mission flies (figure 20): how soon is an order answered, what does the server take?
+
+    python -m tests.benchmarks.hostile_uploads --out docs/measurements
+
+`crossfix serve` in a process of its own flies the simulated vehicle. Each file of tests/doubles/hostile_files.py, and
+an overlay of 50 MB, is uploaded; meanwhile hold is ordered over and over, and each answer timed at the client. Memory
+is the resident set of the server and of the process that reads files, above what both took before. Fails when a file
+gets no answer or an answer of the kind 5xx.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+import psutil
+
+from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.writer import add_out, wanted, write
+from tests.doubles.hostile_files import HostileFile, hostile_files
+from tests.system.console import Console, console
+from tests.system.processes import serving, vehicle_apart
+
+LARGE_BYTES = 50 * 10**6
+PAUSE_S = 0.05
+LOOK_S = 0.05
+
+
+@dataclass
+class Taken:
+    """orders_s: answers to hold meanwhile. most_bytes: above what the processes took before."""
+
+    name: str
+    status: int = 0
+    answer_s: float = 0.0
+    orders_s: list[float] = field(default_factory=list)
+    most_bytes: int = 0
+
+
+def resident_bytes(process: psutil.Process) -> int:
+    total = 0
+    for each in [process, *process.children(recursive=True)]:
+        try:
+            total += each.memory_info().rss
+        except psutil.NoSuchProcess:
+            continue
+    return total
+
+
+def large_overlay() -> bytes:
+    point = b'{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[7.2,50.6]}}'
+    return b'{"type":"FeatureCollection","features":[' + b",".join([point] * (LARGE_BYTES // (len(point) + 1))) + b"]}"
+
+
+async def uploaded(client: httpx.AsyncClient, path: str, content: bytes) -> int:
+    kind = "application/json" if path == "/api/areas" else "application/octet-stream"
+    return (await client.post(path, content=content, headers={"content-type": kind}, timeout=180)).status_code
+
+
+async def measure(shown: Console, server: psutil.Process, name: str, path: str, content: bytes, usual: int) -> Taken:
+    taken = Taken(name)
+
+    async def remember() -> None:
+        while True:
+            taken.most_bytes = max(taken.most_bytes, resident_bytes(server) - usual)
+            await asyncio.sleep(LOOK_S)
+
+    async def order() -> None:
+        while True:
+            began = time.monotonic()
+            await shown.order("hold")
+            taken.orders_s.append(time.monotonic() - began)
+            await asyncio.sleep(PAUSE_S)
+
+    beside = [asyncio.create_task(remember()), asyncio.create_task(order())]
+    began = time.monotonic()
+    async with httpx.AsyncClient(base_url=shown.url) as other:
+        taken.status = await uploaded(other, path, content)
+    taken.answer_s = time.monotonic() - began
+    await asyncio.sleep(2 * PAUSE_S)
+    for task in beside:
+        task.cancel()
+    await asyncio.gather(*beside, return_exceptions=True)
+    return taken
+
+
+async def run(folder: Path) -> list[Taken]:
+    async with (
+        vehicle_apart() as vehicle,
+        serving(folder, "--vehicle", vehicle.url) as (url, process),
+        console(url) as shown,
+    ):
+        await shown.draft()
+        await shown.ready(120)
+        await shown.watch()
+        await shown.start(60)
+        await shown.until_phase("flying", 120)
+        files = [HostileFile("an overlay of 50 MB", "/api/overlays", large_overlay(), False), *hostile_files()]
+        server = psutil.Process(process.pid)
+        await uploaded(shown.client, "/api/overlays", b"no overlay")  # the reading process has started
+        usual = resident_bytes(server)
+        return [await measure(shown, server, f.name, f.path, f.content, usual) for f in files]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_out(parser)
+    given = parser.parse_args()
+    begun = begin(__file__)
+    with tempfile.TemporaryDirectory(prefix="crossfix-uploads-") as folder:
+        found = asyncio.run(run(Path(folder)))
+    orders = sorted(second for taken in found for second in taken.orders_s)
+    slowest = max(found, key=lambda taken: max(taken.orders_s, default=0.0))
+    heaviest = max(found, key=lambda taken: taken.most_bytes)
+    latest = max(found, key=lambda taken: taken.answer_s)
+    rows: list[dict[str, Any]] = [
+        {
+            "file": taken.name,
+            "status": taken.status,
+            "answer_s": round(taken.answer_s, 2),
+            "worst_order_ms": round(1e3 * max(taken.orders_s, default=0.0), 1),
+            "most_mb": round(taken.most_bytes / 1e6, 1),
+        }
+        for taken in found
+    ]
+    print(json.dumps(rows, indent=1))
+    note = f"{len(orders)} orders to hold, median {1e3 * orders[len(orders) // 2]:.0f} ms; worst beside: {slowest.name}"
+    figures = [
+        wanted("upload_abort", round(1e3 * orders[-1], 1), note=note),
+        wanted("upload_memory", round(heaviest.most_bytes / 1e6, 1), note=f"with its reading process; {heaviest.name}"),
+        wanted("upload_answer", round(latest.answer_s, 2), note=latest.name),
+    ]
+    write(given.out, "hostile_uploads", "Files from outside in flight", begun, figures, page="user-guide.md")
+    sys.exit(any(not 200 <= taken.status < 500 for taken in found))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,102 @@
+"""The truth study: seeded worlds with errors of their own, whole missions, honest counting."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from planner.study.error_worlds import ROWS, Row, Sensor, Wall
+from planner.study.errors import StudyError
+from planner.study.truth import Claim, Search, fly, missions, row_named, truth_of, wilson
+from planner.types import LinearConstantMotion, LocalizationRule, Problem
+
+AREA = np.array([[-156.0, 0.0], [156.0, 0.0], [156.0, 200.0], [-156.0, 200.0]])
+PROBLEM = Problem(
+    area=(AREA,),
+    sigma=float(np.deg2rad(7.0)),
+    threshold=25.0,
+    measurement_time=30.0,
+    motion=LinearConstantMotion(7.0, 11.2),
+    standoff=50.0,
+    action_spacing=30.0,
+)
+SEARCH = Search(PROBLEM, LocalizationRule(threshold=25.0), (0.0, 0.0))
+WANTED = {"independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20", "walls", "walls_bias5"}
+
+
+def errors(sensor: Sensor, count: int = 2000) -> np.ndarray:
+    place = np.array([40.0, -30.0])
+    true = np.arctan2(*(sensor.target - place)[::-1])
+    found = np.array([sensor.bearing(place, k)[0] for k in range(count)])
+    return np.rad2deg((found - true + np.pi) % (2 * np.pi) - np.pi)
+
+
+def test_every_row_that_is_asked_for_exists_and_no_other():
+    assert set(ROWS.by_name) >= WANTED
+    with pytest.raises(StudyError, match="bias5_outliers8"):
+        row_named("bias6")
+
+
+def test_bearings_of_a_flight_share_its_bias_and_flights_differ_by_the_rows():
+    target, row = np.array([0.0, 150.0]), Row("b", bias_sd=np.deg2rad(5.3))
+    sensors = [row.sensor(target, np.random.default_rng(k)) for k in range(400)]
+    assert np.rad2deg(np.std([s.bias for s in sensors])) == pytest.approx(5.3, rel=0.1)
+    wrong = errors(sensors[0])
+    assert wrong.mean() == pytest.approx(np.rad2deg(sensors[0].bias), abs=0.4)
+    assert wrong.std() == pytest.approx(5.3, rel=0.1)
+
+
+def test_outliers_come_from_anywhere_as_often_as_the_row_says():
+    sensor = Row("o", outliers=0.2, own_sd=np.deg2rad(1.0)).sensor(np.array([0.0, 150.0]), np.random.default_rng(1))
+    wrong = np.abs(errors(sensor, 4000))
+    assert (wrong > 5.0).mean() == pytest.approx(0.2 * 350.0 / 360.0, abs=0.02)
+
+
+def test_a_wall_bends_bearings_where_its_echo_arrives_and_not_elsewhere():
+    quiet = Row("w", own_sd=0.0, walls=0).sensor(np.array([0.0, 150.0]), np.random.default_rng(1))
+    assert np.abs(errors(quiet, 3)).max() < 1e-9
+    quiet.walls = (Wall(np.array([60.0, 0.0]), np.array([60.0, 160.0])),)
+    mirrored = errors(quiet, 60)
+    assert 2.0 < np.abs(mirrored).max() < 60.0
+    quiet.walls = (Wall(np.array([400.0, 400.0]), np.array([500.0, 400.0])),)
+    assert np.abs(errors(quiet, 3)).max() < 0.5
+
+
+def test_a_mission_depends_on_its_seed_and_on_nothing_else():
+    row = row_named("bias5_outliers8")
+    one, again, other = (fly(SEARCH, row, seed) for seed in (7, 7, 8))
+    assert one == again != other
+    assert one.claimed
+    assert one.bearings >= 2
+    assert one.time_s > one.bearings * 30.0
+
+
+@pytest.mark.parametrize("model", ["joint", "independent"])
+def test_all_missions_of_a_right_sensor_are_claimed(model):
+    found = truth_of("right", model, list(missions(SEARCH, row_named("right"), range(4), model)))
+    assert (found.missions, found.claimed) == (4, 1.0)
+    assert found.in_c95_low < found.in_c95 <= 1.0
+    assert (found.as_json()["bias_inside"] is None) == (model == "independent")
+
+
+def test_a_mission_that_never_claims_is_counted_as_such_and_ends():
+    hopeless = replace(SEARCH, rule=LocalizationRule(threshold=0.01), most_bearings=3)
+    found = truth_of("bias5", "joint", [fly(hopeless, row_named("bias5"), 1)])
+    assert (found.claimed, found.bearings_mean) == (0.0, 3.0)
+    assert found.as_json()["in_c95"] is None
+
+
+def test_shares_are_of_the_claims():
+    claim = Claim(True, True, 5.0, 10.0, 4, 300.0, 1.0, 2.0)
+    far = replace(claim, in_c95=False, error_m=31.0, bias_off_deg=5.0)
+    never = replace(claim, claimed=False, in_c95=False, error_m=99.0)
+    found = truth_of("bias5", "joint", [claim, far, never, claim])
+    assert found.claimed == 0.75
+    assert found.in_c95 == pytest.approx(2.0 / 3.0)
+    assert found.beyond_3x == pytest.approx(1.0 / 3.0)
+    assert found.bias_inside == 0.75
+
+
+def test_wilsons_interval():
+    """Newcombe 1998, table I: 81 of 263."""
+    assert wilson(81, 263) == pytest.approx((0.2553, 0.3662), abs=5e-4)
