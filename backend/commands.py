@@ -5,11 +5,14 @@ craft_id None: of hold, return, land and abort every craft of the mission; of al
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from hashlib import sha256
 from typing import Annotated, Literal
 from uuid import UUID
 
 from pydantic import Field
 
+from backend.permissions import Role
 from backend.reasons import Reason
 from backend.spec import Id, Model, Place, SearchArea
 
@@ -111,23 +114,77 @@ class AcknowledgeAlert(Model):
     alert_id: str
 
 
+class TakeControl(Model):
+    """Steer this search from now on: free, given up, not answered for, or as a pilot at once."""
+
+    kind: Literal["take_control"] = "take_control"
+
+
+class AskControl(Model):
+    """Of whoever controls the search."""
+
+    kind: Literal["ask_control"] = "ask_control"
+
+
+class GiveControl(Model):
+    """To whoever asked for it."""
+
+    kind: Literal["give_control"] = "give_control"
+
+
+class KeepControl(Model):
+    """Say no to whoever asked for it."""
+
+    kind: Literal["keep_control"] = "keep_control"
+
+
+class ReleaseControl(Model):
+    """Nobody controls the search then."""
+
+    kind: Literal["release_control"] = "release_control"
+
+
 ForCraft = Start | Hold | Resume | Return | Land | Abort | KeepHolding | Override | Accept | Veto | SetAutomatic
 ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
-Command = Annotated[ForCraft | ForSearch, Field(discriminator="kind")]
+ForControl = TakeControl | AskControl | GiveControl | KeepControl | ReleaseControl
+Command = Annotated[ForCraft | ForSearch | ForControl, Field(discriminator="kind")]
+
+
+@dataclass(frozen=True, slots=True)
+class Author:
+    """Who gives a command. person: the account's id, None for the one person of a server without accounts, whom no
+    lease binds. address: where the request came from, None when it came from no network."""
+
+    name: str
+    person: str | None = None
+    role: Role | None = None
+    address: str | None = None
+
+
+def order_of(command: Command) -> str:
+    """What a command id is bound to: a digest of all that is ordered."""
+    return sha256(command.model_dump_json().encode()).hexdigest()[:16]
+
+
+Fence = Annotated[int | None, Field(ge=0, le=2**31 - 1)]
 
 
 class CommandRequest(Model):
-    """command_id: made by the client; sent twice, the command is carried out once."""
+    """command_id: made by the client; sent twice, the command is carried out once. fence: of the control lease that it
+    is given under, None where there are no accounts, or for what needs no control."""
 
     command_id: UUID
     command: Command
+    fence: Fence = None
 
 
 class CraftRequest(Model):
-    """To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back."""
+    """To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back; in a
+    mission that needs its control, hence the fence."""
 
     command_id: UUID
     command: Annotated[Hold | Return | Land | Resume, Field(discriminator="kind")]
+    fence: Fence = None
 
 
 class CommandReply(Model):

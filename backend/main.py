@@ -11,10 +11,14 @@ from fastapi import FastAPI
 from backend.api.application import make_application
 from backend.api.scene import close_scene_views
 from backend.api.services import Services
+from backend.live.connections import Door, limited
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
 from backend.wiring import open_services
 from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES
+
+HEAD_BYTES = 32 * 2**10
+"""Of a request: its line and all its headers."""
 
 OpenServices = Callable[[Settings], AbstractAsyncContextManager[Services]]
 
@@ -36,9 +40,17 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
 
 
 def server_config(settings: Settings, app: FastAPI) -> uvicorn.Config:
-    """How uvicorn runs it: one process, since the vehicle has one commander; no compression on the live channel."""
+    """How uvicorn runs it: one process, since the vehicle has one commander; no compression on the live channel; only a
+    trusted proxy may say who asks."""
+    door = Door(
+        settings.connections_max, settings.connections_each, settings.header_timeout_s, settings.trusted_proxies
+    )
     return uvicorn.Config(
         app,
+        http=limited(door),  # type: ignore[arg-type]  # a factory does where uvicorn names a class
+        proxy_headers=bool(settings.trusted_proxies),
+        forwarded_allow_ips=list(settings.trusted_proxies),
+        h11_max_incomplete_event_size=HEAD_BYTES,
         host=settings.host,
         port=settings.port,
         ws=LiveProtocol,

@@ -24,6 +24,20 @@ class Settings(BaseSettings):
     port: int = Field(default=8600, ge=0, le=65535)
     allowed_hosts: tuple[str, ...] = ()
     """Host names besides loopback under which a browser may reach the server."""
+    users: bool = False
+    """People sign in, though the server listens to this machine only: behind a proxy on the same machine."""
+    trusted_proxies: tuple[str, ...] = ()
+    """Addresses of the proxies whose word counts on who asks and whether by https (X-Forwarded-For, -Proto). With one,
+    people sign in."""
+    plain_http: bool = False
+    """Passwords and sessions may go over unencrypted connections from other machines. Only for a network that encrypts
+    by itself, such as WireGuard."""
+    connections_max: int = Field(default=600, ge=10, le=100_000)
+    """Of HTTP, open at the same time; live websockets are counted by live_clients_max."""
+    connections_each: int = Field(default=100, ge=5, le=100_000)
+    """Of one address, but for this machine's and the trusted proxies'."""
+    header_timeout_s: float = Field(default=10.0, gt=0, le=300)
+    """A connection that has not sent a whole request's head by then is closed."""
     data_dir: Path = Path("data")
     page_dir: Path = INSTALLED_PAGE if INSTALLED_PAGE.is_dir() else BUILT_PAGE
 
@@ -91,6 +105,11 @@ class Settings(BaseSettings):
             return not ip_address(self.host).is_loopback
         except ValueError:
             return self.host != "localhost"
+
+    @property
+    def people_expected(self) -> bool:
+        """Others can reach the server, so whoever uses it signs in."""
+        return self.users or bool(self.trusted_proxies) or self.reachable_from_outside
 
     @property
     def simulated(self) -> bool:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
 
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
+from backend.auth.access import Access
+from backend.auth.audit import AUDIT_FILE, AuditLog
+from backend.auth.records import Records
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
@@ -22,6 +26,7 @@ from backend.settings import Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
+from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
 from backend.version import VERSION
@@ -90,6 +95,24 @@ def _receiver_name(settings: Settings) -> str:
 
 
 @asynccontextmanager
+async def open_access(settings: Settings) -> AsyncGenerator[Access]:
+    """Who may enter, read from the migrated database. Raises JournalUnavailable."""
+    timeout_s = settings.database_timeout_s
+    records = Records(make_engine(settings.async_database_url, timeout_s), timeout_s)
+    access = Access(
+        records,
+        AuditLog(settings.data_dir / AUDIT_FILE, time.time),
+        people_expected=settings.people_expected,
+        payload_tokens=settings.payload_tokens,
+    )
+    try:
+        await access.load()
+        yield access
+    finally:
+        await access.close()
+
+
+@asynccontextmanager
 async def open_services(settings: Settings) -> AsyncGenerator[Services]:
     """Everything of a running server; taken down in the opposite order.
 
@@ -118,7 +141,7 @@ async def open_simulation(
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
     warming: asyncio.Task[None] | None = None
-    async with open_journal(settings, lambda: clock.now()) as journal:
+    async with open_journal(settings, lambda: clock.now()) as journal, open_access(settings) as access:
         unfinished = await journal.unfinished()
         if first is None:
             latest = await _latest_utc_s(journal)
@@ -136,7 +159,8 @@ async def open_simulation(
                 await first.vehicle.close()
             vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
             hub = Hub(journal.read, clock.now)
-            payload = PayloadHub(settings.payload_tokens, clock.now) if settings.payload_tokens else None
+            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.tokens)
+            payload = PayloadHub(settings.payload_tokens, clock.now) if expected else None
             receiver = _receiver(settings, vehicle, clock, payload, emitters)
             finder = SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg)
             craft = CraftEquipment(
@@ -166,7 +190,9 @@ async def open_simulation(
                 warming = _warming()
             else:
                 await warming
-            services = Services(missions, journal, hub, settings, clock.now, payload, finder=finder, pattern=pattern)
+            services = Services(
+                missions, journal, hub, settings, clock.now, payload, access=access, finder=finder, pattern=pattern
+            )
             try:
                 yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 
 from backend.api import live, payload, probes, problems, scene
+from backend.api.dependencies import passed_the_gate
+from backend.api.gate import Gate
 from backend.api.guard import Guard
 from backend.api.meters import Metered, Meters
 from backend.api.page import Page
@@ -29,6 +31,7 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
         openapi_url=None,
         redirect_slashes=False,
         generate_unique_id_function=operation_id,
+        dependencies=[Depends(passed_the_gate)],
     )
     problems.install(app)
     for router in ROUTERS:
@@ -41,5 +44,6 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     app.state.meters = Meters()
     app.state.meters.watch(lambda: app.state.services)
     app.add_middleware(Metered, meters=app.state.meters)
+    app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))
     return app

@@ -43,7 +43,7 @@ class Guard:
         headers = Headers(scope=scope)
         refusal = self._foreign(scope, headers) or _too_large(scope, headers)
         if refusal is not None:
-            await _refuse(refusal, scope, receive, send)
+            await refuse(refusal, scope, receive, send)
             return
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
@@ -112,12 +112,14 @@ def _counted(scope: Scope, receive: Receive) -> Receive:
     return counted
 
 
-async def _refuse(refusal: Problem, scope: Scope, receive: Receive, send: Send) -> None:
+async def refuse(
+    refusal: Problem, scope: Scope, receive: Receive, send: Send, headers: dict[str, str] | None = None
+) -> None:
     """A websocket handshake is answered with the status too."""
     if scope["type"] == "websocket" and "websocket.http.response" not in scope.get("extensions", {}):
         await send({"type": "websocket.close", "code": 1008})
         return
-    response = respond(refusal)
+    response = respond(refusal, headers)
     await response(scope, receive, send)
 
 

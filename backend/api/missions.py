@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 
 from backend.api import summary
 from backend.api.dependencies import MetersDep, MissionId, PrincipalDep, ServicesDep
+from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.commands import CommandReply, CommandRequest
@@ -77,11 +78,20 @@ async def edit_mission(
 
 @router.post("/{mission_id}/commands")
 async def send_command(
-    mission_id: MissionId, request: CommandRequest, services: ServicesDep, principal: PrincipalDep, meters: MetersDep
+    mission_id: MissionId,
+    request: CommandRequest,
+    http: Request,
+    services: ServicesDep,
+    principal: PrincipalDep,
+    meters: MetersDep,
 ) -> CommandReply:
-    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false."""
+    """Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false. Where there
+    are accounts, what steers needs the control lease and its `fence`; hold, abort, return and landing never do."""
+    access, flights = services.access, services.missions.flights
+    permit(access, principal, request)
     with about(mission=mission_id, command=str(request.command_id)):
-        reply = await services.missions.flights.command(mission_id, request, principal.name)
+        answer = flights.command(mission_id, request, principal.author, access.operates)
+        reply = await ordered(access, principal, http, request, answer)
         meters.told(request.command.kind, reply)
     return reply
 

@@ -10,6 +10,7 @@ from contextlib import suppress
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
+from backend.api.dependencies import PrincipalDep
 from backend.api.problems import respond
 from backend.api.services import Services
 from backend.reasons.request import NoPayloadExpected, UnknownToken
@@ -22,7 +23,7 @@ UNKNOWN_TOKEN = problem(401, UnknownToken())
 
 
 @router.websocket("/api/payload")
-async def payload(websocket: WebSocket) -> None:
+async def payload(websocket: WebSocket, principal: PrincipalDep) -> None:
     """Denied before it is accepted when no payload is expected or the token is not ours."""
     services: Services = websocket.app.state.services
     hub = services.payload
@@ -30,7 +31,8 @@ async def payload(websocket: WebSocket) -> None:
     if hub is None:
         await websocket.send_denial_response(respond(NO_PAYLOAD))
         return
-    if scheme.lower() != "bearer" or not hub.authenticate(token.strip()):
+    shown = scheme.lower() == "bearer" and hub.authenticate(token.strip())
+    if not shown and principal.scope != "payload":
         await websocket.send_denial_response(respond(UNKNOWN_TOKEN))
         return
     await websocket.accept()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, cast
 from uuid import uuid4
@@ -12,13 +13,16 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
+from backend.auth.access import Denied
 from backend.ports import FactRefused
 from backend.reasons import Reason, carried
 from backend.reasons import request as reasons
+from backend.reasons.access import TooManyTries
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.store.reading import JournalUnavailable
 from backend.wire.problem import FieldProblem, Problem, problem
 from backend.workers import WorkersBusy, WorkStopped
+from planner.reason import Reason as AnyReason
 from planner.reason import ReasonedError, text_of
 from planner.types import PlannerError
 
@@ -153,6 +157,17 @@ async def on_reasoned(_: Request, error: Exception) -> JSONResponse:
     return respond(problem(status, carried(error.reason)))
 
 
+async def on_denied(_: Request, error: Exception) -> JSONResponse:
+    """With the seconds to wait, where there are any."""
+    assert isinstance(error, Denied)
+    return respond(problem(error.status, carried(error.reason)), retry_after(error.reason))
+
+
+def retry_after(reason: AnyReason) -> dict[str, str] | None:
+    """The header that tells a program when to come back."""
+    return {"retry-after": str(math.ceil(reason.wait_s))} if isinstance(reason, TooManyTries) else None
+
+
 async def on_http(_: Request, error: Exception) -> JSONResponse:
     """What the framework itself refuses, such as a method that is not allowed."""
     assert isinstance(error, HTTPException)
@@ -173,6 +188,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, on_invalid)
     app.add_exception_handler(HTTPException, on_http)
     app.add_exception_handler(MissionInputError, on_mission_input)
+    app.add_exception_handler(Denied, on_denied)
     for kind, _ in STATUSES:
         app.add_exception_handler(kind, on_reasoned)
     app.add_exception_handler(Exception, on_fault)

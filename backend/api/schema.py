@@ -14,7 +14,20 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
-from backend.api import crafts, maps, missions, planning, read_export, recordings, review, scene, system, terrain
+from backend.api import (
+    crafts,
+    entering,
+    maps,
+    missions,
+    people,
+    planning,
+    read_export,
+    recordings,
+    review,
+    scene,
+    system,
+    terrain,
+)
 from backend.commands import Command
 from backend.events import Event
 from backend.generated import write_or_check
@@ -25,6 +38,8 @@ from backend.wire.messages import LiveMessage
 from backend.wire.problem import Problem
 
 ROUTERS = (
+    entering.router,
+    people.router,
     system.router,
     missions.router,
     crafts.router,

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from backend.auth.access import Access
 from backend.live.hub import Hub
 from backend.settings import Settings
 from backend.store.journal import SqlJournal
@@ -26,7 +27,7 @@ class Services:
 
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
-    workers: read what comes from outside.
+    workers: read what comes from outside. access: who may enter.
     """
 
     missions: MissionRoom
@@ -34,6 +35,7 @@ class Services:
     hub: Hub
     settings: Settings
     now: Callable[[], float]
+    access: Access = field(kw_only=True)
     finder: DirectionFinder = field(kw_only=True)
     pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None

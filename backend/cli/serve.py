@@ -10,6 +10,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from backend.auth.access import Mode
 from backend.cli.edge import print_json, remark, stop
 from backend.logs import configure
 from backend.settings import Settings, settings_of
@@ -21,6 +22,9 @@ def serve(
     port: Annotated[int | None, typer.Option(min=0, max=65535, help="Port; 0: any free one. Default: 8600.")] = None,
     database: Annotated[
         str | None, typer.Option(help="sqlite:///FILE or postgresql://... Default: SQLite in the data directory.")
+    ] = None,
+    users: Annotated[
+        bool | None, typer.Option("--users", help="People sign in, on this machine too. Always so with another --host.")
     ] = None,
     data_dir: Annotated[Path | None, typer.Option(help="Where database, spool and maps live. Default: ./data.")] = None,
     vehicle: Annotated[
@@ -56,6 +60,7 @@ def serve(
         settings = settings_of(
             host=host,
             port=port,
+            users=users,
             database_url=database,
             data_dir=data_dir,
             vehicle_url=vehicle,
@@ -71,8 +76,6 @@ def serve(
         stop(error)
     except OSError as error:
         stop(f"the log file {error.filename} cannot be written: {error.strerror}")
-    if settings.reachable_from_outside:
-        remark(f"listening on {settings.host}: without accounts, whoever reaches this port can fly the vehicle.")
     try:
         asyncio.run(_serve(settings, json_))
     except (ReasonedError, RuntimeError, ValueError) as error:
@@ -91,11 +94,27 @@ async def _serve(settings: Settings, json_: bool) -> None:
     async with server.running_server(settings, leave_flying=True, first=first) as running:
         server.stop_on_signals(running, remark)
         what = settings.vehicle_url or f"a simulated {settings.simulate} vehicle"
+        access = running.services.access
+        code = access.begin_first_admin()
         if json_:
-            print_json({"url": running.url, "vehicle": what, "database": settings.shown_database})
+            told = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
+            print_json(told if code is None else {**told, "first_admin_code": code})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
+            typer.echo(_who_may_enter(access.mode, code), err=False)
+        if settings.plain_http and settings.reachable_from_outside:
+            remark("CROSSFIX_PLAIN_HTTP: passwords cross the network as they are; it has to encrypt by itself.")
         await running.gone
+
+
+def _who_may_enter(mode: Mode, code: str | None) -> str:
+    match mode:
+        case "alone":
+            return "Only this machine reaches it: one person, no sign-in."
+        case "waiting":
+            return f"Nobody can use it yet. Open the page and make the first admin; the code for it works once: {code}"
+        case "people":
+            return "Whoever uses it signs in."
 
 
 def _stop_because(error: ReasonedError | RuntimeError | ValueError) -> NoReturn:

@@ -22,6 +22,7 @@ from backend.craft.state import CraftState, pilot_has
 from backend.craft.watch.authority import AuthorityWatch
 from backend.craft.watch.links import LinkWatch
 from backend.reasons import Reason
+from backend.reasons.access import CommandIdReused
 from backend.reasons.refusals import OnTheGround
 from backend.search.effects import Record, Refuse
 from backend.search.state import SearchState
@@ -48,7 +49,9 @@ class LooseCraft:
     _hands: Hands = field(init=False)
     _authority: AuthorityWatch = field(init=False)
     _links: LinkWatch = field(default_factory=LinkWatch)
-    _answered: dict[str, Reason | None] = field(default_factory=dict[str, "Reason | None"])
+    _answered: dict[str, tuple[LooseCommand, Reason | None]] = field(
+        default_factory=dict[str, "tuple[LooseCommand, Reason | None]"]
+    )
     _grounded_at_s: float = math.inf
 
     def __post_init__(self) -> None:
@@ -90,10 +93,12 @@ class LooseCraft:
         return self.state
 
     def order(self, command_id: str, by: str, command: LooseCommand) -> Reason | None:
-        """Why it is refused, None when it is on its way. The same id gets the same answer."""
+        """Why it is refused, None when it is on its way. The same id gets the same answer; with another order it is
+        refused."""
         if command_id not in self._answered:
-            self._answered[command_id] = self._order(by, command)
-        return self._answered[command_id]
+            self._answered[command_id] = (command, self._order(by, command))
+        first, answer = self._answered[command_id]
+        return answer if first == command else CommandIdReused(first.kind)
 
     def _order(self, by: str, command: LooseCommand) -> Reason | None:
         telemetry = self.equipment.vehicle.telemetry()

@@ -36,6 +36,7 @@ from backend.events.bearings import (
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
+from backend.events.control import ControlAsked, ControlChanged, ControlKept, ControlWay, Holder
 from backend.events.craft import (
     FIRST_CRAFT,
     AuthorityChanged,
@@ -64,6 +65,7 @@ from backend.events.mission import (
 from backend.events.nets import NetsNoted, NetsPutBack
 from backend.events.orders import (
     AbortOrdered,
+    AuthorFact,
     AutomaticChanged,
     CommandAccepted,
     CommandRefused,
@@ -88,6 +90,7 @@ __all__ = [
     "AntennaChecked",
     "AntennaFact",
     "AreaChanged",
+    "AuthorFact",
     "AuthorityChanged",
     "AutomaticChanged",
     "BatteryCountdownStarted",
@@ -100,6 +103,10 @@ __all__ = [
     "CheckFact",
     "CommandAccepted",
     "CommandRefused",
+    "ControlAsked",
+    "ControlChanged",
+    "ControlKept",
+    "ControlWay",
     "CraftSource",
     "EstimateFact",
     "Event",
@@ -107,6 +114,7 @@ __all__ = [
     "FlightStarted",
     "GroundFact",
     "HoldOrdered",
+    "Holder",
     "ImportSource",
     "Known",
     "LandOrdered",
@@ -185,6 +193,9 @@ Event = Annotated[
     | AuthorityChanged
     | CommandAccepted
     | CommandRefused
+    | ControlChanged
+    | ControlAsked
+    | ControlKept
     | SafetyVetoed
     | LinkLost
     | LinkRestored

@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Literal
 
 from backend.events.fact import Fact
+from backend.permissions import Role
 from backend.reasons import Reason
 from backend.reasons.flight import OrderName, Way
-from backend.spec import Id
+from backend.spec import Id, Model
 
 
 class HoldOrdered(Fact):
@@ -100,13 +101,25 @@ class AutomaticChanged(Fact):
     by: str
 
 
+class AuthorFact(Model):
+    """Who gave a command, besides the name in `by`. person, role: None where there are no accounts. address: of the
+    machine that sent it."""
+
+    person: str | None
+    role: Role | None
+    address: str | None
+
+
 class CommandAccepted(Fact):
-    """What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again."""
+    """What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. order: the
+    digest of all that was ordered. Both are None where nobody kept them."""
 
     kind: Literal["command_accepted"] = "command_accepted"
     command_id: str
     command: str
     by: str
+    order: str | None = None
+    author: AuthorFact | None = None
 
 
 class CommandRefused(Fact):
@@ -117,3 +130,5 @@ class CommandRefused(Fact):
     command: str
     by: str
     reason: Reason
+    order: str | None = None
+    author: AuthorFact | None = None

@@ -9,21 +9,22 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from uuid import UUID
 
 from backend import commands
-from backend.commands import CommandReply, CommandRequest
+from backend.commands import Author, CommandReply, CommandRequest, CraftRequest
 from backend.craft.checklist import checklist
 from backend.craft.equipment import CraftEquipment
 from backend.craft.ground_check import ground_fact
 from backend.craft.inputs import Abandoned, StartFacts, WorkFailed
 from backend.craft.listening import Listening
-from backend.craft.loose import LooseCommand, LooseCraft
+from backend.craft.loose import LooseCraft
 from backend.craft.runner import CraftRunner
 from backend.craft.safety import resume_vetoes
 from backend.craft.state import CraftState
 from backend.events import Event, GroundFact, Phase
+from backend.mission import control
 from backend.mission.effects import Effect, Reply
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
@@ -46,6 +47,15 @@ from backend.terrain import Terrain, unknown_terrain
 from hardware.authority import NOBODY, Who
 
 log = logging.getLogger("crossfix.mission")
+
+
+Operates = Callable[[str], bool]
+"""Of an account's id: may it give commands now?"""
+
+
+def everybody(_person: str) -> bool:
+    """Where nobody is ever shut out."""
+    return True
 
 
 WHILE_ENDING = (commands.Hold, commands.Return, commands.Land, commands.Abort, commands.AcknowledgeAlert)
@@ -111,8 +121,13 @@ class Flights:
 
     # Commands
 
-    async def command(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
-        """Carry out or refuse. The same command id gets the same answer. Raises MissionNotFound."""
+    async def command(
+        self, mission_id: str, request: CommandRequest, author: Author, operates: Operates = everybody
+    ) -> CommandReply:
+        """Carry out or refuse. The same command id gets the same answer. operates: may this person still operate?
+
+        Raises MissionNotFound.
+        """
         runner = self.running(mission_id)
         if self.ending and not isinstance(request.command, WHILE_ENDING):
             return CommandReply(command_id=request.command_id, accepted=False, reason=ServerIsEnding(), seq=0)
@@ -122,17 +137,17 @@ class Flights:
             )
             runner = self.running(mission_id)
             if runner is not None:
-                asked = runner.change_area(str(request.command_id), by, request.command, task)
+                asked = runner.change_area(request, author, task)
                 if isinstance(task, SearchTask) and _accepted(asked):
                     await self._nets_elsewhere(runner, task)
                 return await _answered(runner, request, asked)
         if runner is not None:
-            return await _in_flight(runner, request, by)
+            return await _in_flight(runner, request, author, operates)
         async with self.records.lock(mission_id):
             runner = self.running(mission_id)
             if runner is not None:
-                return await _in_flight(runner, request, by)
-            return await self._on_the_ground(mission_id, request, by)
+                return await _in_flight(runner, request, author, operates)
+            return await self._on_the_ground(mission_id, request, author, operates)
 
     async def _nets_elsewhere(self, runner: MissionRunner, task: SearchTask) -> None:
         """The autopilot's nets follow the search area. When they do not, it refuses what lies beyond, and says so."""
@@ -146,27 +161,32 @@ class Flights:
             if trouble is not None:
                 runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
 
-    async def command_craft(self, craft_id: str, command_id: UUID, command: LooseCommand, by: str) -> CommandReply:
+    async def command_craft(self, craft_id: str, request: CraftRequest, author: Author) -> CommandReply:
         """To a craft in the air, whether it flies for a mission or not. Raises KeyError for an unknown craft."""
-        loose, runner = self.loose[craft_id], self.active
+        loose, runner, command_id = self.loose[craft_id], self.active, request.command_id
         if runner is not None and craft_id in runner.crafts:
-            named = command.model_copy(update={"craft_id": craft_id})
-            return await _in_flight(runner, CommandRequest(command_id=command_id, command=named), by)
-        refused = loose.order(str(command_id), by, command)
+            named = request.command.model_copy(update={"craft_id": craft_id})
+            in_mission = CommandRequest(command_id=command_id, command=named, fence=request.fence)
+            return await _in_flight(runner, in_mission, author, everybody)
+        refused = loose.order(str(command_id), author.name, request.command)
         return CommandReply(command_id=command_id, accepted=refused is None, reason=refused, seq=0)
 
-    async def _on_the_ground(self, mission_id: str, request: CommandRequest, by: str) -> CommandReply:
+    async def _on_the_ground(
+        self, mission_id: str, request: CommandRequest, author: Author, operates: Operates
+    ) -> CommandReply:
         state, last_seq = await self.records.load(mission_id)
         command_id = str(request.command_id)
         match request.command:
             case commands.Start() as start if state.search.stage in ("draft", "ready"):
-                if command_id not in state.answered:
-                    return await self._start(mission_id, state, last_seq, request, start, by)
+                in_control = control.objection(state.control, author, request.fence, start) is None
+                if command_id not in state.answered and in_control:
+                    return await self._start(mission_id, state, last_seq, request, start, author)
             case _:
                 pass
         over = (MissionOver(),) if state.search.stage == "ended" else ()
         contexts = {craft_id: Context(over) for craft_id in state.crafts}
-        given = Commanded(command_id, by, request.command, contexts)
+        gone = holder_gone(state, operates)
+        given = Commanded(command_id, author, request.command, contexts, fence=request.fence, holder_gone=gone)
         asked, seq = await self.records.give(mission_id, state, given)
         if isinstance(request.command, commands.ExcludeBearing):
             await self.records.settle_beliefs(mission_id)
@@ -179,11 +199,14 @@ class Flights:
         last_seq: int,
         request: CommandRequest,
         command: commands.Start,
-        by: str,
+        author: Author,
     ) -> CommandReply:
+        def commanded(contexts: dict[str, Context]) -> Commanded:
+            return Commanded(str(request.command_id), author, command, contexts, fence=request.fence)
+
         craft = self.equipment.crafts.get(command.craft_id or self.equipment.first.craft_id)
         if craft is None:
-            asked, seq = await self.records.give(mission_id, state, Commanded(str(request.command_id), by, command))
+            asked, seq = await self.records.give(mission_id, state, commanded({}))
             return _reply(request, asked, seq or last_seq)
         async with self.starting:
             objections: tuple[Reason, ...] = ()
@@ -208,8 +231,7 @@ class Flights:
                 trouble = await self.nets.put_up(mission_id, craft, task)
                 objections = () if trouble is None else (trouble,)
                 state, last_seq = await self.records.load(mission_id)
-            contexts = {craft.craft_id: Context(objections, start)}
-            given = Commanded(str(request.command_id), by, command, contexts)
+            given = commanded({craft.craft_id: Context(objections, start)})
             if task is None or objections:
                 asked, seq = await self.records.give(mission_id, state, given)
                 return _reply(request, asked, seq or last_seq)
@@ -338,9 +360,17 @@ class Flights:
             self.active = None
 
 
-async def _in_flight(runner: MissionRunner, request: CommandRequest, by: str) -> CommandReply:
+def holder_gone(state: MissionState, operates: Operates) -> bool:
+    """Who holds the lease may no longer operate: nobody needs to wait for their answer."""
+    holder = state.control.holder
+    return holder is not None and not operates(holder.person)
+
+
+async def _in_flight(
+    runner: MissionRunner, request: CommandRequest, author: Author, operates: Operates
+) -> CommandReply:
     """At once: what moves or stops the vehicle is under way before the journal is waited for."""
-    return await _answered(runner, request, runner.command(str(request.command_id), by, request.command))
+    return await _answered(runner, request, runner.command(request, author, holder_gone(runner.state, operates)))
 
 
 async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from backend.commands import Command
+from backend.commands import Author, Command
 from backend.craft.inputs import CraftInput, StartFacts
 from backend.reasons import Reason
 from backend.search.inputs import SearchInput
@@ -31,13 +31,16 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """An operator's command. contexts: by craft id; search: of a command to the search."""
+    """An operator's command. contexts: by craft id; search: of a command to the search. fence: of the lease that it was
+    given under. holder_gone: who holds the lease may no longer operate."""
 
     command_id: str
-    by: str
+    author: Author
     command: Command
     contexts: Mapping[str, Context] = field(default_factory=dict[str, Context])
     search: Context = Context()
+    fence: int | None = None
+    holder_gone: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,26 +8,48 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from backend.commands import Abort, AcknowledgeAlert, ChangeArea, ExcludeBearing, ForCraft, Hold, Land, Return, Start
+from backend.commands import (
+    Abort,
+    AcknowledgeAlert,
+    AskControl,
+    ChangeArea,
+    ExcludeBearing,
+    ForCraft,
+    GiveControl,
+    Hold,
+    KeepControl,
+    Land,
+    ReleaseControl,
+    Return,
+    Start,
+    TakeControl,
+    order_of,
+)
 from backend.craft import machine as craft_machine
 from backend.craft.effects import CraftEffect, LeaveSearch
 from backend.craft.inputs import CraftInput, CraftOrdered, SearchChanged
 from backend.events import (
     AreaChanged,
+    AuthorFact,
     BearingExcluded,
     BearingMeasured,
     BeliefUpdated,
     CommandAccepted,
     CommandRefused,
+    ControlAsked,
+    ControlChanged,
+    ControlKept,
     CraftSource,
     Event,
     MissionStarted,
     ServerRestarted,
 )
+from backend.mission import control
 from backend.mission.effects import Effect, OfCraft, Reply
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
 from backend.mission.state import MissionState, evolve, newcomer
 from backend.reasons import Reason, refusals
+from backend.reasons.access import CommandIdReused
 from backend.search import machine as search_machine
 from backend.search.effects import Record, Refuse, SearchEffect, UpdateBelief
 from backend.search.inputs import SearchInput, SearchOrdered, SearchOver
@@ -127,28 +149,43 @@ def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionS
 
 
 def _command(now: _Transition, given: Commanded) -> None:
-    """Carry out or refuse. A command id that was answered before gets the same answer and does nothing."""
-    before = now.state.answered.get(given.command_id)
+    """Carry out or refuse. A command id that was answered before gets the same answer and does nothing; with another
+    order it is refused, and the first answer stands."""
+    command_id, kind, order = given.command_id, given.command.kind, order_of(given.command)
+    before = now.state.answered.get(command_id)
     if before is not None:
-        now.effects.append(Reply(given.command_id, before.reason))
+        same = before.command == kind and before.order in (None, order)
+        now.effects.append(Reply(command_id, before.reason if same else CommandIdReused(before.command)))
         return
     refused = _carry_out(now, given)
-    kind = given.command.kind
+    author = AuthorFact(person=given.author.person, role=given.author.role, address=given.author.address)
+    by = given.author.name
     if refused is None:
-        now.record(CommandAccepted(command_id=given.command_id, command=kind, by=given.by))
+        now.record(CommandAccepted(command_id=command_id, command=kind, by=by, order=order, author=author))
     else:
-        now.record(CommandRefused(command_id=given.command_id, command=kind, by=given.by, reason=refused))
-    now.effects.append(Reply(given.command_id, refused))
+        now.record(
+            CommandRefused(command_id=command_id, command=kind, by=by, reason=refused, order=order, author=author)
+        )
+    now.effects.append(Reply(command_id, refused))
 
 
 def _carry_out(now: _Transition, given: Commanded) -> Reason | None:
     command, state = given.command, now.state
+    not_in_control = control.objection(state.control, given.author, given.fence, command)
+    if not_in_control is not None:
+        return not_in_control
     match command:
+        case TakeControl() | AskControl() | GiveControl() | KeepControl() | ReleaseControl():
+            decided = control.decide(state.control, given.author, command, given.holder_gone, now.at_s)
+            if not isinstance(decided, ControlChanged | ControlAsked | ControlKept):
+                return decided
+            now.record(decided)
+            return None
         case AcknowledgeAlert(alert_id=alert_id) if alert_id not in open_alert_ids(state):
             return refusals.NoSuchAlert()
         case ChangeArea() | ExcludeBearing() | AcknowledgeAlert():
             held = all(craft.phase == "hold" and not craft.taken_over for craft in state.engaged)
-            return now.to_search(SearchOrdered(given.by, command, given.search.objections, held))
+            return now.to_search(SearchOrdered(given.author.name, command, given.search.objections, held))
         case _:
             return _order(now, given, command)
 
@@ -162,7 +199,7 @@ def _order(now: _Transition, given: Commanded, command: ForCraft) -> Reason | No
     for craft_id in wanted:
         context = given.contexts.get(craft_id, Context())
         ordered = CraftOrdered(
-            given.by, command, context.objections, context.start, context.on_ground, context.altitude_amsl_m
+            given.author.name, command, context.objections, context.start, context.on_ground, context.altitude_amsl_m
         )
         refused.append(now.to_craft(craft_id, ordered))
     return None if None in refused else refused[0]

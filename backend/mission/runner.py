@@ -11,7 +11,7 @@ import logging
 from collections.abc import Sequence
 from functools import partial
 
-from backend.commands import ChangeArea, Command, ForCraft
+from backend.commands import Author, CommandRequest, ForCraft
 from backend.craft import inputs as craft_inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.measuring import Measured
@@ -118,9 +118,9 @@ class MissionRunner:
             self.finished.set()
         return asked
 
-    def command(self, command_id: str, by: str, command: Command) -> tuple[Effect, ...]:
+    def command(self, request: CommandRequest, author: Author, holder_gone: bool = False) -> tuple[Effect, ...]:
         """An operator's command; safety's objections are found first."""
-        contexts = {}
+        command, contexts = request.command, dict[str, Context]()
         if isinstance(command, ForCraft):
             contexts = {
                 craft_id: Context(
@@ -130,20 +130,25 @@ class MissionRunner:
                 )
                 for craft_id, craft in self.crafts.items()
             }
-        return self.give(Commanded(command_id, by, command, contexts))
+        given = Commanded(
+            str(request.command_id), author, command, contexts, fence=request.fence, holder_gone=holder_gone
+        )
+        return self.give(given)
 
-    def change_area(
-        self, command_id: str, by: str, command: ChangeArea, task: SearchTask | Reason
-    ) -> tuple[Effect, ...]:
+    def change_area(self, request: CommandRequest, author: Author, task: SearchTask | Reason) -> tuple[Effect, ...]:
         """`task`: of the new area, or why there is none; it takes a thread's time to make."""
+
+        def commanded(search: Context) -> Commanded:
+            return Commanded(str(request.command_id), author, request.command, search=search, fence=request.fence)
+
         if not isinstance(task, SearchTask):
-            return self.give(Commanded(command_id, by, command, search=Context((task,))))
+            return self.give(commanded(Context((task,))))
         self._next_task = task
         limits = limits_of(task)
         objections = tuple(
             veto for craft in self.crafts.values() for veto in staying_vetoes(limits, craft.watch.situation())
         )
-        return self.give(Commanded(command_id, by, command, search=Context(objections)))
+        return self.give(commanded(Context(objections)))
 
     def recover(self) -> None:
         """After a restart: each craft of ours in hold, unless somebody else flies it."""

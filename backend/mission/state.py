@@ -15,6 +15,9 @@ from backend.events import (
     FIRST_CRAFT,
     CommandAccepted,
     CommandRefused,
+    ControlAsked,
+    ControlChanged,
+    ControlKept,
     Event,
     MissionPhase,
     MissionStarted,
@@ -22,6 +25,8 @@ from backend.events import (
     Phase,
     Recorded,
 )
+from backend.mission.control import Control
+from backend.mission.control import evolve as evolve_control
 from backend.reasons import Reason
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
@@ -29,19 +34,24 @@ from backend.search.state import evolve as evolve_search
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """reason: why the command was refused, None when it was accepted."""
+    """reason: why the command was refused, None when it was accepted. command: its kind. order: its digest, None where
+    nobody kept it."""
 
     accepted: bool
     reason: Reason | None
+    command: str
+    order: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class MissionState:
-    """crafts: by id; none flies for a search on foot. answered: the first answer to every command id."""
+    """crafts: by id; none flies for a search on foot. answered: the first answer to every command id.
+    control: who may steer the search, where there are accounts."""
 
     search: SearchState = field(default_factory=SearchState)
     crafts: Mapping[str, CraftState] = field(default_factory=lambda: {FIRST_CRAFT: CraftState(FIRST_CRAFT)})
     answered: Mapping[str, Answer] = field(default_factory=dict[str, Answer])
+    control: Control = field(default_factory=Control)
 
     @property
     def craft(self) -> CraftState:
@@ -82,10 +92,12 @@ def evolve(state: MissionState, event: Event, at_s: float) -> MissionState:
     match event:
         case MissionStarted(craft_id=craft_id) if craft_id not in crafts:
             crafts[craft_id] = evolve_craft(newcomer(state, craft_id), event)
-        case CommandAccepted(command_id=command_id):
-            return replace(state, answered={**state.answered, command_id: Answer(True, None)})
-        case CommandRefused(command_id=command_id, reason=reason):
-            return replace(state, answered={**state.answered, command_id: Answer(False, reason)})
+        case CommandAccepted(command_id=command_id, command=command, order=order):
+            return replace(state, answered={**state.answered, command_id: Answer(True, None, command, order)})
+        case CommandRefused(command_id=command_id, reason=reason, command=command, order=order):
+            return replace(state, answered={**state.answered, command_id: Answer(False, reason, command, order)})
+        case ControlChanged() | ControlAsked() | ControlKept():
+            return replace(state, control=evolve_control(state.control, event, at_s))
         case _:
             pass
     return replace(state, search=evolve_search(state.search, event, at_s), crafts=crafts)

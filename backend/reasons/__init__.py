@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar, Literal, cast
 from pydantic import Field
 from typing_extensions import TypeAliasType
 
+from backend.reasons.access import AccessReason
 from backend.reasons.adapter import ByOneAdapter
 from backend.reasons.checks import CheckReason
 from backend.reasons.flight import FlightReason, OrderName, Way
@@ -175,6 +176,7 @@ ReasonUnion = TypeAliasType(
     Annotated[
         PlannerReason
         | HardwareReason
+        | AccessReason
         | CheckReason
         | FlightReason
         | MapReason

@@ -21,6 +21,10 @@ NothingKind = Literal[
     "recording",
     "craft",
     "scene",
+    "person",
+    "session",
+    "invitation",
+    "token",
 ]
 
 
@@ -100,7 +104,8 @@ class NothingThere:
     english: ClassVar[Words] = Words(
         "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event"
         "|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file"
-        "|recording=recording|craft=craft|scene=3D view} {which}.",
+        "|recording=recording|craft=craft|scene=3D view|person=person|session=session|invitation=invitation"
+        "|token=token} {which}.",
         "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
     )
 

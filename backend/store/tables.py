@@ -95,3 +95,55 @@ tracks = Table(
     Column("mode", Text),
     PrimaryKeyConstraint("mission_id", "craft_id", "at_us"),
 )
+
+people = Table(
+    "people",
+    metadata,
+    Column("person_id", String(40), primary_key=True),
+    Column("name", String(40), nullable=False),
+    Column("name_key", String(80), nullable=False, unique=True),
+    Column("role", String(10), nullable=False),
+    Column("admin", Boolean, nullable=False),
+    Column("active", Boolean, nullable=False),
+    Column("password_hash", Text, nullable=False),
+    Column("made_at_us", BigInteger, nullable=False),
+)
+"""name_key: the name in the form in which two are compared. password_hash: argon2id with its salt and parameters."""
+
+sessions = Table(
+    "sessions",
+    metadata,
+    Column("session_id", String(40), primary_key=True),
+    Column("secret_hash", String(64), nullable=False, unique=True),
+    Column("person_id", String(40), ForeignKey("people.person_id"), nullable=False),
+    Column("made_at_us", BigInteger, nullable=False),
+    Column("seen_at_us", BigInteger, nullable=False),
+    Column("address", String(64), nullable=False),
+    Column("device", String(200), nullable=False),
+)
+"""secret_hash: SHA-256 of what the cookie holds, here and below; the secret itself is stored nowhere."""
+
+invitations = Table(
+    "invitations",
+    metadata,
+    Column("invitation_id", String(40), primary_key=True),
+    Column("secret_hash", String(64), nullable=False, unique=True),
+    Column("role", String(10), nullable=False),
+    Column("admin", Boolean, nullable=False),
+    Column("made_by", String(40), nullable=False),
+    Column("made_at_us", BigInteger, nullable=False),
+    Column("expires_at_us", BigInteger, nullable=False),
+    Column("used_by", String(40)),
+)
+
+machine_tokens = Table(
+    "machine_tokens",
+    metadata,
+    Column("token_id", String(40), primary_key=True),
+    Column("secret_hash", String(64), nullable=False, unique=True),
+    Column("name", String(40), nullable=False),
+    Column("scope", String(10), nullable=False),
+    Column("made_by", String(40), nullable=False),
+    Column("made_at_us", BigInteger, nullable=False),
+    Column("expires_at_us", BigInteger),
+)

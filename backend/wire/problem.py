@@ -30,6 +30,7 @@ class Problem(Model):
 
 
 TITLES = {
+    401: "Not signed in",
     403: "Not allowed",
     404: "Not found",
     405: "Method not allowed",
@@ -37,6 +38,7 @@ TITLES = {
     413: "Too large",
     421: "Unknown host",
     422: "The request is not valid",
+    429: "Too often",
     500: "The server made a mistake",
     503: "The database is away",
     507: "The disk is full",

@@ -1,6 +1,6 @@
 import { render } from "preact";
 import { App } from "./app/App";
-import { followRoute } from "./app/follow";
+import { followRoute, followSession } from "./app/follow";
 import { watchKeys } from "./app/keys";
 import { report } from "./commands/send";
 import { t } from "./i18n";
@@ -23,4 +23,5 @@ watchKeys();
 watchAlerts();
 render(<App />, document.getElementById("app")!);
 if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
+followSession();
 followRoute();

@@ -35,6 +35,8 @@ import psutil
 import uvicorn
 
 from backend.api.services import Services
+from backend.auth.access import Access
+from backend.auth.audit import AuditLog
 from backend.events import HoldOrdered, MissionDrafted, Recorded
 from backend.live.hub import Hub
 from backend.main import create_app, server_config
@@ -112,7 +114,10 @@ async def serve_fanout(port: int, folder: str, hertz: float) -> None:
             hub = Hub(journal.read, time.time)
             await journal.append("load", [MissionDrafted(spec=SPEC)])
             nothing: Any = None
-            services = Services(nothing, journal, hub, settings, time.time, finder=nothing, pattern=nothing)
+            access = Access(None, AuditLog(None, time.time), people_expected=False)
+            services = Services(
+                nothing, journal, hub, settings, time.time, access=access, finder=nothing, pattern=nothing
+            )
             publishing = asyncio.create_task(publish(services, hertz))
             yield services
             publishing.cancel()

@@ -13,7 +13,7 @@ from backend.commands import Command, CommandReply, CommandRequest
 
 async def order(stage: Stage, mission_id: str, command: Command) -> CommandReply:
     request = CommandRequest(command_id=uuid4(), command=command)
-    return await stage.room.flights.command(mission_id, request, "anna")
+    return await stage.room.flights.command(mission_id, request, commands.Author("anna"))
 
 
 async def flying(stage: Stage, phase: str = "flying", **flight: object) -> str:

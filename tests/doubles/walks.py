@@ -51,10 +51,10 @@ def commanded(
 ) -> Commanded:
     """context: of the craft, or of the search when the command is for that."""
     if isinstance(command, commands.ForSearch):
-        return Commanded(command_id, "anna", command, search=context)
+        return Commanded(command_id, commands.Author("anna"), command, search=context)
     if isinstance(command, commands.Start) and context.start is None:
         context = Context(context.objections, START)
-    return Commanded(command_id, "anna", command, {command.craft_id or craft_id: context})
+    return Commanded(command_id, commands.Author("anna"), command, {command.craft_id or craft_id: context})
 
 
 def belief_ready(search: SearchState, localized: bool = False, emitter_id: str = FIRST_EMITTER) -> BeliefReady:

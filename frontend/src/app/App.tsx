@@ -5,11 +5,12 @@ import { t } from "../i18n";
 import { SafetyBar } from "../panels/SafetyBar";
 import { overlay } from "../state/overlay";
 import { type Route, route } from "../state/route";
+import { entered } from "../state/session";
 
 type Page = ComponentType<Record<string, unknown>>;
 type Loader = () => Promise<unknown>;
 
-const loaders: Record<Route["page"] | "sheets", Loader> = {
+const loaders: Record<Route["page"] | "sheets" | "signIn", Loader> = {
   missions: () => import("../pages/MissionsPage").then((m) => m.MissionsPage),
   new: () => import("../pages/EditPage").then((m) => m.EditPage),
   edit: () => import("../pages/EditPage").then((m) => m.EditPage),
@@ -17,6 +18,9 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
   health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
+  people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
+  join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
+  signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),
   sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
 };
 
@@ -55,6 +59,14 @@ function Sheets() {
 
 export function App() {
   const current = route.value;
+  if (entered.value === "out" || current.page === "join") {
+    const name = current.page === "join" ? "join" : "signIn";
+    return (
+      <main>
+        <Lazy name={name} route={current} key={name} />
+      </main>
+    );
+  }
   return (
     <>
       <SafetyBar />

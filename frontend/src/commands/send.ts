@@ -1,11 +1,13 @@
 // Sending a command and telling what became of it, at the place where it was given.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { RequestFailed, refusal, unreachable } from "../sources/problem";
+import type { Source } from "../sources/source";
 import { source } from "../state/connection";
-import type { Command, Problem } from "../wire";
+import { controlView, fenceOf } from "../state/control";
+import type { Command, CommandReply, Problem } from "../wire";
 
 /** Where on the page an answer belongs. */
-export type Desk = "bar" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area";
+export type Desk = "bar" | "control" | "plan" | "proposal" | "start" | "sweep" | "alerts" | "area";
 
 export const problems = signal<Partial<Record<Desk, Problem>>>({});
 
@@ -17,13 +19,42 @@ export function report(desk: Desk, problem: Problem | null): void {
 export const asProblem = (error: unknown): Problem =>
   error instanceof RequestFailed ? error.problem : unreachable(error instanceof Error ? error.message : String(error)).problem;
 
+const TAKEN_MS = 3000;
+
+/** When nobody controls the search, whoever orders takes control first: the order is a deliberate act already. */
+async function steered(from: Source, missionId: string, command: Command): Promise<CommandReply> {
+  const reply = await from.send(missionId, command, undefined, fenceOf(missionId));
+  if (reply.accepted || reply.reason?.code !== "control_free") return reply;
+  const taken = await from.send(missionId, { kind: "take_control" });
+  if (!taken.accepted) return taken;
+  return from.send(missionId, command, undefined, await fenceComes(missionId));
+}
+
+/** The change of hands comes as an event, a moment after the answer. */
+function fenceComes(missionId: string): Promise<number | null> {
+  return new Promise((resolve) => {
+    let stop: () => void = () => undefined;
+    const late = setTimeout(() => done(null), TAKEN_MS);
+    const done = (fence: number | null) => {
+      clearTimeout(late);
+      queueMicrotask(() => stop());
+      resolve(fence);
+    };
+    stop = effect(() => {
+      void controlView.value;
+      const fence = fenceOf(missionId);
+      if (fence !== null) done(fence);
+    });
+  });
+}
+
 /** True when the server accepted it; otherwise the reason stands at `desk`. */
 export async function send(desk: Desk, missionId: string, command: Command): Promise<boolean> {
   const from = source.peek();
   if (!from) return false;
   report(desk, null);
   try {
-    const reply = await from.send(missionId, command);
+    const reply = await steered(from, missionId, command);
     if (reply.accepted) return true;
     report(desk, refusal(reply.reason));
   } catch (error) {

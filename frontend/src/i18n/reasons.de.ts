@@ -1,4 +1,5 @@
 // German for every reason, by room; a missing one does not compile.
+import { access } from "./german/access";
 import { flight } from "./german/flight";
 import { maps } from "./german/maps";
 import { payload } from "./german/payload";
@@ -26,4 +27,5 @@ export const reasonsDe: ReasonTable = {
   ...maps,
   ...terrain,
   ...server,
+  ...access,
 };

@@ -855,6 +855,98 @@ export const reasonsEn: ReasonTable = {
     text: "The autopilot's fence cannot be judged: {parameter} could not be read.",
     remedy: "Check the link and try again.",
   },
+  sign_in_needed: {
+    text: "Nobody is signed in here, or the session has ended.",
+    remedy: "Sign in.",
+  },
+  first_admin_needed: {
+    text: "This server has no people yet, so it does nothing for anybody.",
+    remedy: "Open its page and make the first admin with the code that the server printed when it started.",
+  },
+  first_admin_exists: {
+    text: "The first admin has been made; the code works once.",
+    remedy: "Sign in, or ask an admin for an invitation.",
+  },
+  no_people_here: {
+    text: "This server listens to this machine only and has no accounts.",
+    remedy: "To let others in, start it with --users, or with --host and an address of this machine.",
+  },
+  behind_proxy: {
+    text: "The request came through a proxy, and this server has no accounts.",
+    remedy: "Start it with --users, and name the proxy in CROSSFIX_TRUSTED_PROXIES.",
+  },
+  role_too_low: {
+    text: "This takes {needed?viewer=a signed-in person|operator=an operator|pilot=a pilot|admin=an admin}; {role?viewer=a viewer|operator=an operator|pilot=a pilot|none=a machine's token} may not do it.",
+    remedy: "Ask an admin for another role.",
+  },
+  call_not_listed: {
+    text: "Nobody may make this call: it is missing from the table of permissions.",
+    remedy: "Report it; this is a fault of ours.",
+  },
+  origin_missing: {
+    text: "A signed-in page must say where it comes from, and this request did not.",
+    remedy: "Use the page that this server serves; programs use a machine's token.",
+  },
+  not_encrypted: {
+    text: "The connection is not encrypted: others on the network could read the password.",
+    remedy: "Open the page by https:// through the proxy. On a network that encrypts by itself, set CROSSFIX_PLAIN_HTTP.",
+  },
+  wrong_name_or_password: {
+    text: "Name or password is wrong.",
+    remedy: "Try again, or ask an admin for an invitation.",
+  },
+  too_many_tries: {
+    text: "There were too many tries.",
+    remedy: "Try again in {wait_s}.",
+  },
+  code_unusable: {
+    text: "This code {fault?unknown=is not known|used=has been used; each works once|expired=has expired}.",
+    remedy: "{fault?unknown=Look whether it was copied whole.|*=Ask an admin for a new invitation.}",
+  },
+  name_taken: {
+    text: "Somebody here is called {name} already.",
+    remedy: "Choose another name.",
+  },
+  password_weak: {
+    text: "The password {fault?short=is too short|simple=uses too few different characters|name=holds the name}.",
+    remedy: "Take at least {least} characters; a few words that only you put together are best.",
+  },
+  last_admin: {
+    text: "This is the last admin.",
+    remedy: "Make somebody else admin first.",
+  },
+  command_id_reused: {
+    text: 'This command id belongs to another order ("{command}") already; nothing was done.',
+    remedy: "Send each order with an id of its own.",
+  },
+  control_free: {
+    text: "Nobody controls this search.",
+    remedy: "Take control first.",
+  },
+  control_held: {
+    text: "{name} controls this search.",
+    remedy: "Ask for control; a pilot can take it at once. Hold and abort need none.",
+  },
+  control_stale: {
+    text: "This order was given before control changed hands; nothing was done.",
+    remedy: "Look at what is so now, then order again.",
+  },
+  control_asked_already: {
+    text: "{name} has asked for control already.",
+    remedy: "Wait for the answer.",
+  },
+  control_not_asked: {
+    text: "Nobody asks for control.",
+    remedy: "",
+  },
+  control_not_yours: {
+    text: "You do not control this search.",
+    remedy: "",
+  },
+  control_needless: {
+    text: "This server has no accounts: whoever sits before it controls every search.",
+    remedy: "",
+  },
   return_altitude_checked: {
     text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}).",
     remedy:
@@ -1192,7 +1284,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Correct the named fields and send it again.",
   },
   nothing_there: {
-    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view} {which}.",
+    text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view|person=person|session=session|invitation=invitation|token=token} {which}.",
     remedy: "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
   },
   http_refused: {

@@ -1,7 +1,9 @@
 import { t } from "../i18n";
+import { signOut } from "../sources/accessApi";
 import { flying } from "../state/flying";
 import { type Overlay, overlay, toggle } from "../state/overlay";
 import { route } from "../state/route";
+import { me } from "../state/session";
 
 const show = (which: Overlay) => () => {
   overlay.value = which;
@@ -48,6 +50,11 @@ export function Menu() {
             </a>
           </li>
           <li>
+            <a href="#/people" onClick={close} data-testid="menu-people">
+              {t("menu.people")}
+            </a>
+          </li>
+          <li>
             <a href="#/health" onClick={close} data-testid="menu-health">
               {t("menu.health")}
             </a>
@@ -67,6 +74,13 @@ export function Menu() {
               {t("menu.tour")}
             </button>
           </li>
+          {me.value && (
+            <li>
+              <button type="button" data-testid="menu-sign-out" onClick={() => void signOut().finally(() => location.reload())}>
+                {t("menu.signOut", { name: me.value.name })}
+              </button>
+            </li>
+          )}
         </ul>
       )}
     </nav>

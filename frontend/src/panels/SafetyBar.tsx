@@ -21,6 +21,7 @@ import { vehicle } from "../state/vehicle";
 import { reviewWords, stateWords, waitsWords, whoFlies } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
+import { ControlAsked, ControlButton } from "./ControlButton";
 import { Menu } from "./Menu";
 import { ProblemNote } from "./ProblemNote";
 
@@ -337,10 +338,12 @@ export function SafetyBar() {
         <Resume />
         <Words />
         <Indicators />
+        <ControlButton />
         <AlertsButton />
         <Menu />
       </div>
       <div class="bar-notes">
+        <ControlAsked />
         <Countdown />
         <UrgentNote />
         <ProblemNote desk="bar" />

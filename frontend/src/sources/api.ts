@@ -105,13 +105,18 @@ export const track = (id: string, craftId: string) => json<Track>(`${missionPath
 /** Where a file of the mission can be fetched from. */
 export const exportAddress = (id: string, format: ExportFormat) => `/api${missionPath(id)}/export/${format}`;
 
-export const sendCommand = (id: string, command: Command, commandId = newCommandId()): Promise<CommandReply> => {
-  const body: CommandRequest = { command_id: commandId, command };
+export const sendCommand = (
+  id: string,
+  command: Command,
+  commandId = newCommandId(),
+  fence: number | null = null,
+): Promise<CommandReply> => {
+  const body: CommandRequest = { command_id: commandId, command, fence };
   return json<CommandReply>(`${missionPath(id)}/commands`, withBody("POST", body));
 };
 
 export const orderCraft = (craftId: string, command: CraftCommand, commandId = newCommandId()): Promise<CommandReply> => {
-  const body: CraftRequest = { command_id: commandId, command };
+  const body: CraftRequest = { command_id: commandId, command, fence: null };
   return json<CommandReply>(`/crafts/${encodeURIComponent(craftId)}/commands`, withBody("POST", body));
 };
 

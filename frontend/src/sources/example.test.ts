@@ -90,6 +90,6 @@ describe("the recorded example", () => {
     const { status, telemetry, mission } = fold(heard);
     expect([status?.value.mission_id, telemetry.get(CRAFT)?.value.battery_percent, viewOf(mission).phase]).toEqual(["real", 2, "done"]);
     await source.send("real", { kind: "abort" }, "c");
-    expect(sent.mock.calls).toEqual([["real", { kind: "abort" }, "c"]]);
+    expect(sent.mock.calls).toEqual([["real", { kind: "abort" }, "c", undefined]]);
   });
 });

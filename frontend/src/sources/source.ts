@@ -31,8 +31,8 @@ export interface Source {
   readonly keptByServer: boolean;
   start(listener: (message: SourceMessage) => void): void;
   stop(): void;
-  /** `commandId` given again means the same command again: it is carried out once. */
-  send(missionId: string, command: Command, commandId?: string): Promise<CommandReply>;
+  /** `commandId` given again means the same command again: it is carried out once. fence: of the control lease. */
+  send(missionId: string, command: Command, commandId?: string, fence?: number | null): Promise<CommandReply>;
   /** To a craft in the air that flies for no mission. */
   order(craftId: string, command: CraftCommand, commandId?: string): Promise<CommandReply>;
   /** The belief about an emitter that stood at the event `seq`; null when it is not to be had. */

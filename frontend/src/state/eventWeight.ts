@@ -49,6 +49,7 @@ export function toneOf(event: MissionEvent): EventTone {
     case "battery_countdown_started":
     case "battery_countdown_stopped":
     case "area_changed":
+    case "control_changed":
     case "mission_started":
     case "mission_ended":
       return "mode";

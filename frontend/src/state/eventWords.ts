@@ -23,6 +23,11 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   change_area: "command.change_area",
   exclude_bearing: "command.exclude_bearing",
   acknowledge_alert: "command.acknowledge_alert",
+  take_control: "command.take_control",
+  ask_control: "command.ask_control",
+  give_control: "command.give_control",
+  keep_control: "command.keep_control",
+  release_control: "command.release_control",
 };
 
 /** A recording of a later server may hold a command that this page does not know. */
@@ -145,6 +150,12 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.command_accepted", { command: commandName(event.command), by: byWords(event.by) });
     case "command_refused":
       return t("event.command_refused", { command: commandName(event.command), reason: reasonText(event.reason) });
+    case "control_changed":
+      return t(`event.control_changed.${event.way}` satisfies MessageKey, { name: event.holder?.name ?? "", by: event.by });
+    case "control_asked":
+      return t("event.control_asked", { by: event.by });
+    case "control_kept":
+      return t("event.control_kept", { by: event.by });
     case "safety_vetoed":
       return t("event.safety_vetoed", { reason: reasonText(event.reason) });
     case "link_lost":

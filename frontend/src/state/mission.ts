@@ -4,6 +4,7 @@ import type {
   AlertLevel,
   AlertTopic,
   CheckFact,
+  Holder,
   MissionEnded,
   MissionEvent,
   MissionPhase,
@@ -29,6 +30,16 @@ export interface Alert {
   cleared: boolean;
 }
 
+/** Who steers the search, where there are accounts. fence: counts the changes of hands; an order carries it. */
+export interface Control {
+  holder: Holder | null;
+  fence: number;
+  asked: Holder | null;
+  askedAt: string | null;
+}
+
+export const nobodyControls: Control = { holder: null, fence: 0, asked: null, askedAt: null };
+
 export interface MissionState {
   missionId: string | null;
   lastSeq: number;
@@ -46,6 +57,7 @@ export interface MissionState {
   /** By id, in the order in which they were started. */
   crafts: ReadonlyMap<string, CraftState>;
   alerts: readonly Alert[];
+  control: Control;
   ended: At<MissionEnded> | null;
 }
 
@@ -62,6 +74,7 @@ export const emptyMission: MissionState = {
   emitters: new Map(),
   crafts: new Map(),
   alerts: [],
+  control: nobodyControls,
   ended: null,
 };
 
@@ -110,6 +123,12 @@ function foldSearch(state: MissionState, { event, at_utc: at, seq }: Recorded): 
       return changeAlert(state, event.alert_id, { acknowledgedBy: event.by });
     case "alert_cleared":
       return changeAlert(state, event.alert_id, { cleared: true });
+    case "control_changed":
+      return { ...state, control: { ...nobodyControls, holder: event.holder, fence: event.fence } };
+    case "control_asked":
+      return { ...state, control: { ...state.control, asked: event.holder, askedAt: at } };
+    case "control_kept":
+      return { ...state, control: { ...state.control, asked: null, askedAt: null } };
     case "mission_ended":
       return { ...state, ended: { fact: event, seq, at } };
     default:

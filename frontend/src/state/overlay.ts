@@ -1,7 +1,7 @@
 // At most one sheet lies over the page.
 import { signal } from "@preact/signals";
 
-export type Overlay = "alerts" | "menu" | "settings" | "keys" | "tour" | "instruments";
+export type Overlay = "alerts" | "control" | "menu" | "settings" | "keys" | "tour" | "instruments";
 
 export const overlay = signal<Overlay | null>(null);
 

@@ -8,13 +8,16 @@ export type Route =
   | { page: "mission"; missionId: string }
   | { page: "area"; missionId: string }
   | { page: "maps" }
-  | { page: "health" };
+  | { page: "health" }
+  | { page: "people" }
+  | { page: "join"; code: string };
 
 export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
-  if (parts[0] === "maps" || parts[0] === "health") return { page: parts[0] };
+  if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people") return { page: parts[0] };
+  if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {
     return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };
   }

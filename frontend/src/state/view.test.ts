@@ -25,6 +25,7 @@ it("shows what the sweeps would have told in the place of what they told, each a
     place: { lat: 1, lon: 2 },
     binned_db: [],
     fitted_db: [],
+    likelihood: null,
   };
   const belief = { kind: "belief_updated", emitter_id: EMITTER, bearings: 1 } as BeliefUpdated;
   const state = suppose(flown, {

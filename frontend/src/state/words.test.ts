@@ -52,7 +52,10 @@ describe("an event in words", () => {
   it("names the checks that failed and the command that was refused", () => {
     const check = { name: "ready_to_arm", ok: false, reason: someReason, blocking: true } as const;
     expect(words({ kind: "preflight_checked", passed: false, checks: [check] })).toContain(checkName("ready_to_arm"));
-    const refused: MissionEvent = { kind: "command_refused", command_id: "c", command: "set_automatic", by: "Ada", reason: someReason };
+    const refused = {
+      ...{ kind: "command_refused", command_id: "c", command: "set_automatic", by: "Ada", reason: someReason },
+      ...{ order: null, author: null },
+    } satisfies MissionEvent;
     expect(words(refused)).toBe(t("event.command_refused", { command: t("command.set_automatic"), reason: reasonText(someReason) }));
     expect(words({ ...refused, command: "of_later" })).toContain("of_later");
   });

@@ -4,6 +4,306 @@
  */
 
 export interface paths {
+    "/api/session": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Session
+         * @description Who is signed in here, and whether anybody has to be.
+         */
+        get: operations["get_session"];
+        put?: never;
+        /**
+         * Sign In
+         * @description A new session, in a cookie. 403: name or password is wrong; 429: too many tries.
+         */
+        post: operations["sign_in"];
+        /**
+         * Sign Out
+         * @description Of this browser.
+         */
+        delete: operations["sign_out"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/first-admin": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make First Admin
+         * @description With the code that the server printed; once.
+         */
+        post: operations["make_first_admin"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/invitation/look": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Look At Invitation
+         * @description What an invitation offers; it stays unused.
+         */
+        post: operations["look_at_invitation"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/invitation/accept": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Accept Invitation
+         * @description Makes the account and signs it in; the invitation is used up.
+         */
+        post: operations["accept_invitation"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/account/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Sessions
+         * @description Where one is signed in.
+         */
+        get: operations["list_sessions"];
+        put?: never;
+        post?: never;
+        /**
+         * Sign Out Everywhere
+         * @description This browser too.
+         */
+        delete: operations["sign_out_everywhere"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/account/sessions/{session_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * End Session
+         * @description One of one's own.
+         */
+        delete: operations["end_session"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/account/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Change Password
+         * @description Ends all sessions of one's own.
+         */
+        put: operations["change_password"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/people": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List People
+         * @description All, those who are shut out too.
+         */
+        get: operations["list_people"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/people/{person_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Change Person
+         * @description Role, right to manage, shut out or let in. 409: it is the last admin.
+         */
+        put: operations["change_person"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/people/{person_id}/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Sign Person Out
+         * @description Everywhere.
+         */
+        delete: operations["sign_person_out"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/invitations": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Invitations
+         * @description Those that wait to be accepted.
+         */
+        get: operations["list_invitations"];
+        put?: never;
+        /**
+         * Invite
+         * @description A link for one person, and its QR code. The secret stands behind the #, so no server logs it.
+         */
+        post: operations["invite"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/invitations/{invitation_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Take Back Invitation
+         * @description Nobody can accept it any more.
+         */
+        delete: operations["take_back_invitation"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tokens": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Tokens
+         * @description Of machines, without their secrets.
+         */
+        get: operations["list_tokens"];
+        put?: never;
+        /**
+         * Make Token
+         * @description The secret is shown once: a payload agent or a program shows it as "Authorization: Bearer SECRET".
+         */
+        post: operations["make_token"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/tokens/{token_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke Token
+         * @description At once; what is connected with it is cut off.
+         */
+        delete: operations["revoke_token"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/health": {
         parameters: {
             query?: never;
@@ -159,7 +459,8 @@ export interface paths {
         put?: never;
         /**
          * Send Command
-         * @description Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false.
+         * @description Ask something of the mission. Idempotent by `command_id`; a refusal is a reply with accepted = false. Where there
+         *     are accounts, what steers needs the control lease and its `fence`; hold, abort, return and landing never do.
          */
         post: operations["send_command"];
         delete?: never;
@@ -1135,6 +1436,23 @@ export interface components {
              */
             code: "arming_checked";
         };
+        /** @description Of whoever controls the search. */
+        AskControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "ask_control";
+        };
+        /**
+         * @description Who gave a command, besides the name in `by`. person, role: None where there are no accounts. address: of the
+         *     machine that sent it.
+         */
+        AuthorFact: {
+            person: string | null;
+            role: ("viewer" | "operator" | "pilot") | null;
+            address: string | null;
+        };
         /**
          * @description Who flies, and what is needed to judge the next mode.
          *
@@ -1409,6 +1727,16 @@ export interface components {
              */
             code: "bearing_misses_area";
         };
+        /** @description All bearings of a source are turned by one angle, clockwise; the belief has taken it off. */
+        BearingsCorrected: {
+            bias_deg: number;
+            std_error_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearings_corrected";
+        };
         /** @description The wedges of +-4 sigma have no common point inside the area. */
         BearingsDisagree: {
             bearings: number;
@@ -1417,6 +1745,13 @@ export interface components {
              * @enum {string}
              */
             code: "bearings_disagree";
+        };
+        BehindProxy: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "behind_proxy";
         };
         /** @description folded: bearings in the belief. given: bearings given beside it. */
         BeliefOutOfStep: {
@@ -1433,7 +1768,8 @@ export interface components {
          *     belief can be compared bit for bit. `estimate` None when the bearings are inconsistent (never a made-up estimate).
          *     `contradicting`: ids of the bearings that do not point at the estimate; a claim that is made all the same stands
          *     against them. `heading_offset_deg`: what all bearings seem to be off by together, clockwise, when that is
-         *     significant: then nothing is claimed.
+         *     significant: then nothing is claimed. `sources`: of a joint belief, which estimates the errors of each source and
+         *     uses them; empty of one that takes errors to be independent.
          */
         BeliefUpdated: {
             /**
@@ -1450,6 +1786,7 @@ export interface components {
             contradicting: string[];
             heading_offset_deg: number | null;
             heading_offset_std_error_deg: number | null;
+            sources: components["schemas"]["SourceErrorsFact"][];
             digest: string;
         };
         /** @description Perpendicular to the major axis of the covariance ellipse; `distance` tells the two rules for how far off. */
@@ -1486,6 +1823,13 @@ export interface components {
              * @enum {string}
              */
             code: "budget_too_small";
+        };
+        CallNotListed: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "call_not_listed";
         };
         /** @description One candidate next place. `dropped_in_round` None: survived. `std_error_s` None: a single rollout has none. */
         CandidateFact: {
@@ -1586,6 +1930,16 @@ export interface components {
              */
             code: "clocks_apart";
         };
+        /** @description Of the first admin or of an invitation. */
+        CodeUnusable: {
+            /** @enum {string} */
+            fault: "unknown" | "used" | "expired";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "code_unusable";
+        };
         /** @description line: the header's, or the first one's. expected: names of columns. */
         ColumnsUnknown: {
             file: string;
@@ -1598,8 +1952,11 @@ export interface components {
              */
             code: "columns_unknown";
         };
-        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Land"] | components["schemas"]["Abort"] | components["schemas"]["KeepHolding"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"];
-        /** @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. */
+        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Land"] | components["schemas"]["Abort"] | components["schemas"]["KeepHolding"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
+        /**
+         * @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. order: the
+         *     digest of all that was ordered. Both are None where nobody kept them.
+         */
         CommandAccepted: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1609,6 +1966,17 @@ export interface components {
             command_id: string;
             command: string;
             by: string;
+            order: string | null;
+            author: components["schemas"]["AuthorFact"] | null;
+        };
+        /** @description command: the kind that the id belongs to. */
+        CommandIdReused: {
+            command: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "command_id_reused";
         };
         /** @description Nothing was done; a repeated `command_id` gets the same reason again. */
         CommandRefused: {
@@ -1621,6 +1989,8 @@ export interface components {
             command: string;
             by: string;
             reason: components["schemas"]["Reason"];
+            order: string | null;
+            author: components["schemas"]["AuthorFact"] | null;
         };
         /** @description reason: why it was refused, None when it was accepted. seq: the journal's last number after the command. */
         CommandReply: {
@@ -1630,11 +2000,15 @@ export interface components {
             reason: components["schemas"]["Reason"] | null;
             seq: number;
         };
-        /** @description command_id: made by the client; sent twice, the command is carried out once. */
+        /**
+         * @description command_id: made by the client; sent twice, the command is carried out once. fence: of the control lease that it
+         *     is given under, None where there are no accounts, or for what needs no control.
+         */
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
-            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["AbortInput"] | components["schemas"]["KeepHoldingInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"];
+            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["AbortInput"] | components["schemas"]["KeepHoldingInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
+            fence?: number | null;
         };
         /** @description attempts: how often it was sent. */
         CommandUnanswered: {
@@ -1701,6 +2075,37 @@ export interface components {
              */
             code: "constant_power";
         };
+        /** @description Unanswered for long enough, whoever asks may take it. */
+        ControlAsked: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "control_asked";
+            holder: components["schemas"]["Holder"];
+            by: string;
+        };
+        ControlAskedAlready: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_asked_already";
+        };
+        /** @description holder None: nobody controls the search now. */
+        ControlChanged: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "control_changed";
+            holder: components["schemas"]["Holder"] | null;
+            fence: number;
+            /** @enum {string} */
+            way: "free" | "again" | "given" | "unanswered" | "gone" | "pilot" | "released";
+            by: string;
+        };
         /** @description who: has control; nobody: nobody else intervenes. */
         ControlChecked: {
             /** @enum {string} */
@@ -1710,6 +2115,58 @@ export interface components {
              * @enum {string}
              */
             code: "control_checked";
+        };
+        ControlFree: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_free";
+        };
+        ControlHeld: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_held";
+        };
+        /** @description Asked for control, its holder said no. */
+        ControlKept: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "control_kept";
+            by: string;
+        };
+        ControlNeedless: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_needless";
+        };
+        ControlNotAsked: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_not_asked";
+        };
+        ControlNotYours: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_not_yours";
+        };
+        ControlStale: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "control_stale";
         };
         /**
          * @description `covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
@@ -1726,11 +2183,15 @@ export interface components {
         CoverageRequest: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
-        /** @description To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back. */
+        /**
+         * @description To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back; in a
+         *     mission that needs its control, hence the fence.
+         */
         CraftRequest: {
             /** Format: uuid */
             command_id: string;
             command: components["schemas"]["HoldInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["ResumeInput"];
+            fence?: number | null;
         };
         /** @description A craft's own sweep. */
         CraftSource: {
@@ -1911,6 +2372,17 @@ export interface components {
              */
             code: "emitter_too_near";
         };
+        /** @description beyond_percent: probability that the emitter is further than far_m, three times the expected error, away. */
+        ErrorMayBeFarLarger: {
+            beyond_percent: number;
+            most_percent: number;
+            far_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "error_may_be_far_larger";
+        };
         /** @description contradicting: bearings, of all, that do not point at the estimate. */
         EstimateContradicted: {
             contradicting: number;
@@ -1932,7 +2404,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
@@ -2260,6 +2732,26 @@ export interface components {
              */
             code: "file_unusable";
         };
+        /** @description code: as the server printed it when it started. */
+        FirstAdmin: {
+            code: string;
+            name: string;
+            password: string;
+        };
+        FirstAdminExists: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "first_admin_exists";
+        };
+        FirstAdminNeeded: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "first_admin_needed";
+        };
         /** @description The first of several places that are planned together. */
         FirstOfRoute: {
             places: number;
@@ -2459,6 +2951,14 @@ export interface components {
              */
             code: "geotiff_unusable";
         };
+        /** @description To whoever asked for it. */
+        GiveControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "give_control";
+        };
         GpsChecked: {
             /** @enum {string} */
             fix: "no GPS" | "no fix" | "2D" | "3D" | "DGPS" | "RTK float" | "RTK fixed" | "static" | "PPP";
@@ -2640,6 +3140,11 @@ export interface components {
             by: string | null;
             reason: components["schemas"]["Reason"] | null;
         };
+        /** @description person: the account's id. name: as it was then. */
+        Holder: {
+            person: string;
+            name: string;
+        };
         /** @description Both AMSL. */
         HomeHeightDiffers: {
             terrain_m: number;
@@ -2759,6 +3264,46 @@ export interface components {
              */
             code: "interrupted";
         };
+        /** @description One that waits. */
+        Invitation: {
+            invitation_id: string;
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            admin: boolean;
+            made_by: string;
+            /** Format: date-time */
+            expires_utc: string;
+        };
+        /** @description Makes the account. */
+        InvitationAnswer: {
+            code: string;
+            name: string;
+            password: string;
+        };
+        /** @description The secret out of an invitation's link. */
+        InvitationCode: {
+            code: string;
+        };
+        /** @description Those that wait, the newest first. */
+        InvitationList: {
+            invitations: components["schemas"]["Invitation"][];
+        };
+        /** @description What whoever accepts becomes. */
+        InvitationOffer: {
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            admin: boolean;
+            /** Format: date-time */
+            expires_utc: string;
+        };
+        /** @description Say no to whoever asked for it. */
+        KeepControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "keep_control";
+        };
         /** @description Stop the countdown of a low battery in hold, once a flight. */
         KeepHolding: {
             craft_id: string | null;
@@ -2833,6 +3378,13 @@ export interface components {
              * @enum {string}
              */
             code: "landing_already";
+        };
+        LastAdmin: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "last_admin";
         };
         /** @description entropy_nat: Shannon entropy of the belief expected after the next bearing. */
         LeastEntropy: {
@@ -2984,6 +3536,17 @@ export interface components {
              * @enum {string}
              */
             code: "longest_lead";
+        };
+        /** @description link and its QR code (an image as a data address) are shown this once. */
+        MadeInvitation: {
+            invitation: components["schemas"]["Invitation"];
+            link: string;
+            qr: string;
+        };
+        /** @description secret: shown this once. */
+        MadeToken: {
+            token: components["schemas"]["Token"];
+            secret: string;
         };
         ManoeuvreReplaced: {
             /** @enum {string} */
@@ -3335,6 +3898,14 @@ export interface components {
                 number
             ][][][];
         };
+        NameTaken: {
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "name_taken";
+        };
         NearNoFly: {
             near_m: number;
             least_m: number;
@@ -3398,6 +3969,27 @@ export interface components {
              * @enum {string}
              */
             code: "never_reported";
+        };
+        /** @description hours: how long it waits to be accepted. */
+        NewInvitation: {
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            /** @default false */
+            admin: boolean;
+            /** @default 24 */
+            hours: number;
+        };
+        /** @description All sessions end with it. */
+        NewPassword: {
+            old: string;
+            new: string;
+        };
+        /** @description days None: until it is revoked. */
+        NewToken: {
+            name: string;
+            /** @enum {string} */
+            scope: "payload" | "exports" | "metrics";
+            days?: number | null;
         };
         NoAutopilotAnswers: {
             url: string;
@@ -3505,6 +4097,13 @@ export interface components {
              * @enum {string}
              */
             code: "no_payload_expected";
+        };
+        NoPeopleHere: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_people_here";
         };
         /** @description There are actions, but no way to any of them. */
         NoPlaceInReach: {
@@ -3775,6 +4374,13 @@ export interface components {
              */
             code: "not_editable";
         };
+        NotEncrypted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "not_encrypted";
+        };
         /** @description mode: the pilot's, in which the vehicle still is. */
         NotGivenBack: {
             mode: string;
@@ -3900,7 +4506,7 @@ export interface components {
         /** @description which: its name or id; of a belief the emitter, or the number of the event or of the bearings. */
         NothingThere: {
             /** @enum {string} */
-            what: "terrain" | "mission" | "page" | "belief_about" | "belief_at" | "belief_after" | "sweep" | "map" | "overlay" | "file" | "recording" | "craft" | "scene";
+            what: "terrain" | "mission" | "page" | "belief_about" | "belief_at" | "belief_after" | "sweep" | "map" | "overlay" | "file" | "recording" | "craft" | "scene" | "person" | "session" | "invitation" | "token";
             which: string;
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -3970,6 +4576,16 @@ export interface components {
              * @enum {string}
              */
             code: "only_place";
+        };
+        /** @description device: what its browser says of itself. own: the one that asks. */
+        OpenSession: {
+            session_id: string;
+            address: string;
+            device: string;
+            /** Format: date-time */
+            made_utc: string;
+            idle_s: number;
+            own: boolean;
         };
         OperatorInControl: {
             /**
@@ -4062,6 +4678,13 @@ export interface components {
              * @enum {string}
              */
             code: "ordered_again_later";
+        };
+        OriginMissing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "origin_missing";
         };
         /** @description epsg None: not named by a number. */
         OtherCoordinateSystem: {
@@ -4302,6 +4925,16 @@ export interface components {
              */
             code: "part_left_out";
         };
+        PasswordWeak: {
+            /** @enum {string} */
+            fault: "short" | "simple" | "name";
+            least: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "password_weak";
+        };
         /** @description name: of the pattern that was used. */
         PatternBorrowed: {
             name: string;
@@ -4451,6 +5084,27 @@ export interface components {
         Peak: {
             bearing_deg: number;
             weight: number;
+        };
+        /** @description sessions: how many are open. active False: shut out. */
+        Person: {
+            person_id: string;
+            name: string;
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            admin: boolean;
+            active: boolean;
+            sessions: number;
+        };
+        /** @description Everything that can be changed of a person. */
+        PersonChange: {
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            admin: boolean;
+            active: boolean;
+        };
+        /** @description By name. */
+        PersonList: {
+            people: components["schemas"]["Person"][];
         };
         /** @description Somebody with an antenna in their hand. */
         PersonSource: {
@@ -4926,7 +5580,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -4999,7 +5653,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
         };
         RecordedElsewhere: {
             recorded_hz: number;
@@ -5101,6 +5755,14 @@ export interface components {
              * @enum {string}
              */
             code: "refused_by_server";
+        };
+        /** @description Nobody controls the search then. */
+        ReleaseControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "release_control";
         };
         /** @description state: silent: the transmitter reported before, but not lately; unknown: never. */
         RemoteIdChecked: {
@@ -5229,6 +5891,17 @@ export interface components {
             centre: components["schemas"]["Place"];
             inner_m: number;
             outer_m: number;
+        };
+        /** @description role: of who asks; None: a machine. */
+        RoleTooLow: {
+            /** @enum {string} */
+            needed: "viewer" | "operator" | "pilot" | "admin";
+            role: ("viewer" | "operator" | "pilot") | null;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "role_too_low";
         };
         RoomToFly: {
             area_m2: number;
@@ -5429,7 +6102,12 @@ export interface components {
             fence_margin_m: number;
             no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
         };
-        /** @description The bearing sensor as the planner and the localizer assume it. */
+        /**
+         * @description The bearing sensor as the planner and the localizer assume it.
+         *
+         *     bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
+         *     joint ones (`with_todays_errors`).
+         */
         SensorSpec: {
             /** @default 7 */
             sigma_deg: number;
@@ -5445,8 +6123,18 @@ export interface components {
             minimum_quality: number;
             /** @default 2 */
             maximum_retakes: number;
+            /**
+             * @default independent
+             * @enum {string}
+             */
+            bearing_errors: "independent" | "joint";
         };
-        /** @description The bearing sensor as the planner and the localizer assume it. */
+        /**
+         * @description The bearing sensor as the planner and the localizer assume it.
+         *
+         *     bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
+         *     joint ones (`with_todays_errors`).
+         */
         SensorSpecInput: {
             /** @default 7 */
             sigma_deg: number;
@@ -5462,6 +6150,11 @@ export interface components {
             minimum_quality: number;
             /** @default 2 */
             maximum_retakes: number;
+            /**
+             * @default independent
+             * @enum {string}
+             */
+            bearing_errors: "independent" | "joint";
         };
         /** @description incident: the same id is in the server's log. */
         ServerBroke: {
@@ -5493,6 +6186,21 @@ export interface components {
              * @enum {string}
              */
             kind: "server_restarted";
+        };
+        /** @description The newest first. */
+        SessionList: {
+            sessions: components["schemas"]["OpenSession"][];
+        };
+        /**
+         * @description mode alone: one person before their own machine, no sign-in; waiting: for the first admin; people: sign in.
+         *
+         *     person None: nobody is signed in. encrypted False: passwords are refused here, see NotEncrypted.
+         */
+        SessionState: {
+            /** @enum {string} */
+            mode: "alone" | "waiting" | "people";
+            person: components["schemas"]["SignedIn"] | null;
+            encrypted: boolean;
         };
         /** @description automatic: places are flown to without being accepted. */
         SetAutomatic: {
@@ -5546,6 +6254,26 @@ export interface components {
              */
             code: "sigmf_file_missing";
         };
+        /** @description With a password. */
+        SignIn: {
+            name: string;
+            password: string;
+        };
+        SignInNeeded: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sign_in_needed";
+        };
+        /** @description Whoever the page is signed in as. */
+        SignedIn: {
+            person_id: string;
+            name: string;
+            /** @enum {string} */
+            role: "viewer" | "operator" | "pilot";
+            admin: boolean;
+        };
         /** @description above_db: the strongest reading over the noise. */
         SilentAt: {
             file: string;
@@ -5582,6 +6310,19 @@ export interface components {
              * @enum {string}
              */
             code: "soapy_missing";
+        };
+        /**
+         * @description What the bearings say of their own source. bias_deg: they all point this far clockwise of where they should; the
+         *     belief has taken it off. sigma_scale: their errors are this many times what was stated of them. outlier_rate: share
+         *     of them that is wrong altogether.
+         */
+        SourceErrorsFact: {
+            source: components["schemas"]["CraftSource"] | components["schemas"]["ImportSource"] | components["schemas"]["PersonSource"];
+            bearings: number;
+            bias_deg: number;
+            bias_std_error_deg: number;
+            sigma_scale: number;
+            outlier_rate: number;
         };
         SpoolNotWritten: {
             detail: string;
@@ -5801,6 +6542,14 @@ export interface components {
              */
             code: "tag_unheard";
         };
+        /** @description Steer this search from now on: free, given up, not answered for, or as a pilot at once. */
+        TakeControl: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "take_control";
+        };
         TakeOffIgnored: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -5960,6 +6709,21 @@ export interface components {
             /** @default 5 */
             receiver_silent_s: number;
         };
+        /** @description Of a machine. */
+        Token: {
+            token_id: string;
+            name: string;
+            /** @enum {string} */
+            scope: "payload" | "exports" | "metrics";
+            made_by: string;
+            /** Format: date-time */
+            made_utc: string;
+            expires_utc: string | null;
+        };
+        /** @description The newest first. */
+        TokenList: {
+            tokens: components["schemas"]["Token"][];
+        };
         /** @description A sentence out of a journal of before reasons had names. Only the journal's upgrade makes one. */
         ToldBefore: {
             text: string;
@@ -6095,6 +6859,14 @@ export interface components {
              * @enum {string}
              */
             code: "too_many_scenes";
+        };
+        TooManyTries: {
+            wait_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_tries";
         };
         /** @description altitude_relative_m: above home, when the climb was confirmed. */
         TookOff: {
@@ -6482,6 +7254,13 @@ export interface components {
              */
             code: "written_elsewhere";
         };
+        WrongNameOrPassword: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "wrong_name_or_password";
+        };
         /**
          * @description `fraction` of the area, 0..1, that lies on tiles the archive has at this zoom. `metres_per_pixel`: ground size of
          *     a pixel of a 256-pixel tile at the area.
@@ -6502,6 +7281,585 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    get_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_in: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SignIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_out: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make_first_admin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FirstAdmin"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    look_at_invitation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["InvitationCode"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["InvitationOffer"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    accept_invitation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["InvitationAnswer"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionState"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_sessions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_out_everywhere: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                session_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_password: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewPassword"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_people: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_person: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PersonChange"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Person"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_person_out: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_invitations: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["InvitationList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    invite: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewInvitation"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MadeInvitation"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_back_invitation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                invitation_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_tokens: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TokenList"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make_token: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewToken"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MadeToken"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_token: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                token_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     health: {
         parameters: {
             query?: never;

@@ -47,6 +47,7 @@ export type Command = CommandRequest["command"];
 /** To a craft in the air, in a mission or in none. */
 export type CraftRequest = Schemas["CraftRequest"];
 export type CraftCommand = CraftRequest["command"];
+export type Holder = Schemas["Holder"];
 export type CommandReply = Schemas["CommandReply"];
 
 /** reason null: found by the page itself, and said in its own words. */

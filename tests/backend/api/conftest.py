@@ -16,6 +16,8 @@ from stepped_clock import SteppedClock
 
 from backend.api.application import make_application
 from backend.api.services import Services
+from backend.auth.access import Access
+from backend.auth.audit import AuditLog
 from backend.craft.equipment import CraftEquipment
 from backend.events import FIRST_CRAFT
 from backend.live.hub import Hub
@@ -67,7 +69,10 @@ async def running_services(settings: Settings, vehicle: PaperVehicle, workers: W
     room = mission_room(MissionEquipment({FIRST_CRAFT: craft}, journal, hub, clock, "test"))
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
-        yield Services(room, journal, hub, settings, lambda: NOW_S, payload, workers, finder=finder, pattern=pattern)
+        access = Access(None, AuditLog(None, lambda: NOW_S), people_expected=False)
+        yield Services(
+            room, journal, hub, settings, lambda: NOW_S, payload, workers, access=access, finder=finder, pattern=pattern
+        )
     finally:
         await journal.close()
 

@@ -14,7 +14,7 @@ OPERATIONS = [
     (method, path, operation) for path, item in wire_schema("0")["paths"].items() for method, operation in item.items()
 ]
 NAMES = [operation["operationId"] for _, _, operation in OPERATIONS]
-OTHER_METHOD = {"get": "DELETE", "post": "PATCH", "put": "PATCH", "delete": "PATCH", "patch": "TRACE"}
+OTHER_METHOD = {"get": "PATCH", "post": "PATCH", "put": "PATCH", "delete": "PATCH", "patch": "TRACE"}
 
 
 def filled(path: str, value: str) -> str:

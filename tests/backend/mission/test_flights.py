@@ -263,18 +263,18 @@ async def test_who_flies_is_kept_and_survives_a_restart(stage: Stage) -> None:
 async def test_a_command_id_is_answered_once_even_across_a_restart(stage: Stage) -> None:
     mission_id = await stuck(stage)
     request = CommandRequest(command_id=uuid4(), command=commands.Hold())
-    first = await stage.room.flights.command(mission_id, request, "anna")
-    again = await stage.room.flights.command(mission_id, request, "anna")
+    first = await stage.room.flights.command(mission_id, request, commands.Author("anna"))
+    again = await stage.room.flights.command(mission_id, request, commands.Author("anna"))
     assert (again.accepted, again.reason) == (first.accepted, first.reason)
     refused = CommandRequest(command_id=uuid4(), command=commands.Accept())
-    no = await stage.room.flights.command(mission_id, refused, "anna")
+    no = await stage.room.flights.command(mission_id, refused, commands.Author("anna"))
     await stage.room.shut_down()
     stage.vehicle.stuck = False
     stage.room = stage.new_room()
     await stage.room.start_up()
     await stage.until(mission_id, "server_restarted")
     for asked, answered in ((request, first), (refused, no)):
-        reply = await stage.room.flights.command(mission_id, asked, "anna")
+        reply = await stage.room.flights.command(mission_id, asked, commands.Author("anna"))
         assert (reply.accepted, reply.reason) == (answered.accepted, answered.reason)
     assert stage.journal.kinds(mission_id).count("hold_ordered") == 1
 
@@ -282,7 +282,9 @@ async def test_a_command_id_is_answered_once_even_across_a_restart(stage: Stage)
 async def test_a_start_sent_twice_at_once_starts_once(stage: Stage) -> None:
     mission_id = await stage.room.drafts.create(spec(), "anna")
     request = CommandRequest(command_id=uuid4(), command=commands.Start())
-    replies = await asyncio.gather(*(stage.room.flights.command(mission_id, request, "anna") for _ in range(3)))
+    replies = await asyncio.gather(
+        *(stage.room.flights.command(mission_id, request, commands.Author("anna")) for _ in range(3))
+    )
     assert all(reply.accepted for reply in replies)
     await stage.until(mission_id, "took_off")
     assert stage.journal.kinds(mission_id).count("mission_started") == 1

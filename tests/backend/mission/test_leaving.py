@@ -12,6 +12,7 @@ from stage import Stage
 
 from backend import commands
 from backend.events import FIRST_CRAFT, HoldOrdered
+from backend.reasons.access import ControlHeld, ControlStale
 from backend.reasons.flight import ServerEnds
 from backend.reasons.refusals import AnotherMissionFlies, ServerIsEnding
 from backend.reasons.safety import AlreadyInAir
@@ -74,7 +75,9 @@ async def test_no_mission_starts_with_a_vehicle_in_the_air(stage: Stage) -> None
 async def test_one_door_reaches_a_craft_with_a_mission_and_without(stage: Stage) -> None:
     flights = stage.room.flights
     mission_id = await flying(stage)
-    held = await flights.command_craft(FIRST_CRAFT, uuid4(), commands.Hold(), "anna")
+    held = await flights.command_craft(
+        FIRST_CRAFT, commands.CraftRequest(command_id=uuid4(), command=commands.Hold()), commands.Author("anna")
+    )
     assert held.accepted
     await stage.until_phase(mission_id, "hold")
     other = await stage.room.drafts.create(spec(), "anna")
@@ -84,6 +87,41 @@ async def test_one_door_reaches_a_craft_with_a_mission_and_without(stage: Stage)
 
 async def test_the_same_door_reaches_a_craft_in_no_mission(stage: Stage) -> None:
     stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, altitude_relative_m=40.0)
-    landed = await stage.room.flights.command_craft(FIRST_CRAFT, uuid4(), commands.Land(), "anna")
+    landed = await stage.room.flights.command_craft(
+        FIRST_CRAFT, commands.CraftRequest(command_id=uuid4(), command=commands.Land()), commands.Author("anna")
+    )
     assert landed.accepted
     await stage.until_true(lambda: stage.vehicle.names == ["land"])
+
+
+async def test_the_door_to_a_craft_does_not_pass_by_its_missions_control(stage: Stage) -> None:
+    """A resume to the craft steers the search that it flies for; a hold stops it, whoever controls."""
+    flights = stage.room.flights
+    mission_id = await flying(stage)
+    anna, ben = (commands.Author(name, f"p-{name}", "operator") for name in ("anna", "ben"))
+
+    async def to_craft(command: commands.Hold | commands.Resume, author: commands.Author, fence: int | None = None):
+        request = commands.CraftRequest(command_id=uuid4(), command=command, fence=fence)
+        return (await flights.command_craft(FIRST_CRAFT, request, author)).reason
+
+    take = commands.CommandRequest(command_id=uuid4(), command=commands.TakeControl())
+    assert (await flights.command(mission_id, take, anna)).accepted
+    assert await to_craft(commands.Hold(), ben) is None
+    await stage.until_phase(mission_id, "hold")
+    assert await to_craft(commands.Resume(), ben, 1) == ControlHeld("anna")
+    assert await to_craft(commands.Resume(), anna) == ControlStale()
+    assert await to_craft(commands.Resume(), anna, 1) is None
+
+
+async def test_control_whose_holder_is_shut_out_is_free_to_operators(stage: Stage) -> None:
+    flights = stage.room.flights
+    mission_id = await stage.room.drafts.create(spec(), "anna")
+    anna, ben = (commands.Author(name, f"p-{name}", "operator") for name in ("anna", "ben"))
+
+    async def take(author: commands.Author, operates: bool):
+        request = commands.CommandRequest(command_id=uuid4(), command=commands.TakeControl())
+        return (await flights.command(mission_id, request, author, lambda _: operates)).reason
+
+    assert await take(anna, True) is None
+    assert await take(ben, True) == ControlHeld("anna")
+    assert await take(ben, False) is None

@@ -120,7 +120,7 @@ def test_on_any_walk_the_rules_hold_and_the_journal_gives_the_state_back(automat
         choices = every_input(walk.state)
         given_ = choices[pick % len(choices)]
         if isinstance(given_, Commanded):
-            given_ = Commanded(f"walk-{number}", given_.by, given_.command, given_.contexts, given_.search)
+            given_ = Commanded(f"walk-{number}", given_.author, given_.command, given_.contexts, given_.search)
         before = walk.state
         asked = walk.give(given_)
         check_rules(before, given_, walk.state, asked)

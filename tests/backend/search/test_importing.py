@@ -188,4 +188,4 @@ async def test_a_mission_in_flight_takes_a_recording_and_keeps_its_place(stage: 
     assert stage.active.state.craft.phase == "flying"
     assert stage.active.state.craft.chosen == flown
     again = CommandRequest(command_id=uuid4(), command=commands.Hold())
-    assert (await stage.room.flights.command(mission_id, again, "ann")).accepted
+    assert (await stage.room.flights.command(mission_id, again, commands.Author("ann"))).accepted

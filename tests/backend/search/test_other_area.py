@@ -192,7 +192,7 @@ async def test_a_vehicle_outside_the_new_fence_forbids_it(stage: Stage) -> None:
 async def test_the_same_change_ordered_again_gets_the_first_answer(stage: Stage) -> None:
     mission_id = await held(stage)
     request = CommandRequest(command_id=uuid4(), command=commands.ChangeArea(search=NORTHWARD))
-    first, again = [await stage.room.flights.command(mission_id, request, "anna") for _ in range(2)]
+    first, again = [await stage.room.flights.command(mission_id, request, commands.Author("anna")) for _ in range(2)]
     assert again.accepted == first.accepted is True
     assert stage.journal.kinds(mission_id).count("area_changed") == 1
 

@@ -19,7 +19,7 @@ export const server = {
     remedy: "Die genannten Felder berichtigen und noch einmal senden.",
   },
   nothing_there: {
-    text: "Es gibt {what?mission=keine Mission|page=keine Seite|belief_about=keine Karte der Wahrscheinlichkeit für den Sender|belief_at=keine Karte der Wahrscheinlichkeit zum Ereignis|belief_after=keine Karte der Wahrscheinlichkeit nach so vielen Peilungen:|sweep=keine Drehung|map=keine Karte|overlay=keine Überlagerung|terrain=kein Gelände|file=keine Datei|recording=keine Aufnahme|craft=kein Fluggerät|scene=keine 3D-Ansicht} {which}.",
+    text: "Es gibt {what?mission=keine Mission|page=keine Seite|belief_about=keine Karte der Wahrscheinlichkeit für den Sender|belief_at=keine Karte der Wahrscheinlichkeit zum Ereignis|belief_after=keine Karte der Wahrscheinlichkeit nach so vielen Peilungen:|sweep=keine Drehung|map=keine Karte|overlay=keine Überlagerung|terrain=kein Gelände|file=keine Datei|recording=keine Aufnahme|craft=kein Fluggerät|scene=keine 3D-Ansicht|person=keine Person|session=keine Sitzung|invitation=keine Einladung|token=kein Token} {which}.",
     remedy: "Vielleicht wurde es gelöscht, oder der Name ist falsch geschrieben: Sehen Sie nach, was es gibt, und wählen Sie neu.",
   },
   http_refused: { text: "Die Anfrage wurde abgelehnt ({status}): {phrase}.", remedy: "" },

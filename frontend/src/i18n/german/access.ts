@@ -1,0 +1,73 @@
+// German: who is let in, and who may do what.
+import type { ReasonTable } from "../reasons";
+
+export const access = {
+  sign_in_needed: { text: "Hier ist niemand angemeldet, oder die Sitzung ist beendet.", remedy: "Melden Sie sich an." },
+  first_admin_needed: {
+    text: "Dieser Server kennt noch keine Personen und tut darum für niemanden etwas.",
+    remedy: "Seine Seite öffnen und mit dem Code, den der Server beim Start ausgegeben hat, den ersten Verwalter anlegen.",
+  },
+  first_admin_exists: {
+    text: "Den ersten Verwalter gibt es schon; der Code gilt nur einmal.",
+    remedy: "Melden Sie sich an, oder bitten Sie einen Verwalter um eine Einladung.",
+  },
+  no_people_here: {
+    text: "Dieser Server ist nur auf diesem Rechner zu erreichen und hat keine Konten.",
+    remedy: "Um andere einzulassen, ihn mit --users starten oder mit --host und einer Adresse dieses Rechners.",
+  },
+  behind_proxy: {
+    text: "Die Anfrage kam über einen Proxy, und dieser Server hat keine Konten.",
+    remedy: "Ihn mit --users starten und den Proxy in CROSSFIX_TRUSTED_PROXIES nennen.",
+  },
+  role_too_low: {
+    text: "Das darf nur {needed?viewer=wer angemeldet ist|operator=ein Operator|pilot=ein Pilot|admin=ein Verwalter}, nicht {role?viewer=ein Zuschauer|operator=ein Operator|pilot=ein Pilot|none=das Token einer Maschine}.",
+    remedy: "Bitten Sie einen Verwalter um eine andere Rolle.",
+  },
+  call_not_listed: {
+    text: "Diesen Aufruf darf niemand: Er fehlt in der Tabelle der Berechtigungen.",
+    remedy: "Bitte melden; das ist ein Fehler von uns.",
+  },
+  origin_missing: {
+    text: "Eine angemeldete Seite muss sagen, woher sie kommt; diese Anfrage tat es nicht.",
+    remedy: "Die Seite benutzen, die dieser Server ausliefert; Programme benutzen das Token einer Maschine.",
+  },
+  not_encrypted: {
+    text: "Die Verbindung ist nicht verschlüsselt: Andere im Netz könnten das Passwort lesen.",
+    remedy: "Die Seite mit https:// über den Proxy öffnen. In einem Netz, das selbst verschlüsselt, CROSSFIX_PLAIN_HTTP setzen.",
+  },
+  wrong_name_or_password: {
+    text: "Name oder Passwort ist falsch.",
+    remedy: "Noch einmal versuchen, oder einen Verwalter um eine Einladung bitten.",
+  },
+  too_many_tries: { text: "Das waren zu viele Versuche.", remedy: "In {wait_s} noch einmal versuchen." },
+  code_unusable: {
+    text: "Dieser Code {fault?unknown=ist nicht bekannt|used=wurde schon benutzt; jeder gilt nur einmal|expired=ist abgelaufen}.",
+    remedy: "{fault?unknown=Sehen Sie nach, ob er vollständig übernommen wurde.|*=Bitten Sie einen Verwalter um eine neue Einladung.}",
+  },
+  name_taken: { text: "Hier heißt schon jemand {name}.", remedy: "Einen anderen Namen wählen." },
+  password_weak: {
+    text: "Das Passwort {fault?short=ist zu kurz|simple=hat zu wenige verschiedene Zeichen|name=enthält den Namen}.",
+    remedy: "Mindestens {least} Zeichen nehmen; am besten ein paar Wörter, die nur Sie so zusammenstellen.",
+  },
+  last_admin: { text: "Das ist der letzte Verwalter.", remedy: "Zuerst jemand anderen zum Verwalter machen." },
+  command_id_reused: {
+    text: "Diese Befehlsnummer gehört schon zu einem anderen Befehl („{command}“); nichts wurde getan.",
+    remedy: "Jeden Befehl mit einer eigenen Nummer senden.",
+  },
+  control_free: { text: "Niemand steuert diese Suche.", remedy: "Übernehmen Sie zuerst die Steuerung." },
+  control_held: {
+    text: "{name} steuert diese Suche.",
+    remedy: "Bitten Sie um die Steuerung; ein Pilot kann sie sofort übernehmen. Halten und Abbrechen gehen immer.",
+  },
+  control_stale: {
+    text: "Dieser Befehl wurde gegeben, bevor die Steuerung wechselte; nichts wurde getan.",
+    remedy: "Sehen Sie nach, was jetzt gilt, und befehlen Sie dann neu.",
+  },
+  control_asked_already: { text: "{name} hat schon um die Steuerung gebeten.", remedy: "Warten Sie auf die Antwort." },
+  control_not_asked: { text: "Niemand bittet um die Steuerung.", remedy: "" },
+  control_not_yours: { text: "Sie steuern diese Suche nicht.", remedy: "" },
+  control_needless: {
+    text: "Dieser Server hat keine Konten: Wer vor ihm sitzt, steuert jede Suche.",
+    remedy: "",
+  },
+} satisfies Partial<ReasonTable>;

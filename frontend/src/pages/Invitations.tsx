@@ -1,0 +1,86 @@
+// Letting somebody in: a link and its QR code, each for one person, shown once.
+import { useState } from "preact/hooks";
+import { t } from "../i18n";
+import * as access from "../sources/accessApi";
+import type { Try } from "./PeoplePage";
+import { RolePick } from "./RolePick";
+
+const HOURS = [1, 24, 168] as const;
+
+function Made({ made, onClose }: { made: access.MadeInvitation; onClose: () => void }) {
+  return (
+    <div class="card made-invitation" data-testid="made-invitation">
+      <img src={made.qr} alt={t("people.qr")} width={240} height={240} />
+      <div>
+        <p>{t("people.qr.explain", { role: t(`role.${made.invitation.role}`) })}</p>
+        <input
+          readOnly
+          value={made.link}
+          aria-label={t("people.link")}
+          data-testid="invitation-link"
+          onFocus={(e) => e.currentTarget.select()}
+        />
+        <button type="button" onClick={onClose}>
+          {t("people.qr.done")}
+        </button>
+      </div>
+    </div>
+  );
+}
+
+export function Invitations({ list, attempt }: { list: access.Invitation[]; attempt: Try }) {
+  const [role, setRole] = useState<access.Role>("operator");
+  const [admin, setAdmin] = useState(false);
+  const [hours, setHours] = useState<number>(24);
+  const [made, setMade] = useState<access.MadeInvitation | null>(null);
+  return (
+    <section>
+      <div class="page-head">
+        <h1>{t("people.invite")}</h1>
+      </div>
+      <div class="card person">
+        <div class="person-acts">
+          <RolePick value={role} label={t("people.role")} onPick={setRole} />
+          <select aria-label={t("people.lasts")} value={String(hours)} onChange={(e) => setHours(Number(e.currentTarget.value))}>
+            {HOURS.map((each) => (
+              <option value={String(each)} key={each}>
+                {t("people.lastsFor", { time: t(`people.hours.${each}`) })}
+              </option>
+            ))}
+          </select>
+          <label class="check">
+            <input type="checkbox" checked={admin} onChange={(e) => setAdmin(e.currentTarget.checked)} />
+            {t("people.admin")}
+          </label>
+          <button
+            type="button"
+            class="primary"
+            data-testid="invite"
+            onClick={() => attempt(access.invite(role, admin, hours).then(setMade))}
+          >
+            {t("people.invite.submit")}
+          </button>
+        </div>
+      </div>
+      {made && <Made made={made} onClose={() => setMade(null)} />}
+      <ul class="cards">
+        {list.map((one) => (
+          <li class="card person" key={one.invitation_id} data-testid="invitation">
+            <span>
+              {t(`role.${one.role}`)} {one.admin && `+ ${t("people.admin")}`}{" "}
+              <span class="muted">
+                {t("people.invitedBy", {
+                  name: one.made_by,
+                  time: `${one.expires_utc.slice(0, 16).replace("T", " ")} UTC`,
+                })}
+              </span>
+            </span>
+            <button type="button" onClick={() => attempt(access.takeBackInvitation(one.invitation_id).then(() => setMade(null)))}>
+              {t("people.takeBack")}
+            </button>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
