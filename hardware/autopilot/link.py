@@ -16,7 +16,7 @@ import logging
 import socket
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeVar
 
 from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
 from mavsdk.plugins.geofence import Geofence, GeofenceError
@@ -31,7 +31,10 @@ from hardware.reasons.vehicle import NoAutopilotAnswers, VehicleLinkNotOpened
 log = logging.getLogger(__name__)
 _LEVELS = {LogLevel.WARN: logging.INFO, LogLevel.ERROR: logging.WARNING}
 _SCHEMES = ("udpin://", "udpout://", "tcpin://", "tcpout://", "tcp://", "serial://")
+T = TypeVar("T")
 AUTOPILOT_COMPONENT = 1
+FENCE_WALL_S = 60.0
+"""The longest that a fence may take one way; one polygon takes about 4 s on a link of 250 ms each way."""
 STATION_SYSTEM = 255
 """Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
 SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
@@ -109,6 +112,7 @@ class MavlinkLink:
         self._geofence: Geofence | None = None
         self._sender = ThreadPoolExecutor(1, "mavlink-send")
         self._blocking = ThreadPoolExecutor(2, "mavlink-param")
+        self._transfers = ThreadPoolExecutor(2, "mavlink-fence")
         self._closed = False
         self.system_id = 0
 
@@ -197,7 +201,7 @@ class MavlinkLink:
 
     async def fence(self) -> list[FenceItem]:
         """The fence that the autopilot holds. Raises FenceTransferFailed."""
-        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._read_fence)
+        return await self._transferred(self._read_fence)
 
     def _read_fence(self) -> list[FenceItem]:
         if self._mission is None:
@@ -212,7 +216,15 @@ class MavlinkLink:
 
     async def set_fence(self, items: Sequence[FenceItem]) -> None:
         """As a whole, in place of the one before; none clears it. Raises FenceTransferFailed."""
-        await asyncio.get_running_loop().run_in_executor(self._blocking, self._write_fence, items)
+        await self._transferred(self._write_fence, items)
+
+    async def _transferred(self, transfer: Callable[..., T], *given: Any) -> T:
+        """MAVSDK sets a transfer no end of its own. What hangs keeps its thread, and nobody else's."""
+        try:
+            async with asyncio.timeout(FENCE_WALL_S):
+                return await asyncio.get_running_loop().run_in_executor(self._transfers, transfer, *given)
+        except TimeoutError:
+            raise FenceTransferFailed("timeout") from None
 
     def _write_fence(self, items: Sequence[FenceItem]) -> None:
         if self._mission is None or self._geofence is None:
@@ -258,3 +270,4 @@ class MavlinkLink:
             await asyncio.get_running_loop().run_in_executor(self._blocking, mavsdk.destroy)
         self._sender.shutdown(wait=False)
         self._blocking.shutdown(wait=False)
+        self._transfers.shutdown(wait=False, cancel_futures=True)

@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+from threading import Event
+from typing import Any
+
 import pytest
 
-from hardware.autopilot.link import MavlinkLink, check_url
+from hardware.autopilot.link import FenceTransferFailed, MavlinkLink, check_url
 
 
 @pytest.mark.parametrize(
@@ -30,3 +33,30 @@ async def test_before_it_is_open_nothing_is_sent_and_closing_twice_is_harmless()
     assert await link.parameter("NAV_DLL_ACT") is None
     await link.close()
     await link.close()
+
+
+class HangingMission:
+    """MAVSDK's, while the transfer neither succeeds nor fails."""
+
+    def __init__(self) -> None:
+        self.go_on = Event()
+
+    def download_geofence(self) -> list[Any]:
+        self.go_on.wait(10.0)
+        return []
+
+
+async def test_a_fence_transfer_that_never_ends_is_an_error_and_holds_up_nothing_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("hardware.autopilot.link.FENCE_WALL_S", 0.05)
+    link, mission = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None), HangingMission()
+    monkeypatch.setattr(link, "_mission", mission)
+    try:
+        for _ in range(3):
+            with pytest.raises(FenceTransferFailed, match="timeout"):
+                await link.fence()
+        assert await link.parameter("NAV_DLL_ACT") is None
+    finally:
+        mission.go_on.set()
+        await link.close()
