@@ -90,7 +90,8 @@ def open_screen(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Op
     faults: list[str] = []
 
     def make(server: Server, path: str = "", settings: dict[str, Any] | None = None, **options: Any) -> Screen:
-        context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}} | options)
+        wanted: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}} | options
+        context = browser.new_context(**wanted)
         contexts.append(context)
         stored = json.dumps(SETTINGS | (settings or {}))
         context.add_init_script(

@@ -230,16 +230,17 @@ async def test_a_session_that_is_ended_elsewhere_closes_its_live_channel(shared:
             await websockets.connect(f"ws://{host}/api/live", additional_headers=cookie)
         assert foreign.value.response.status_code == 403, "no Origin: no page of ours"
         async with websockets.connect(
-            f"ws://{host}/api/live", origin=f"http://{host}", additional_headers=cookie
-        ) as live:  # type: ignore[arg-type]
+            f"ws://{host}/api/live", origin=websockets.Origin(f"http://{host}"), additional_headers=cookie
+        ) as live:
             assert "hello" in str(await live.recv())
             await access.end_sessions(access.people[0].person_id)
             with pytest.raises(websockets.ConnectionClosed) as closed:
                 await heard_until_closed(live)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == SIGNED_OUT
+        own = websockets.Origin(f"http://{host}")
         with pytest.raises(websockets.InvalidStatus) as gone:
-            await websockets.connect(f"ws://{host}/api/live", origin=f"http://{host}", additional_headers=cookie)  # type: ignore[arg-type]
+            await websockets.connect(f"ws://{host}/api/live", origin=own, additional_headers=cookie)
         assert gone.value.response.status_code == 401
 
 

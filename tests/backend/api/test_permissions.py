@@ -25,6 +25,7 @@ from backend.auth.audit_chain import verify
 from backend.auth.buckets import Buckets
 from backend.auth.passwords import Passwords
 from backend.commands import Command, CraftRequest, ForControl, ForCraft, ForSearch
+from backend.events import CommandAccepted, CommandRefused
 from backend.permissions import BEFORE_PEOPLE, COMMANDS, ENDPOINTS, SAFETY, Need, at_least
 from backend.settings import Settings
 
@@ -279,9 +280,11 @@ async def test_each_command_by_each_role_is_answered_or_refused_and_stands_in_jo
             allowed = caller.role is not None and at_least(caller.role, need.role)
             assert (reply.status_code == 200) == allowed, (kind, caller.name, reply.text)
             recorded = await services.journal.read(mission)
-            fact = next((r.event for r in recorded if getattr(r.event, "command_id", None) == body["command_id"]), None)
+            answers = [r.event for r in recorded if isinstance(r.event, CommandAccepted | CommandRefused)]
+            fact = next((answer for answer in answers if answer.command_id == body["command_id"]), None)
             assert (fact is not None) == allowed
             if fact is not None:
+                assert fact.author is not None
                 assert (fact.by, fact.author.role, fact.author.address) == (caller.name, caller.role, "127.0.0.1")
             code = (reply.json()["reason"] or {"code": None})["code"] if allowed else None
             if allowed and need.control:

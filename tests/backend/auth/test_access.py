@@ -155,7 +155,7 @@ async def test_a_wrong_name_and_a_wrong_password_are_answered_alike(access: Acce
 
 async def test_tries_are_limited_by_address_and_others_still_enter(access: Access, clocks: Clocks) -> None:
     await with_admin(access)
-    reasons_got = []
+    reasons_got = list[type]()
     for _ in range(30):
         try:
             await access.sign_in("Ada", "wrong password", "10.0.0.9", "")
