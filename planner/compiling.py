@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Callable
 from types import ModuleType
@@ -64,7 +65,7 @@ def _load_numba_without_blas() -> None:
         return
     sys.modules[blas] = ModuleType(blas)
     try:
-        import numba.np.arraymath  # noqa: F401
+        importlib.import_module("numba.np.arraymath")
     finally:
         del sys.modules[blas]
 

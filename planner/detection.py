@@ -23,8 +23,8 @@ import numpy as np
 
 from planner.types import FloatArray
 
-_NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(41)
-_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
+_NODES, _HERMITE = np.polynomial.hermite_e.hermegauss(41)
+_WEIGHTS = _HERMITE / _HERMITE.sum()
 NEAREST_M = 1.0
 _LARGEST = 8.0
 

@@ -41,9 +41,10 @@ def bearing_scatter(
     high_m: NDArray[np.float64],
 ) -> BearingScatter:
     """places_m: (k, 2) east, north; bearing_deg: (k,) from true north; low_m, high_m: (2,) corners of the area."""
-    east, north = np.meshgrid(*(np.linspace(low_m[axis], high_m[axis], _CELLS) for axis in (0, 1)))
-    off_east = east.reshape(-1, 1) - places_m[:, 0]
-    off_north = north.reshape(-1, 1) - places_m[:, 1]
+    east = np.tile(np.linspace(float(low_m[0]), float(high_m[0]), _CELLS), _CELLS)
+    north = np.repeat(np.linspace(float(low_m[1]), float(high_m[1]), _CELLS), _CELLS)
+    off_east = east[:, None] - places_m[:, 0]
+    off_north = north[:, None] - places_m[:, 1]
     direction = np.degrees(np.arctan2(off_east, off_north))
     residual = (bearing_deg - direction + 180.0) % 360.0 - 180.0
     log_sigma = -0.5 * (np.log(SIGMAS_DEG / TYPICAL_DEG) / TYPICAL_SPREAD) ** 2

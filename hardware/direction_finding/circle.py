@@ -46,7 +46,7 @@ class SweepLikelihood:
     def normal(cls, bearing_deg: float, sigma_deg: float) -> SweepLikelihood:
         """exp(-(b - bearing)^2 / (2 sigma^2)), the difference taken the short way round."""
         off = (np.arange(DIRECTIONS) - bearing_deg + 180.0) % 360.0 - 180.0
-        return cls.of(-0.5 * (off / sigma_deg) ** 2)
+        return cls.of(np.asarray(-0.5 * (off / sigma_deg) ** 2, dtype=np.float64))
 
     def blurred(self, sigma_deg: float) -> SweepLikelihood:
         """Convolved with a normal density of `sigma_deg`, around the circle: for what bearings share besides."""

@@ -44,8 +44,8 @@ FITS_DB = 0.8
 _NOISE_DB = np.array([0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])
 _NOISE_SPREAD = 0.5
 """Of the noise's natural logarithm about 1 dB."""
-_LOG_NOISE_PRIOR = -0.5 * (np.log(_NOISE_DB) / _NOISE_SPREAD) ** 2
-_LOG_NOISE_PRIOR = _LOG_NOISE_PRIOR - np.log(np.exp(_LOG_NOISE_PRIOR).sum())
+_NOISE_WEIGHTS = np.exp(-0.5 * (np.log(_NOISE_DB) / _NOISE_SPREAD) ** 2)
+_LOG_NOISE_PRIOR = np.log(_NOISE_WEIGHTS / _NOISE_WEIGHTS.sum())
 _PER_SLICE = BINS // SLICES
 _OFF_DEG = (BIN_DEG * np.arange(BINS) + 180.0) % 360.0 - 180.0
 _LOBES_DB = DEPTH_DB * (1.0 - np.exp(-12.0 * (_OFF_DEG / np.array(WIDTHS_DEG)[:, None]) ** 2 / DEPTH_DB))

@@ -88,9 +88,7 @@ def repeating(sweeps: Sequence[KeptSweep], pattern: AntennaPattern, seed: int = 
     """
     if len(sweeps) < FEWEST_SWEEPS:
         return None
-    table = np.array(
-        [_by_angle(s, s.bearing_deg, s.binned_db - pattern.gain_at(s.bearing_deg - _CENTRE_DEG)) for s in sweeps]
-    )
+    table = np.array([_by_angle(s, s.bearing_deg, s.binned_db - _expected_db(s, pattern)) for s in sweeps])
     found, uneven = _common_square(table), _common_square(_odd(table))
     rng = np.random.default_rng(seed)
     exceeded = uneven_exceeded = 0
@@ -110,6 +108,11 @@ def repeating(sweeps: Sequence[KeptSweep], pattern: AntennaPattern, seed: int = 
         len(sweeps),
         curve,
     )
+
+
+def _expected_db(sweep: KeptSweep, pattern: AntennaPattern) -> NDArray[np.float64]:
+    """By the pattern, at the heading of each bin."""
+    return pattern.gain_at(np.asarray(sweep.bearing_deg - _CENTRE_DEG, dtype=np.float64))
 
 
 def _odd(table: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -111,7 +111,8 @@ def sweep_of(mismatch: Mismatch, slices: int, snr_db: float, bearing_deg: float,
         power = np.maximum(power + noise + spread * rng.normal(size=count), 0.05 * noise)
     level = 10.0 * np.log10(np.maximum(power, 1e-9)) + JITTER_DB * rng.normal(size=count)
     floor = -snr_db if math.isfinite(snr_db) else None
-    return Sweep(0.5 * np.arange(count), heading, level, 868e6, Place(0.0, 0.0), 0.0, noise_floor_db=floor)
+    at_s = np.linspace(0.0, 0.5 * (count - 1), count)
+    return Sweep(at_s, heading, level, 868e6, Place(0.0, 0.0), 0.0, noise_floor_db=floor)
 
 
 def principal_axis_deg(sweep: Sweep) -> float:

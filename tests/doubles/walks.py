@@ -50,7 +50,7 @@ def commanded(
     command: commands.Command, command_id: str, context: Context = NO_CONTEXT, craft_id: str = FIRST_CRAFT
 ) -> Commanded:
     """context: of the craft, or of the search when the command is for that."""
-    if isinstance(command, commands.ForSearch):
+    if isinstance(command, commands.ForSearch | commands.ForControl):
         return Commanded(command_id, commands.Author("anna"), command, search=context)
     if isinstance(command, commands.Start) and context.start is None:
         context = Context(context.objections, START)

@@ -36,7 +36,7 @@ def refusals(method: str, path: str, operation: dict[str, Any]) -> list[tuple[st
                 (verb, filled(path, "nobody"), {"content": body, "headers": {"content-type": "application/json"}})
             )
     queries = [p for p in operation.get("parameters", ()) if p["in"] == "query"]
-    asked += [(verb, filled(path, "nobody"), {"params": {p["name"]: "\u00e9 " * 30}}) for p in queries]
+    asked += [(verb, filled(path, "nobody"), {"params": {p["name"]: "\u00e9 " * 300}}) for p in queries]
     return asked
 
 

@@ -331,7 +331,7 @@ async def test_a_new_password_ends_all_sessions(access: Access) -> None:
 
 
 async def test_one_person_has_a_bounded_number_of_sessions(access: Access, clocks: Clocks) -> None:
-    first = await with_admin(access)
+    first = last = await with_admin(access)
     for _ in range(SESSIONS_EACH):
         clocks.go(10)
         last = await access.sign_in("Ada", PASSWORD, "10.0.0.2", "")

@@ -16,6 +16,7 @@ from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planning import foreseen
 from backend.search.state import SearchState
 from backend.spec import MissionSpec, SensorSpec, with_todays_errors
+from hardware.readings import Place
 from planner.belief.joint import JointBelief
 
 TARGET = (120.0, 60.0)
@@ -59,7 +60,7 @@ def test_a_turned_compass_is_found_used_and_said_clockwise() -> None:
     assert fact.localized
     assert fact.heading_offset_deg is None
     assert fact.estimate is not None
-    assert math.dist(FRAME.to_enu(fact.estimate), TARGET) < 4.0
+    assert math.dist(FRAME.to_enu(Place(lat=fact.estimate.lat, lon=fact.estimate.lon)), TARGET) < 4.0
     blocked, _ = task().belief_fact(turned(11.0))
     assert not blocked.localized
     assert blocked.sources == []

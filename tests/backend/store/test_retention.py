@@ -12,7 +12,7 @@ from sqlalchemy import make_url
 from typer.testing import CliRunner
 
 from backend.cli.main import app
-from backend.events import MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
+from backend.events import MissionDrafted, MissionEnded, MissionStarted, Phase, PhaseChanged
 from backend.reasons.flight import Ordered
 from backend.reasons.search import Localized
 from backend.store.engine import engine_for_once
@@ -26,7 +26,7 @@ NOW = datetime(2026, 6, 1, tzinfo=UTC)
 ENDED = MissionEnded(outcome="localized", reason=Localized(), mission_time_s=200.0)
 
 
-def craft(before: str, after: str) -> PhaseChanged:
+def craft(before: Phase, after: Phase) -> PhaseChanged:
     reason = Ordered("abort", "operator")
     return PhaseChanged(craft_id="craft-1", before=before, after=after, reason=reason)
 

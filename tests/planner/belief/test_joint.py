@@ -34,7 +34,8 @@ KNOWN = ErrorPrior(
 
 def toward(place, error_deg=0.0, source="craft", **more):
     direction = np.arctan2(TARGET[1] - place[1], TARGET[0] - place[0])
-    return Bearing(*place, float(wrap(direction + np.deg2rad(error_deg))), SIGMA, source=source, **more)
+    x, y = place
+    return Bearing(x, y, float(wrap(direction + np.deg2rad(error_deg))), SIGMA, source=source, **more)
 
 
 def joint(bearings, problem=PROBLEM, **known):
@@ -47,7 +48,8 @@ def joint(bearings, problem=PROBLEM, **known):
 def random_bearings(rng, count):
     return [
         Bearing(
-            *rng.uniform(0.0, 300.0, 2),
+            rng.uniform(0.0, 300.0),
+            rng.uniform(0.0, 300.0),
             rng.uniform(-np.pi, np.pi),
             rng.uniform(np.deg2rad(1.0), np.deg2rad(20.0)),
             peaks=tuple(Peak(rng.uniform(-np.pi, np.pi), rng.uniform(0.1, 1.0)) for _ in range(rng.integers(3))),
