@@ -52,7 +52,7 @@ def bearing_scatter(
     for i, sigma in enumerate(SIGMAS_DEG):
         density = np.exp(-0.5 * (residual / sigma) ** 2) / (math.sqrt(2.0 * math.pi) * sigma)
         for j, rate in enumerate(OUTLIER_RATES):
-            by_place = np.log((1.0 - rate) * density + rate / 360.0).sum(axis=1)
+            by_place: NDArray[np.float64] = np.log((1.0 - rate) * density + rate / 360.0).sum(axis=1)
             top = float(by_place.max())
             score[i, j] = top + math.log(float(np.mean(np.exp(by_place - top)))) + math.log(OUTLIER_PRIOR[j])
     score = score + log_sigma[:, None]
