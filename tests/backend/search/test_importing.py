@@ -8,7 +8,7 @@ from uuid import uuid4
 import numpy as np
 import pytest
 from equipment import FRAME, PATTERN, TWO_EMITTERS, PointingFinder, spec
-from flights import flying, order
+from flights import flying, order, stuck
 from refusals import near
 from stage import Stage
 
@@ -176,8 +176,7 @@ async def test_leaving_out_an_imported_bearing_or_editing_the_draft_settles_the_
 
 
 async def test_a_mission_in_flight_takes_a_recording_and_keeps_its_place(stage: Stage) -> None:
-    mission_id = await flying(stage)
-    stage.vehicle.stuck = True
+    mission_id = await stuck(stage)
     flown = stage.active.state.craft.chosen
     new, already = await stage.room.drafts.import_recording(mission_id, upload(recorded(0, 10)), "ann")
     assert not already
