@@ -8,7 +8,7 @@ from uuid import uuid4
 import numpy as np
 import pytest
 from equipment import FRAME, PATTERN, TWO_EMITTERS, PointingFinder, spec
-from flights import flying, order, stuck
+from flights import order, stuck
 from refusals import near
 from stage import Stage
 
