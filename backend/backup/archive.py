@@ -73,7 +73,7 @@ class ArchiveWriter:
         self.members.append(writer.member(name, None))
 
     def counted(self, rows: int) -> None:
-        """The last part was a table of so many rows."""
+        """The last part was a table with this number of rows."""
         self.members[-1] = self.members[-1].model_copy(update={"rows": rows})
 
     def finish(self, manifest: Manifest) -> None:

@@ -17,7 +17,8 @@ def thin(
     keep_days: Annotated[
         float | None,
         typer.Option(
-            min=0, help="Keep those of missions that ended within so many days. Default: CROSSFIX_KEEP_SWEEPS_DAYS."
+            min=0,
+            help="Keep those of missions that ended within this number of days. Default: CROSSFIX_KEEP_SWEEPS_DAYS.",
         ),
     ] = None,
     database: Annotated[

@@ -17,7 +17,7 @@ from hardware.ports import Clock
 EVERY_WALL_S = 0.2
 """280 bytes a second each way."""
 UNANSWERED = 5
-"""After so many questions without an answer in between a PING goes with each."""
+"""After this number of questions in a row without an answer, a PING goes with each."""
 _ASKED_MOST = 50
 _EVERYBODY = {"target_system": 0, "target_component": 0}
 """Of a PING: a question; with a target it is an answer."""

@@ -13,8 +13,8 @@ lobes are not. Each hypothesis' evidence integrates over bearing, shape, level (
 
     p(m) = sum_e p(e) int dL N(m; mean + L, C + e^2 I)                        (level profiled: eq. 2.43)
 
-A right pattern is much the better forecast of its own sweeps; an antenna with other side lobes is told from it by one
-sweep of 16 slices mostly, of 36 slices always. What no sweep shows is a pattern that is merely turned (squint).
+A right pattern is much the better forecast of its own sweeps; one sweep of 16 slices mostly sets an antenna with other
+side lobes apart from it, one of 36 slices always. What no sweep shows is a pattern that is merely turned (squint).
 """
 
 from __future__ import annotations

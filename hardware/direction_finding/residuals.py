@@ -42,7 +42,7 @@ RARELY = 0.01
 """Chance that sweeps which have nothing in common repeat so much."""
 NEAREST_M = 30.0
 PRIOR_WEIGHT = 1.0
-"""The measured pattern counts like so many sweeps where the flight has few."""
+"""The measured pattern counts as much as this number of sweeps where the flight has few."""
 _CENTRE_DEG = (np.arange(BINS) + 0.5) * BIN_DEG
 
 

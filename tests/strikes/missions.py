@@ -56,7 +56,7 @@ from tests.strikes.strike import until
 ORDERS = {20: "return", 21: "land", 22: "take-off", 115: "yaw", 176: "mode", 178: "speed", 192: "place", 400: "arm"}
 """MAV_CMD that move the vehicle, in words. A yaw step of PX4 is a place."""
 FALSE_TIMES = 3.0
-"""A claim is false when its error is beyond so many times what it stated."""
+"""A claim is false when its error is beyond this multiple of what it stated."""
 
 
 @dataclass(frozen=True, slots=True)

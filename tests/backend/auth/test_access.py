@@ -291,7 +291,7 @@ async def test_signing_out_everywhere_ends_all_at_once_and_for_good(access: Acce
     assert found is not None
     person = access.people[0].person_id
     await access.end_sessions(person)
-    assert found[1].ended.is_set(), "its websockets are told"
+    assert found[1].ended.is_set(), "its websockets close"
     access = await again(url, clocks, access)
     assert (who(access, first), who(access, second)) == (None, None)
     await access.close()
