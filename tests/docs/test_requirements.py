@@ -15,7 +15,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 def asked(*extras: str) -> set[str]:
     lines = [*PROJECT["dependencies"], *(line for extra in extras for line in PROJECT["optional-dependencies"][extra])]
-    return {canonicalize_name(Requirement(line).name) for line in lines} - {"crossfix"}
+    return {str(canonicalize_name(Requirement(line).name)) for line in lines} - {"crossfix"}
 
 
 @pytest.mark.parametrize(

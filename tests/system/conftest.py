@@ -22,14 +22,19 @@ def flavour() -> str:
 
 
 @pytest.fixture
-async def server(tmp_path: Path, flavour: str) -> AsyncIterator[RunningServer]:
+def speedup() -> float:
+    return SPEEDUP
+
+
+@pytest.fixture
+async def server(tmp_path: Path, flavour: str, speedup: float) -> AsyncIterator[RunningServer]:
     """The real server on a free port, its SQLite file, and a simulated vehicle of its own process."""
     settings = Settings(
         port=0,
         data_dir=tmp_path,
         simulate=flavour,  # type: ignore[arg-type]
         simulated_flies_on=False,
-        time_factor=SPEEDUP,
+        time_factor=speedup,
         seed=3,
     )
     async with running_server(settings) as running:

@@ -11,6 +11,12 @@ from hostile_files import HostileFile, hostile_files
 pytestmark = pytest.mark.system
 
 
+@pytest.fixture
+def speedup() -> float:
+    """Slow: minutes of uploads on a busy machine must not empty the battery that holds the vehicle."""
+    return 2.0
+
+
 async def upload(operator: Console, file: HostileFile) -> int:
     kind = "application/json" if file.path == "/api/areas" else "application/octet-stream"
     reply = await operator.client.post(file.path, content=file.content, headers={"content-type": kind}, timeout=120)
