@@ -132,8 +132,7 @@ and an outlier rate in common, which are estimated with the place (planner.belie
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
-    joint ones (`with_todays_errors`).
+    bearing_errors: a specification that does not name them means independent ones.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -267,10 +266,3 @@ class MissionSpec(Model):
             for emitter in self.emitters
         ]
         return self.model_copy(update={"area": where.area, "emitters": emitters, "flight": flight})
-
-
-def with_todays_errors(spec: MissionSpec) -> MissionSpec:
-    """A new mission's specification: one that names no model of the bearings' errors gets the joint one."""
-    if "bearing_errors" in spec.sensor.model_fields_set:
-        return spec
-    return spec.model_copy(update={"sensor": spec.sensor.model_copy(update={"bearing_errors": "joint"})})

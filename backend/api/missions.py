@@ -15,7 +15,7 @@ from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
 from backend.logs import about
 from backend.search.errors import MissionNotFound
-from backend.spec import MissionSpec, with_todays_errors
+from backend.spec import MissionSpec
 from backend.store.digest import MissionDigest
 from backend.store.reading import PlaceInList
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
@@ -58,7 +58,7 @@ def _place(after: str) -> PlaceInList:
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
     """Draft a mission."""
-    return await _mission(services, await services.missions.drafts.create(with_todays_errors(spec), principal.name))
+    return await _mission(services, await services.missions.drafts.create(spec, principal.name))
 
 
 @router.get("/{mission_id}")
@@ -72,7 +72,7 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, with_todays_errors(spec), principal.name)
+    await services.missions.drafts.edit(mission_id, spec, principal.name)
     return await _mission(services, mission_id)
 
 

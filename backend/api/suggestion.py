@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, Polygon, with_todays_errors
+from backend.spec import MissionSpec, Polygon
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -19,4 +19,4 @@ def suggested_mission(home: Place) -> MissionSpec:
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return with_todays_errors(MissionSpec(name=NAME, area=area))
+    return MissionSpec(name=NAME, area=area)

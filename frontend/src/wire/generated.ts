@@ -6117,8 +6117,7 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
-         *     joint ones (`with_todays_errors`).
+         *     bearing_errors: a specification that does not name them means independent ones.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6144,8 +6143,7 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them (those of before) means independent ones; a new mission gets
-         *     joint ones (`with_todays_errors`).
+         *     bearing_errors: a specification that does not name them means independent ones.
          */
         SensorSpecInput: {
             /** @default 7 */

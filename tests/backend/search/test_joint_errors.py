@@ -8,14 +8,13 @@ import math
 import pytest
 from ground import AREA, FRAME, HOME, towards
 
-from backend.api.suggestion import suggested_mission
 from backend.events import BearingMeasured, BeliefUpdated, PersonSource
 from backend.reasons.search import BearingsCorrected
 from backend.search.localization import Localization, error_prior, localization, source_name
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planning import foreseen
 from backend.search.state import SearchState
-from backend.spec import MissionSpec, SensorSpec, with_todays_errors
+from backend.spec import MissionSpec, SensorSpec
 from hardware.readings import Place
 from planner.belief.joint import JointBelief
 
@@ -38,15 +37,11 @@ def turned(degrees: float, count: int = 6) -> list[BearingMeasured]:
     ]
 
 
-def test_a_new_mission_is_joint_and_one_that_names_no_model_is_what_it_was() -> None:
+def test_a_mission_that_names_no_model_is_what_it_was() -> None:
     bare = {"name": "m", "area": AREA.model_dump(mode="json")}
     stored = MissionSpec.model_validate(bare)
     assert stored.sensor.bearing_errors == "independent"
     assert not isinstance(localization(stored, HOME).prior, JointBelief)
-    assert with_todays_errors(stored).sensor.bearing_errors == "joint"
-    assert suggested_mission(HOME).sensor.bearing_errors == "joint"
-    named = MissionSpec.model_validate(bare | {"sensor": {"bearing_errors": "independent"}})
-    assert with_todays_errors(named) == named
     assert json.loads(stored.model_dump_json())["sensor"]["bearing_errors"] == "independent"
 
 
