@@ -104,8 +104,13 @@ def test_the_owners_circle_around_home_bounds_the_mission() -> None:
 
 
 def test_a_fence_that_nobody_watches_is_no_limit() -> None:
-    plan_nets(PX4, nets(PX4_OPEN | {"GF_ACTION": 0.0}, square(10.0)), mission())
-    plan_nets(ARDUPILOT, nets(ENABLED | {"FENCE_TYPE": 3.0}, square(10.0)), mission())
+    for dialect, unwatched in (
+        (PX4, nets(PX4_OPEN | {"GF_ACTION": 0.0}, square(10.0))),
+        (ARDUPILOT, nets(ENABLED | {"FENCE_TYPE": 3.0}, square(10.0))),
+    ):
+        planned = plan_nets(dialect, unwatched, mission())
+        assert planned.before == unwatched
+        assert square(10.0) not in planned.after.zones
 
 
 def test_more_corners_than_the_autopilot_holds_are_refused() -> None:

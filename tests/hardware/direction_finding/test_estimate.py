@@ -16,6 +16,7 @@ from hardware.readings import Place, Sweep
 from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import (
     ConstantPower,
+    DirectionInGap,
     NothingAboveNoise,
     Overdriven,
     PowerNotNumbers,
@@ -159,6 +160,16 @@ def test_bearing_that_an_unheard_arc_hides_is_rejected() -> None:
     power = heard(BEAM, 302.0, heading) + np.random.default_rng(1).normal(0.0, 1.0, heading.size)
     reading = FINDER.estimate(sweep_of(heading, power), BEAM)
     assert not reading.accepted
+    assert reading.reason == DirectionInGap(116.0)
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_bearing_beside_an_unheard_arc_is_read_off_the_flank_that_was_heard(seed: int) -> None:
+    heading = np.arange(0.0, 280.0, 2.0)
+    power = heard(BEAM, 320.0, heading) + np.random.default_rng(seed).normal(0.0, 1.0, heading.size)
+    reading = FINDER.estimate(sweep_of(heading, power), BEAM)
+    assert reading.accepted
+    assert abs(reading.bearing_deg - 320.0) < 2.0 * reading.sigma_deg
 
 
 def test_minimum_quality_is_a_setting() -> None:
