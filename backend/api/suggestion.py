@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, Polygon, SensorSpec
+from backend.spec import MissionSpec, Polygon
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -13,11 +13,10 @@ NAME = "New search"
 
 
 def suggested_mission(home: Place) -> MissionSpec:
-    """The errors of the bearings are estimated with the place; all other values are the specification's defaults. The
-    home lies on the area's southern edge."""
+    """All other values are the specification's defaults. The home lies on the area's southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"))
+    return MissionSpec(name=NAME, area=area)

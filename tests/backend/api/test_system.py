@@ -97,6 +97,7 @@ async def test_what_was_learned_of_a_compass_is_shown_and_forgotten(client, serv
     assert known["bias_deg"] == 6.0
     assert known["expected_bias_deg"] < 2.0
     joint = (await client.get("/api/defaults")).json()["spec"]
+    joint["sensor"]["bearing_errors"] = "joint"
     drafted = (await client.post("/api/missions", json=joint)).json()["spec"]
     assert (joint["sensor"]["learned"], drafted["sensor"]["learned"]["flights"]) == (None, 2)
     gone = (await client.delete("/api/crafts/craft-1/compass")).json()

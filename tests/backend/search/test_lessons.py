@@ -12,6 +12,7 @@ from backend.events import FIRST_CRAFT, BearingMeasured, PersonSource
 from backend.ports import Lesson
 from backend.search.lessons import errors_now, knowing, lesson, mean_bias
 from backend.search.localization import localization
+from backend.search.planning import foreseen
 from backend.search.source_priors import prior_in
 from backend.search.state import EmitterState, SearchState
 from backend.search.task import search_task
@@ -104,6 +105,15 @@ def test_the_specification_holds_all_of_it_so_that_the_journal_folds_to_the_same
     assert digests[0] == digests[1]
     assert spec.sensor.learned is not None
     assert (spec.sensor.learned.flights, spec.sensor.learned.antenna) == (5, ANTENNA)
+
+
+def test_the_first_forecast_knows_what_was_learned_and_nothing_learned_changes_nothing() -> None:
+    def foreseen_deg(known: list[Lesson]) -> float:
+        task = localization(knowing(mission(), known, FIRST_CRAFT, ANTENNA), HOME)
+        return math.degrees(foreseen(task.problem, (), task.prior).sigma)
+
+    assert foreseen_deg([]) == pytest.approx(JOINT.sigma_deg)
+    assert foreseen_deg(lessons(0.0, 20)) < 0.6 * JOINT.sigma_deg < JOINT.sigma_deg < foreseen_deg(lessons(12.0, 20))
 
 
 def test_independent_errors_learn_nothing_and_are_told_nothing() -> None:
