@@ -35,10 +35,10 @@ RAW_BODY = {
 
 async def in_thread(what: What, work: Callable[..., T], *arguments: object) -> T:
     """Disk work off the event loop. Raises ApiProblem."""
-    return await told(what, asyncio.to_thread(work, *arguments))
+    return await as_problem(what, asyncio.to_thread(work, *arguments))
 
 
-async def told(what: What, doing: Awaitable[T]) -> T:
+async def as_problem(what: What, doing: Awaitable[T]) -> T:
     """What the map room refuses becomes a problem."""
     try:
         return await doing

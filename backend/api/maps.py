@@ -19,9 +19,9 @@ from backend.api.map_files import (
     Filename,
     Name,
     announced_bytes,
+    as_problem,
     in_thread,
     label,
-    told,
 )
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.maps.coverage import TileSet, coverage
@@ -92,7 +92,7 @@ async def upload_map(
     try:
         called, size = label(name, filename), announced_bytes(request)
         now = datetime.now(UTC)
-        return await told("map", folder.store(request.stream(), called, size, now, services.workers))
+        return await as_problem("map", folder.store(request.stream(), called, size, now, services.workers))
     except ClientDisconnect as error:
         raise ApiProblem(400, UploadBrokeOff()) from error
 
@@ -161,7 +161,7 @@ async def upload_overlay(
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
     content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
     called, now = label(name, filename), datetime.now(UTC)
-    return await told("overlay", services.workers.run(folder.store, content, called, now))
+    return await as_problem("overlay", services.workers.run(folder.store, content, called, now))
 
 
 async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:

@@ -18,9 +18,9 @@ from backend.api.map_files import (
     Filename,
     Name,
     announced_bytes,
+    as_problem,
     in_thread,
     label,
-    told,
 )
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.maps.relief import HIGHEST_ZOOM, LOWEST_ZOOM, contours, relief_tile
@@ -74,7 +74,7 @@ async def upload_terrain(
     try:
         called, size = label(name, filename), announced_bytes(request)
         now = datetime.now(UTC)
-        return await told("terrain", folder.store(request.stream(), called, size, now, services.workers))
+        return await as_problem("terrain", folder.store(request.stream(), called, size, now, services.workers))
     except ClientDisconnect as error:
         raise ApiProblem(400, UploadBrokeOff()) from error
 
