@@ -10,7 +10,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse
-from starlette.requests import ClientDisconnect
 
 from backend.api.dependencies import PrincipalDep, ServicesDep
 from backend.api.map_files import (
@@ -18,17 +17,17 @@ from backend.api.map_files import (
     ContentId,
     Filename,
     Name,
-    announced_bytes,
     as_problem,
     in_thread,
     label,
+    upload,
 )
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
 from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
-from backend.reasons.request import BodyTooLarge, UploadBrokeOff
+from backend.reasons.request import BodyTooLarge
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -89,12 +88,7 @@ async def upload_map(
     filename: Filename = "",
 ) -> MapPackage:
     """Store a PMTiles v3 archive: the request's body is the file itself."""
-    try:
-        called, size = label(name, filename), announced_bytes(request)
-        now = datetime.now(UTC)
-        return await as_problem("map", folder.store(request.stream(), called, size, now, services.workers))
-    except ClientDisconnect as error:
-        raise ApiProblem(400, UploadBrokeOff()) from error
+    return await upload("map", folder, request, services.workers, name, filename)
 
 
 @router.post("/maps/coverage")
