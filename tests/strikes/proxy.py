@@ -36,6 +36,7 @@ class Passed:
 @dataclass
 class Proxy:
     """delay_s: each way. loss: share of frames, each way. url: where the program under test finds the vehicle.
+    system: the vehicle's MAVLink id, since it was heard.
 
     on_sent(number, fields): a kept message left the program under test and reaches the vehicle `delay_s` later.
     """
@@ -43,6 +44,7 @@ class Proxy:
     delay_s: float = 0.0
     loss: float = 0.0
     url: str = ""
+    system: int = 1
     kept: frozenset[int] = KEPT
     record: list[Passed] = field(default_factory=list[Passed])
     on_sent: Callable[[int, dict[str, Any]], None] | None = None
@@ -73,6 +75,7 @@ class Proxy:
             self.record.append(Passed(time.monotonic(), "to", frame.number, fields))
 
     def from_vehicle(self, frame: Frame) -> None:
+        self.system = frame.system
         if frame.number in self.kept:
             self.record.append(Passed(time.monotonic(), "from", frame.number, frame.fields()))
         if self.chance.random() >= self.loss:

@@ -24,10 +24,18 @@ def line(outcome: Outcome, flown: int) -> str:
     noticed = "never noticed" if outcome.noticed_s is None else f"noticed {outcome.noticed_s:.2f} s"
     took = "did not take" if outcome.took_s is None else f"took {outcome.took_s:.3f} s"
     undone = f"UNDONE to {outcome.back_to:#x} (the pilot's is {flown:#x})" if outcome.back_to is not None else "stays"
+    why = f", {_told(outcome)}" if outcome.counts and unnoticed(outcome) else ""
     return (
         f"{outcome.scene:9} {outcome.moment:10} {outcome.means:6} {outcome.delay_s * 1e3:4.0f} ms: {took}, {undone}, "
         f"{noticed}, {outcome.commands} commands afterwards, the last {outcome.last_command_s:.2f} s"
+        f"{why}"
     )
+
+
+def _told(outcome: Outcome) -> str:
+    """Why it was noticed late: the autopilot told it late, this process stood still, or the program did not see it."""
+    told = "the autopilot never told its mode" if outcome.told_s is None else f"told after {outcome.told_s:.2f} s"
+    return f"{told}, this process stood still for {outcome.stalled_s:.2f} s at most, in the end: {outcome.known}"
 
 
 def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
