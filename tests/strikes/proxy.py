@@ -61,6 +61,14 @@ class Proxy:
             first -= 1
         return self.record[first:]
 
+    def held_up_s(self) -> float:
+        """By how much something was delivered later than due, at most, since this was asked last."""
+        lanes = (self._to_lane, self._from_lane)
+        found = max(lane.late_s for lane in lanes)
+        for lane in lanes:
+            lane.late_s = 0.0
+        return found
+
     def from_program(self, frame: Frame) -> None:
         fields = frame.fields() if frame.number in self.kept else None
         if self.chance.random() < self.loss:

@@ -37,7 +37,8 @@ class Outcome:
 
     took_s: until the autopilot said so; None: never, the switch did not take. back_to: the raw mode that undid it.
     told_s: until a report of that mode left the autopilot; None: none did. stalled_s: the longest that this process,
-    with the program under test in it, did nothing at all meanwhile. known: what the program knew in the end.
+    with the program under test in it, did nothing at all meanwhile. held_up_s: by how much it delivered what the link
+    carries later than due, at most. known: what the program knew in the end.
     last_command_s: the last flight command that reached the vehicle, after the strike; 0 when none did.
     """
 
@@ -53,6 +54,7 @@ class Outcome:
     commands: int
     told_s: float | None = None
     stalled_s: float = 0.0
+    held_up_s: float = 0.0
     known: str = ""
 
     @property
@@ -104,6 +106,7 @@ async def watch(
     """From the strike on for three seconds and both ways of the link."""
     end_s = aim.at_s + WATCHED_S + 2.0 * proxy.delay_s
     noticed_s, stalled_s, looked_s = None, 0.0, time.monotonic()
+    proxy.held_up_s()
     while (now_s := time.monotonic()) < end_s:
         stalled_s, looked_s = max(stalled_s, now_s - looked_s), now_s
         if now_s > aim.at_s + STICKS_S:
@@ -127,6 +130,7 @@ async def watch(
         commands=len(late),
         told_s=_told(proxy, pilot, aim.at_s),
         stalled_s=stalled_s,
+        held_up_s=proxy.held_up_s(),
         known=_known(vehicle),
     )
 

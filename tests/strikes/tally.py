@@ -35,7 +35,10 @@ def line(outcome: Outcome, flown: int) -> str:
 def _told(outcome: Outcome) -> str:
     """Why it was noticed late: the autopilot told it late, this process stood still, or the program did not see it."""
     told = "the autopilot never told its mode" if outcome.told_s is None else f"told after {outcome.told_s:.2f} s"
-    return f"{told}, this process stood still for {outcome.stalled_s:.2f} s at most, in the end: {outcome.known}"
+    return (
+        f"{told}, this process stood still for {outcome.stalled_s:.2f} s and delivered {outcome.held_up_s:.2f} s late "
+        f"at most, in the end: {outcome.known}"
+    )
 
 
 def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
