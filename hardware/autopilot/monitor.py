@@ -16,7 +16,7 @@ from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, request_message
+from hardware.autopilot.messages import HOME_POSITION_ID, Outgoing, message_interval, request_message
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
@@ -47,6 +47,8 @@ log = logging.getLogger(__name__)
 
 DIALECTS: dict[int, Dialect] = {12: PX4, 3: ARDUPILOT}
 """MAV_AUTOPILOT -> dialect."""
+HEARTBEAT_ID, HEARTBEAT_WALL_S = 0, 0.6
+"""MAVSDK keeps the first one to itself; the next comes a second later, or when it is asked for."""
 CURRENT_MODE_ID = 436
 """It tells a takeover in about 0.1 s where the heartbeat takes up to 1 s."""
 STREAMS: tuple[tuple[int, float], ...] = (
@@ -108,9 +110,14 @@ class Monitor:
     async def _connect(self, timeout_s: float) -> None:
         started = time.monotonic()
         await self.link.open(timeout_s)
+        asked_s = -math.inf
         while self._autopilot_number is None:
-            if time.monotonic() - started > timeout_s:
+            now_s = time.monotonic()
+            if now_s - started > timeout_s:
                 raise VehicleUnreachable(HeartbeatStopped(self.link.url))
+            if now_s - asked_s > HEARTBEAT_WALL_S:
+                asked_s = now_s
+                await self._send_once(request_message(HEARTBEAT_ID))
             await self.wakeup.wait()
         dialect = DIALECTS.get(self._autopilot_number)
         if dialect is None:
@@ -118,7 +125,8 @@ class Monitor:
         self._dialect = dialect
         self.connected = True
         self.announce(VehicleConnected(dialect.name, self.link.url))
-        await self._request_streams()
+        for outgoing in (message_interval(message_id, hz) for message_id, hz in self._streams):
+            await self._send_once(outgoing)  # whether they were heard is asked when the link is up
         first = Deadline(self.clock, 5.0, 3.0)
         while (self.snapshot.position is None or self.snapshot.in_air is None) and not first.passed:
             await self.wakeup.wait()
@@ -139,14 +147,23 @@ class Monitor:
         await self.link.close()
         self._announcer.end()
 
+    @property
+    def _streams(self) -> tuple[tuple[int, float], ...]:
+        return ((CURRENT_MODE_ID, self.dialect.mode_report_hz), *STREAMS)
+
+    async def _send_once(self, outgoing: Outgoing) -> None:
+        """A command that moves nothing, without waiting for its answer."""
+        await self.link.send(outgoing.message, outgoing.fields, lambda: True)
+
     async def _request_streams(self) -> None:
-        for message_id, hz in ((CURRENT_MODE_ID, self.dialect.mode_report_hz), *STREAMS):
+        for message_id, hz in self._streams:
             if not await self.commander.ask(message_interval(message_id, hz)):
                 log.info("the autopilot does not stream MAVLink message %d", message_id)
         await self.commander.ask(request_message(HOME_POSITION_ID))
 
     async def _keep_streams(self) -> None:
-        """Ask for the telemetry rates again when the autopilot has forgotten them."""
+        """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
+        await self._request_streams()
         reboots, odd = self.snapshot.reboots, False
         while True:
             await asyncio.sleep(1.0)
