@@ -16,7 +16,7 @@ from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.messages import HOME_POSITION_ID, Outgoing, message_interval, request_message
+from hardware.autopilot.messages import HEARTBEAT_ID, HOME_POSITION_ID, Outgoing, message_interval, request_message
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
@@ -47,10 +47,8 @@ log = logging.getLogger(__name__)
 
 DIALECTS: dict[int, Dialect] = {12: PX4, 3: ARDUPILOT}
 """MAV_AUTOPILOT -> dialect."""
-HEARTBEAT_ID, HEARTBEAT_WALL_S = 0, 0.6
+HEARTBEAT_WALL_S = 0.6
 """MAVSDK keeps the first one to itself; the next comes a second later, or when it is asked for."""
-CURRENT_MODE_ID = 436
-"""It tells a takeover in about 0.1 s where the heartbeat takes up to 1 s."""
 STREAMS: tuple[tuple[int, float], ...] = (
     (30, 20.0),  # ATTITUDE
     (33, 10.0),  # GLOBAL_POSITION_INT
@@ -149,7 +147,7 @@ class Monitor:
 
     @property
     def _streams(self) -> tuple[tuple[int, float], ...]:
-        return ((CURRENT_MODE_ID, self.dialect.mode_report_hz), *STREAMS)
+        return (self.dialect.mode_report, *STREAMS)
 
     async def _send_once(self, outgoing: Outgoing) -> None:
         """A command that moves nothing, without waiting for its answer."""

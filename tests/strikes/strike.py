@@ -61,6 +61,12 @@ class Outcome:
     def counts(self) -> bool:
         return self.took_s is not None
 
+    @property
+    def unaware_s(self) -> float | None:
+        """From the autopilot's first word that the pilot has it until we knew; None: we never did. A busy simulator
+        takes up to 1.7 s to obey its pilot; nobody else can know earlier."""
+        return None if self.noticed_s is None else max(0.0, self.noticed_s - (self.took_s or 0.0))
+
 
 class Aim:
     """Fires once: at a flight command in the air, or after a time; `at_s` tells when it did."""

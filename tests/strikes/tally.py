@@ -11,12 +11,12 @@ from tests.strikes.strike import NOTICED_S, Outcome
 
 
 def unnoticed(outcome: Outcome) -> bool:
-    return outcome.noticed_s is None or outcome.noticed_s > NOTICED_S
+    return outcome.unaware_s is None or outcome.unaware_s > NOTICED_S
 
 
 def spoke_late(outcome: Outcome) -> bool:
-    """A flight command reached the vehicle later than a second after the strike, and what the link takes."""
-    return outcome.last_command_s > NOTICED_S + outcome.delay_s
+    """A flight command reached the vehicle later than a second after it was taken, and what the link takes."""
+    return outcome.last_command_s > NOTICED_S + outcome.delay_s + (outcome.took_s or 0.0)
 
 
 def line(outcome: Outcome, flown: int) -> str:
@@ -50,7 +50,7 @@ def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "unnoticed": sum(map(unnoticed, counted)),
         "undone_unnoticed": sum(outcome.undone and unnoticed(outcome) for outcome in counted),
         "late_commands": sum(map(spoke_late, counted)),
-        "slowest_notice_s": max((o.noticed_s for o in counted if o.noticed_s is not None), default=None),
+        "slowest_notice_s": max((o.unaware_s for o in counted if o.unaware_s is not None), default=None),
         "latest_command_s": max((o.last_command_s for o in counted), default=None),
         "by": [dict(zip((c.name for c in table(outcomes).columns), row, strict=True)) for row in table(outcomes).rows],
     }
@@ -69,7 +69,7 @@ def table(outcomes: Sequence[Outcome]) -> Table:
             len(group),
             sum(outcome.undone for outcome in group),
             sum(map(unnoticed, group)),
-            max((o.noticed_s for o in group if o.noticed_s is not None), default=None),
+            max((o.unaware_s for o in group if o.unaware_s is not None), default=None),
             max(outcome.last_command_s for outcome in group),
         )
         for (scene, means, delay_s), group in sorted(groups.items())
@@ -101,6 +101,6 @@ def figures(outcomes: Sequence[Outcome], flavour: str, by_nobody: int, orders: b
         plain("takeovers aimed at real autopilots", len(counted), ""),
         plain("strikes that did not take", len(outcomes) - len(counted), ""),
         plain("takeovers told though nobody struck", by_nobody, ""),
-        plain("slowest notice", max((o.noticed_s for o in counted if o.noticed_s is not None), default=0.0), "s"),
+        plain("slowest notice", max((o.unaware_s for o in counted if o.unaware_s is not None), default=0.0), "s"),
         plain("last flight command after a takeover", max((o.last_command_s for o in counted), default=0.0), "s"),
     ]

@@ -68,7 +68,6 @@ class ArduCopter(Firmware):
     pilot_mode: ClassVar[str] = "LOITER"
     give_back_mode: ClassVar[str] = "BRAKE"
     heartbeat_on_mode_change: ClassVar[bool] = True
-    mode_reported_on_change: ClassVar[bool] = False
     prearm_has_present_bit: ClassVar[bool] = True
     any_inclusion: ClassVar[bool] = False
     ready_after: ClassVar[float] = 3.0

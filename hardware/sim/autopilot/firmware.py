@@ -103,8 +103,8 @@ class Firmware(ABC):
     """The mode that a pilot's mode switch selects to take over."""
     give_back_mode: ClassVar[str]
     heartbeat_on_mode_change: ClassVar[bool]
-    mode_reported_on_change: ClassVar[bool]
-    """CURRENT_MODE is sent when the mode changed, no faster than asked for, and else twice a second."""
+    """And as often as it is asked for. Else CURRENT_MODE is sent when the mode changed, no faster than asked for, and
+    twice a second when it did not."""
     streams_by_default: ClassVar[dict[int, float]]
     """Message id -> Hz sent without being asked."""
     prearm_has_present_bit: ClassVar[bool]

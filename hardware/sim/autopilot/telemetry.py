@@ -204,7 +204,6 @@ def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
 
 _COMMON: dict[int, Callable[[Firmware], Any]] = {
     mavlink.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
-    mavlink.MAVLINK_MSG_ID_CURRENT_MODE: current_mode,
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: sys_status,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: battery_status,
     mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: gps_raw_int,
@@ -222,4 +221,7 @@ def builders(flavour: str) -> dict[int, Callable[[Firmware], Any]]:
     """Message id -> builder: what this flavour can send when asked."""
     if flavour == "ardupilot":
         return _COMMON | {ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report}
-    return _COMMON | {mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status}
+    return _COMMON | {
+        mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status,
+        mavlink.MAVLINK_MSG_ID_CURRENT_MODE: current_mode,
+    }

@@ -7,8 +7,8 @@ from paper import IN_AIR, ON_GROUND, PLACE, POSCTL, Scene, heartbeat
 
 from hardware.authority import Authority, CommandSent
 from hardware.autopilot import monitor
-from hardware.autopilot.messages import SET_MESSAGE_INTERVAL
-from hardware.autopilot.monitor import AFTER_SILENCE_S, HEARTBEAT_ID, LINK_LOST_WALL_S, STREAMS
+from hardware.autopilot.messages import HEARTBEAT_ID, SET_MESSAGE_INTERVAL
+from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S, STREAMS
 from hardware.autopilot.px4 import HOLD, LANDING, RETURNING
 
 
