@@ -68,7 +68,7 @@ PX4 = Dialect(
         px4_mode(7): "STABILIZED",
         px4_mode(10): "TERMINATION",
     },
-    mode_report=(CURRENT_MODE_ID, 50.0),
+    mode_report=(CURRENT_MODE_ID, 200.0),
     waiting_modes=frozenset({HOLD, TAKING_OFF}),
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
