@@ -48,6 +48,7 @@ def summary(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "took": len(counted),
         "undone": sum(outcome.undone for outcome in counted),
         "unnoticed": sum(map(unnoticed, counted)),
+        "never_told": sum(outcome.told_s is None for outcome in counted),
         "undone_unnoticed": sum(outcome.undone and unnoticed(outcome) for outcome in counted),
         "late_commands": sum(map(spoke_late, counted)),
         "slowest_notice_s": max((o.unaware_s for o in counted if o.unaware_s is not None), default=None),
@@ -69,6 +70,7 @@ def table(outcomes: Sequence[Outcome]) -> Table:
             len(group),
             sum(outcome.undone for outcome in group),
             sum(map(unnoticed, group)),
+            sum(outcome.told_s is None for outcome in group),
             max((o.unaware_s for o in group if o.unaware_s is not None), default=None),
             max(outcome.last_command_s for outcome in group),
         )
@@ -81,6 +83,7 @@ def table(outcomes: Sequence[Outcome]) -> Table:
         Column(name="takeovers"),
         Column(name="undone"),
         Column(name="unnoticed for 1 s"),
+        Column(name="never told by the autopilot"),
         Column(name="slowest notice, s", decimals=2),
         Column(name="last command, s after", decimals=2),
     )
@@ -99,6 +102,12 @@ def figures(outcomes: Sequence[Outcome], flavour: str, by_nobody: int, orders: b
         wanted("takeovers_unnoticed", sum(map(unnoticed, counted)), of=of, note=note),
         plain("followed by a flight command later than 1 s", sum(map(spoke_late, counted)), "", note=note),
         plain("takeovers aimed at real autopilots", len(counted), ""),
+        plain(
+            "never told by the autopilot, so that nobody can notice",
+            sum(o.told_s is None for o in counted),
+            "",
+            note=note,
+        ),
         plain("strikes that did not take", len(outcomes) - len(counted), ""),
         plain("takeovers told though nobody struck", by_nobody, ""),
         plain("slowest notice", max((o.unaware_s for o in counted if o.unaware_s is not None), default=0.0), "s"),
