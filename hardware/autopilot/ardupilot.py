@@ -64,6 +64,7 @@ ARDUPILOT = Dialect(
         AUTO_RTL: "AUTO_RTL",
     },
     mode_report=(HEARTBEAT_ID, 5.0),
+    mode_switch="FLTMODE_CH",
     waiting_modes=frozenset({GUIDED, BRAKE}),
     returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
     landing_modes=frozenset({LAND}),

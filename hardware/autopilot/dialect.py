@@ -85,6 +85,7 @@ class Dialect:
     the mode has changed; when that is lost the next one tells it. PX4 sends CURRENT_MODE at most so often, and twice a
     second when nothing changed: a fast rate costs nothing and shows a mode that lasted for an instant. ArduCopter 4.7
     has no CURRENT_MODE.
+    mode_switch: the parameter with the number of the pilot's channel that selects modes; 0: none does.
     place_refused_texts: the beginnings of those by which it refuses a place that it has acknowledged.
     hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
     the raw modes it then shows. steering: the mode in which it flies to places and turns as told.
@@ -100,6 +101,7 @@ class Dialect:
     name: Literal["px4", "ardupilot"]
     mode_names: Mapping[int, str]
     mode_report: tuple[int, float]
+    mode_switch: str
     waiting_modes: frozenset[int]
     returning_modes: frozenset[int]
     landing_modes: frozenset[int]

@@ -9,14 +9,22 @@ import time
 from collections import deque
 from collections.abc import AsyncIterator
 
-from hardware.authority import Authority, ModeHeard, SticksTookOver
+from hardware.authority import Authority, ModeHeard, SticksTookOver, SwitchMoved
 from hardware.autopilot.announcer import Announcer, Wakeup
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.messages import HEARTBEAT_ID, HOME_POSITION_ID, Outgoing, message_interval, request_message
+from hardware.autopilot.messages import (
+    HEARTBEAT_ID,
+    HOME_POSITION_ID,
+    RC_CHANNELS_ID,
+    Outgoing,
+    message_interval,
+    request_message,
+)
+from hardware.autopilot.mode_switch import ModeSwitch
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
@@ -60,6 +68,7 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (147, 1.0),  # BATTERY_STATUS
     (HOME_POSITION_ID, 0.5),
 )
+MODE_SWITCH_HZ = 5.0
 LINK_LOST_WALL_S = 3.0
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
@@ -77,7 +86,7 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.clock = clock
-        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", ARM_STATUS)
+        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", "RC_CHANNELS", ARM_STATUS)
         self.link = MavlinkLink(url, listened, self._on_message)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
@@ -92,6 +101,7 @@ class Monitor:
         self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
         self.timesync = Timesync(self.link, clock, self.snapshot)
         self.silence = Silence()
+        self.mode_switch = ModeSwitch()
         self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
@@ -147,7 +157,8 @@ class Monitor:
 
     @property
     def _streams(self) -> tuple[tuple[int, float], ...]:
-        return (self.dialect.mode_report, *STREAMS)
+        switch = () if self.mode_switch.channel is None else ((RC_CHANNELS_ID, MODE_SWITCH_HZ),)
+        return (self.dialect.mode_report, *STREAMS, *switch)
 
     async def _send_once(self, outgoing: Outgoing) -> None:
         """A command that moves nothing, without waiting for its answer."""
@@ -161,6 +172,8 @@ class Monitor:
 
     async def _keep_streams(self) -> None:
         """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
+        number = await self.link.parameter(self.dialect.mode_switch)
+        self.mode_switch.channel = int(number) if number else None
         await self._request_streams()
         reboots, odd = self.snapshot.reboots, False
         while True:
@@ -188,6 +201,8 @@ class Monitor:
         """Is the vehicle still heard? elapsed_s: of the wall, since the last look."""
         for text in self._texts.overdue(self.clock.now()):
             self._say(text, self.clock.now())
+        if self.mode_switch.take_moved(self.clock.now()):
+            self.control.see(SwitchMoved(self.telemetry().mode or "", self.clock.now()))
         self.silence.look(elapsed_s)
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
@@ -218,6 +233,8 @@ class Monitor:
             self.timesync.came_back(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(fields, now)
+        elif name == "RC_CHANNELS":
+            self.mode_switch.see(fields, now)
         elif name == ARM_STATUS:
             self.remote_id = remote_id(int(fields["status"]), str(fields["error"]), now)
         else:

@@ -69,6 +69,7 @@ PX4 = Dialect(
         px4_mode(10): "TERMINATION",
     },
     mode_report=(CURRENT_MODE_ID, 200.0),
+    mode_switch="RC_MAP_FLTMODE",
     waiting_modes=frozenset({HOLD, TAKING_OFF}),
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),

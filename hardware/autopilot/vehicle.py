@@ -132,6 +132,7 @@ class MavsdkVehicle:
     def take_control(self) -> None:
         """The operator's explicit deed that lets commands pass again after somebody else took control."""
         if self._monitor.control.authority.taken_by is not None:
+            self._monitor.mode_switch.taken_back(self._monitor.clock.now())
             self._monitor.control.see(OperatorTookControl())
             self._monitor.announce(OperatorInControl())
 

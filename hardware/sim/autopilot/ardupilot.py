@@ -32,6 +32,7 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "FENCE_ALT_MAX": (100.0, REAL32),
     "FENCE_OPTIONS": (1, INT16),
     "DISARM_DELAY": (10, INT8),
+    "FLTMODE_CH": (5, INT8),
     "BATT_LOW_VOLT": (10.5, REAL32),
     "BATT_FS_LOW_ACT": (2, INT8),
     "BATT_FS_CRT_ACT": (1, INT8),

@@ -92,6 +92,9 @@ def deg_or_none(value: float) -> float | None:
     return None if math.isnan(value) else value
 
 
+SWITCH_AT_REST_US, SWITCH_MOVED_US = 1165, 1815
+
+
 class Firmware(ABC):
     """Base of the flavours. `time` is seconds since boot, simulated."""
 
@@ -140,6 +143,8 @@ class Firmware(ABC):
         self.gcs_heard_at: float | None = None
         self.gcs_failsafe = False
         self.heartbeat_due = False
+        self.mode_switch_us = SWITCH_AT_REST_US
+        """The pulse of the channel by which the pilot's transmitter selects modes."""
         self.rebooted = False
         """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
         self._text_id = 0 if self.name == "px4" else 1  # PX4 counts from the one that means "whole"

@@ -62,6 +62,9 @@ class PaperLink:
         asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": self.result})
         return True
 
+    async def parameter(self, name: str) -> float | None:
+        return None
+
     async def close(self) -> None:
         pass
 
