@@ -15,7 +15,7 @@ MOVED_US = 100
 """Positions of a switch lie further apart, the noise of a receiver far closer together (microseconds of pulse)."""
 LEAST_US, MOST_US = 800, 2200
 """What lies outside is no position: no transmitter is heard."""
-SETTLED_S = 0.5
+SETTLED_S = 0.3
 """An autopilot waits for 0.2 s before it believes a switch; its own word of the mode comes first where there is one."""
 GIVEN_BACK_S = 1.0
 """So long after an operator took the vehicle the pilot's way back to the autopilot's mode may still be reported."""
