@@ -68,7 +68,7 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (147, 1.0),  # BATTERY_STATUS
     (HOME_POSITION_ID, 0.5),
 )
-MODE_SWITCH_HZ = 5.0
+MODE_SWITCH_HZ, SWITCH_ATTEMPTS = 5.0, 3
 LINK_LOST_WALL_S = 3.0
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
@@ -133,7 +133,8 @@ class Monitor:
         self._dialect = dialect
         self.connected = True
         self.announce(VehicleConnected(dialect.name, self.link.url))
-        for outgoing in (message_interval(message_id, hz) for message_id, hz in self._streams):
+        rates = (message_interval(message_id, hz) for message_id, hz in self._streams)
+        for outgoing in (*rates, request_message(HOME_POSITION_ID)):
             await self._send_once(outgoing)  # whether they were heard is asked when the link is up
         first = Deadline(self.clock, 5.0, 3.0)
         while (self.snapshot.position is None or self.snapshot.in_air is None) and not first.passed:
@@ -172,9 +173,8 @@ class Monitor:
 
     async def _keep_streams(self) -> None:
         """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
-        number = await self.link.parameter(self.dialect.mode_switch)
-        self.mode_switch.channel = int(number) if number else None
         await self._request_streams()
+        await self._find_mode_switch()
         reboots, odd = self.snapshot.reboots, False
         while True:
             await asyncio.sleep(1.0)
@@ -189,6 +189,16 @@ class Monitor:
             elif not ceased or self.silence.seconds > LINK_LOST_WALL_S:
                 continue
             await self._request_streams()
+
+    async def _find_mode_switch(self) -> None:
+        """Which of the transmitter's channels selects modes; asked again of a link that loses much."""
+        number = None
+        for _ in range(SWITCH_ATTEMPTS):
+            if (number := await self.link.parameter(self.dialect.mode_switch)) is not None:
+                break
+        if number:
+            self.mode_switch.channel = int(number)
+            await self.commander.ask(message_interval(RC_CHANNELS_ID, MODE_SWITCH_HZ))
 
     async def _watch_link(self) -> None:
         looked = time.monotonic()
