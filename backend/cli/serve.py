@@ -6,15 +6,17 @@ import asyncio
 import importlib
 import logging
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from backend.auth.access import Mode
 from backend.cli.edge import print_json, remark, stop
 from backend.logs import configure
 from backend.settings import Settings, settings_of
 from planner.reason import ReasonedError
+
+if TYPE_CHECKING:  # it loads seconds of libraries, and a vehicle left in flight is to be held first
+    from backend.auth.access import Mode
 
 
 def serve(
