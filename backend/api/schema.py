@@ -21,6 +21,7 @@ from backend.api import (
     missions,
     people,
     planning,
+    provider,
     read_export,
     recordings,
     review,
@@ -39,6 +40,7 @@ from backend.wire.problem import Problem
 
 ROUTERS = (
     entering.router,
+    provider.router,
     people.router,
     system.router,
     missions.router,
