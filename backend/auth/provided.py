@@ -79,10 +79,9 @@ def free_name(names: tuple[str, ...], taken: frozenset[str], key: Any) -> str:
 def _role(claims: Mapping[str, Any], rules: Rules) -> tuple[Role | None, bool]:
     if not rules.gives_roles or rules.role_claim is None or rules.roles is None:
         return rules.default, False
-    given = [rules.roles[value] for value in _values(claims, rules.role_claim) if value in rules.roles]
-    roles: list[Role] = [value for value in given if value != "admin"]
+    given = {rules.roles[value] for value in _values(claims, rules.role_claim) if value in rules.roles}
     admin = "admin" in given
-    best = max(roles, key=ROLES.index, default=rules.default)
+    best = next((role for role in reversed(ROLES) if role in given), rules.default)
     return ("viewer" if best is None and admin else best), admin
 
 

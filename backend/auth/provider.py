@@ -71,7 +71,8 @@ class Provider:
         self._client_id = client_id
         self._monotonic_s = monotonic_s
         self._under_way: OrderedDict[str, UnderWay] = OrderedDict()
-        self._client: Any = OAuth().register(
+        registry: Any = OAuth()
+        self._client: Any = registry.register(
             "provider",
             client_id=client_id,
             client_secret=client_secret,

@@ -40,7 +40,7 @@ def recover(
     except (Denied, ValueError) as error:
         stop(error)
     except OSError as error:
-        stop(f"{error.filename or settings.data_dir} cannot be written: {error.strerror}")
+        stop(f"{error.filename or 'the data directory'} cannot be written: {error.strerror}")
     if json_:
         print_json({"name": shown, "code": code})
     else:
