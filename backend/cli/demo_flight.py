@@ -130,10 +130,10 @@ async def _watch(socket: websockets.ClientConnection, log: MissionLog, client: h
             resuming.result()
         if isinstance(message, bytes):
             continue
-        told = json.loads(message)
-        if told["type"] != "event":
+        content = json.loads(message)
+        if content["type"] != "event":
             continue
-        record = read.validate_python(told["recorded"])
+        record = read.validate_python(content["recorded"])
         log.recorded.append(record)
         state = evolve(state, record.event, record.at_utc.timestamp())
         if (line := progress_line(record.event)) is not None:

@@ -99,8 +99,8 @@ async def _serve(settings: Settings, json_: bool) -> None:
         access = running.services.access
         code = access.begin_first_admin()
         if json_:
-            told = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
-            print_json(told if code is None else {**told, "first_admin_code": code})
+            shown = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
+            print_json(shown if code is None else {**shown, "first_admin_code": code})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
             typer.echo(_who_may_enter(access.mode, code), err=False)
