@@ -29,6 +29,7 @@ from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
 from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
+from backend.store.lessons_folder import LessonsFolder
 from backend.store.opening import open_journal
 from backend.version import VERSION
 from hardware.autopilot.link import check_url
@@ -201,6 +202,7 @@ async def open_simulation(
                     software=VERSION,
                     database=lambda: journal.report().state,
                     grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
+                    lessons=LessonsFolder(settings.data_dir / "lessons"),
                 )
             )
             if not unfinished:
