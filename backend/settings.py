@@ -13,6 +13,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 REPOSITORY = Path(__file__).resolve().parent.parent
 BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
 """Where `make build` puts the page, and where a wheel has it."""
+AUDIT_FILE = "audit.jsonl"
+"""Who did what, in the data directory."""
 
 
 class Settings(BaseSettings):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
 from backend.auth.access import Access
-from backend.auth.audit import AUDIT_FILE, AuditLog
+from backend.auth.audit import AuditLog
 from backend.auth.records import Records
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
@@ -23,7 +23,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
 from backend.search.localization import localization
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome

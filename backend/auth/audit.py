@@ -22,8 +22,6 @@ from backend.auth.recovery import same_owner
 
 log = logging.getLogger("crossfix.audit")
 
-AUDIT_FILE = "audit.jsonl"
-"""In the data directory."""
 WAITING = 10_000
 RETRY_S = 2.0
 TAIL_BYTES = 64 * 2**10

@@ -15,11 +15,10 @@ from sqlalchemy import Connection, make_url, select
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
-from backend.auth.audit import AUDIT_FILE
 from backend.backup.archive import Archive
 from backend.backup.manifest import DATABASE, FILES, PATTERN, SPOOL, BackupError, Member, of_the_machine
 from backend.backup.rows import reflected, write_lines
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.store.engine import engine_for_once, known_revisions, migrate
 from backend.store.opening import DatabaseUnusable, claimed
 from backend.store.reading import why

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from backend.cli.edge import print_json, stop
-from backend.settings import Settings, settings_of
+from backend.settings import AUDIT_FILE, Settings, settings_of
 
 
 def recover(
@@ -48,7 +48,7 @@ def recover(
 
 
 async def _made(settings: Settings, name: str, admin: bool) -> tuple[str, str]:
-    from backend.auth.audit import AUDIT_FILE, AuditLog
+    from backend.auth.audit import AuditLog
     from backend.auth.keeping import Keeping
     from backend.auth.people import People
     from backend.auth.records import Records

@@ -14,7 +14,6 @@ import argparse
 import asyncio
 import json
 import ssl
-import subprocess
 import sys
 import tempfile
 import time
@@ -114,23 +113,17 @@ async def measured(url: str, orders: bool, connections: int, seconds: float) -> 
 
 @asynccontextmanager
 async def own_server() -> AsyncIterator[str]:
+    crossfix = str(Path(sys.executable).with_name("crossfix"))
     with tempfile.TemporaryDirectory(prefix="half-sent-") as folder:
-        command = [
-            str(Path(sys.executable).with_name("crossfix")),
-            "serve",
-            "--json",
-            "--port",
-            "0",
-            "--data-dir",
-            folder,
-        ]
-        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        server = await asyncio.create_subprocess_exec(
+            crossfix, "serve", "--json", "--port", "0", "--data-dir", folder, stdout=asyncio.subprocess.PIPE
+        )
         assert server.stdout is not None
         try:
-            yield json.loads(await asyncio.to_thread(server.stdout.readline))["url"]
+            yield json.loads(await server.stdout.readline())["url"]
         finally:
             server.terminate()
-            await asyncio.to_thread(server.wait)
+            await server.wait()
 
 
 async def run(url: str | None, connections: int, seconds: float) -> tuple[Crowd, Answers, Answers]:

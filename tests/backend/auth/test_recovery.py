@@ -14,7 +14,7 @@ from refusals import refusing
 from typer.testing import CliRunner
 
 from backend.auth.access import Access, Visit
-from backend.auth.audit import AUDIT_FILE, AuditLog
+from backend.auth.audit import AuditLog
 from backend.auth.audit_chain import verify
 from backend.auth.keeping import Denied
 from backend.auth.passwords import Passwords
@@ -22,6 +22,7 @@ from backend.auth.records import Records
 from backend.auth.recovery import LASTS_S, RECOVERY_FILE, make_recovery
 from backend.cli.main import app
 from backend.reasons.access import CodeUnusable, PasswordWeak
+from backend.settings import AUDIT_FILE
 from backend.store.engine import make_engine, migrate
 
 PASSWORD, NEW = "correct horse battery", "another horse battery"

@@ -13,14 +13,13 @@ import pytest
 from facts import HOME, SPEC, bearing
 
 from backend.api.beliefs import belief_frame
-from backend.auth.audit import AUDIT_FILE
 from backend.backup.making import make_backup
 from backend.backup.manifest import BackupError
 from backend.backup.restoring import AUDIT_BEFORE, restore
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
 from backend.ports import TrackPoint
 from backend.search.localization import localization
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.store.entries import EventsEntry, to_row
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
