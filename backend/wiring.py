@@ -43,6 +43,7 @@ from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
 from hardware.sim.turntable import simulated_antenna
+from planner.study import value_cache
 
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
@@ -55,7 +56,9 @@ def _warm_up() -> None:
     """Compile the planner's kernels before anybody waits for them in the air."""
     home = Place(lat=0.0, lon=0.0)
     spec = suggested_mission(home)
-    preview(localization(spec, home), home, threads=2)
+    task = localization(spec, home)
+    preview(task, home, threads=2)
+    value_cache.prepare(task.problem)
 
 
 def _warming() -> asyncio.Task[None]:
@@ -181,6 +184,7 @@ async def open_simulation(
                     software=VERSION,
                     database=lambda: journal.report().state,
                     grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
+                    prepare_planner=value_cache.prepare,
                 )
             )
             if not unfinished:

@@ -45,3 +45,8 @@ class PlannerOptions:
 FIELD = PlannerOptions()
 STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 """What the simulation studies of the thesis use (ch. 4 and 5)."""
+
+CROSSFIX = PlannerOptions(
+    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
+)
+"""Ours, and what new missions fly: docs/decisions/0032."""

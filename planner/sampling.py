@@ -9,6 +9,7 @@ more evenly than chance would have them, over the target's place and the first t
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -48,7 +49,7 @@ QUASI_DIMENSIONS = 4
 """Target (2) and the noise of the first bearings; later ones are plain random."""
 
 _DIRECTIONS = ((0, 0, ()), (1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)))
-"""Degree s, polynomial a and m_1..m_s of the first dimensions (Joe and Kuo 2008, new-joe-kuo-6; the first is van der Corput's)."""
+"""Degree s, polynomial a and m_1..m_s of the first dimensions (Joe and Kuo 2008); the first is van der Corput's."""
 _BITS = 30
 
 
@@ -68,15 +69,13 @@ def targets_at(belief: GridBelief, points: FloatArray) -> FloatArray:
 
     Areas go over into equal masses (Rosenblatt 1952); inside a cell the mass is even.
     """
-    columns: FloatArray = np.cumsum(belief.density.sum(axis=0))
-    i, x = _inverted(columns / columns[-1], points[:, 0])
     rows: FloatArray = np.cumsum(belief.density, axis=0)
-    y = np.empty(len(points))
-    for column in np.unique(i):
-        own = i == column
-        j, share = _inverted(rows[:, column] / rows[-1, column], points[own, 1])
-        y[own] = j + share
-    return np.array([belief.x0, belief.y0]) + belief.h * np.column_stack([i + x, y])
+    columns: FloatArray = np.cumsum(rows[-1])
+    i, x = _inverted(columns / columns[-1], points[:, 0])
+    share = rows / np.where(rows[-1] > 0, rows[-1], 1.0)
+    one_after_another = (share + np.arange(belief.nx)).T.ravel()  # column k rises from k to k + 1
+    j, y = _inverted(one_after_another, i + points[:, 1])
+    return np.array([belief.x0, belief.y0]) + belief.h * np.column_stack([i + x, j - i * belief.ny + y])
 
 
 def _inverted(cumulative: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -86,15 +85,18 @@ def _inverted(cumulative: FloatArray, at: FloatArray) -> tuple[IntArray, FloatAr
     return k.astype(np.int64), np.clip((at - before) / (cumulative[k] - before), 0.0, 1.0)
 
 
+@lru_cache(256)
 def sobol(first: int, count: int, dimensions: int) -> FloatArray:
-    """(count, dimensions) points of the Sobol sequence from the number `first` on, in [0, 1)."""
+    """(count, dimensions) points of the Sobol sequence from the number `first` on, in [0, 1); not to be written to."""
     index = np.arange(first, first + count)
     gray = index ^ (index >> 1)
     points = np.zeros((count, dimensions), dtype=np.int64)
     for d in range(dimensions):
         for bit, direction in enumerate(_direction_numbers(d)):
             points[:, d] ^= np.where((gray >> bit) & 1, direction, 0)
-    return points / float(1 << _BITS)
+    answer = points / float(1 << _BITS)
+    answer.setflags(write=False)
+    return answer
 
 
 def _direction_numbers(dimension: int) -> list[int]:

@@ -54,8 +54,8 @@ class Rules(NamedTuple):
     motion: LINEAR or FULL. standoff: m, of a Fisher action to C95. places: (l, 2) m, the fixed lattice; with none the
     grid_x x grid_y cells of the tripled belief rectangle are used, cut with window (x_min, y_min, x_max, y_max).
     travel: (l, l) m between places, or (0, 0) for straight lines. ratios, distances: (n,) the ellipse policy's table.
-    horizon: bearings after which a rollout is cut. after, nodes: the dynamic program's table (planner.kernels.value), which
-    then also closes the rollouts that are cut; empty for other policies.
+    horizon: bearings after which a rollout is cut. after, nodes: the dynamic program's table
+    (planner.kernels.value), which also closes the rollouts that are cut; empty for other policies.
     """
 
     sigma: float

@@ -43,8 +43,8 @@ HISTOGRAM_SHIFT = 48
 HISTOGRAM_BINS = 512
 MEDIAN_STEPS = 6
 MEDIAN_REACH = 1.15
-"""The geometric median is looked for where the expected RMSE about the mean is at most this many times the threshold: it
-cannot bring a belief of one peak further down."""
+"""The geometric median is looked for where the expected RMSE about the mean is below this many times the threshold: it
+brings no belief of one peak further down."""
 DEEPEST_DOUBLING = 12
 LIGHT = 1e-6
 """Rollouts start without the ends of rows that are lighter than this share of the heaviest cell."""

@@ -99,10 +99,10 @@ def _flights(problem: Problem, here: FloatArray, places: FloatArray) -> FloatArr
 def _apart(places: FloatArray, count: int, apart: float) -> list[int]:
     """Indices of the first `count` places (n, 2) that are at least `apart` m from all before them."""
     chosen: list[int] = []
-    free = np.ones(len(places), dtype=bool)
-    while len(chosen) < count and free.any():
-        k = int(np.argmax(free))
-        chosen.append(k)
-        free &= np.hypot(*(places - places[k]).T) >= apart
-        free[k] = False
+    left, x, y = np.arange(len(places)), places[:, 0], places[:, 1]
+    while len(chosen) < count and len(left):
+        chosen.append(int(left[0]))
+        free = (x - x[0]) ** 2 + (y - y[0]) ** 2 >= apart**2
+        free[0] = False
+        left, x, y = left[free], x[free], y[free]
     return chosen

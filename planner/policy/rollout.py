@@ -7,7 +7,7 @@ Which action is sampled on which path is the selection's business (planner.selec
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -28,6 +28,7 @@ from planner.reasons import (
     LongestLead,
     NoPlaceInReach,
     OnlyPlace,
+    PlannedMeanwhile,
     QuickestPlace,
 )
 from planner.sampling import QUASI_DIMENSIONS, deterministic_paths, quasi_random_paths, random_paths
@@ -119,9 +120,7 @@ class RolloutSampler:
         if self._shift is None:
             self._shift = self.rng.random(QUASI_DIMENSIONS)
         rules = self.simulation.rules
-        return quasi_random_paths(
-            self.belief, rules.sigma, first, PATH_BLOCK, rules.horizon, self._shift, self.rng
-        )
+        return quasi_random_paths(self.belief, rules.sigma, first, PATH_BLOCK, rules.horizon, self._shift, self.rng)
 
     def _draw(self, count: int) -> Paths:
         rules = self.simulation.rules
@@ -133,7 +132,8 @@ class Rollout:
     """The rollout policy over a finite action space, as a `Policy`.
 
     budget: N rollouts a decision. With deterministic sampling every action gets the largest power of two of paths
-    that the budget affords. base_policy `dynamic_program`: while no table for it is kept, its substitute. terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
+    that the budget affords. base_policy `dynamic_program`: its substitute while no table for it is kept.
+    terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
     """
 
     selection: Selection
@@ -174,7 +174,12 @@ class Rollout:
             budget = paths * len(places)
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
         result = self._selection(simulation, places, budget)(sampler.sample, len(places), budget, rng)
-        return _decision(places, result, sampler)
+        decision = _decision(places, result, sampler)
+        if self.base_policy == "dynamic_program" and program is None:
+            tried = sum(candidate.rollouts > 0 for candidate in decision.candidates)
+            expected_time = float(result.means[result.best])
+            return replace(decision, reason=PlannedMeanwhile(expected_time, tried))
+        return decision
 
     def _selection(self, simulation: Simulation, places: FloatArray, budget: int) -> Selection:
         """With common paths, uniform allocation gives up what loses for sure: no path is shorter than its first leg."""

@@ -3,8 +3,8 @@
 V(b, p) = min_a t(p, a) + G(b, a),   G(b, a) = t_m + E_z V(b', a) where b' is not yet localized (Bellman's equation of
 4.5 and 4.11 for a belief that is a Gaussian after every bearing). Lengths are in units of the threshold inside.
 
-A table takes half a minute of one processor. Who plans brings it along or has it kept (`keep`); without one that fits, the policies
-that need it are not available, and `program_for` says so by None.
+A table takes half a minute of one processor (planner.study.value_cache keeps it on disk). Plans use those that are
+kept in memory (`keep`); while none fits, `program_for` answers None and another base policy stands in.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from planner.sampling import normal_quantile, sobol
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, Problem
 
 MEAN_TURN = math.pi / 2
-SWEEPS = 25
+SWEEPS = 16
 TOLERANCE = 1e-3
-"""Value iteration ends after so many sweeps, or when none changes a value by more than this share of a bearing's time."""
+"""Value iteration ends after so many sweeps, or when none changes a value by this share of a bearing's time."""
 
-SIGMA_FACTOR, TIME_FACTOR = 1.35, 1.6
+SIGMA_FACTOR, TIME_FACTOR = 1.5, 2.0
 """A table also serves problems whose sigma and measuring time are within these factors of its own."""
 
 
@@ -93,7 +93,7 @@ def program_for(problem: Problem) -> ProgramTable | None:
 
 
 def _apart(key: ProgramKey, wanted: ProgramKey) -> float:
-    """How far a key is from the wanted one, 1 at the edge of what it serves; infinite for another motion or threshold."""
+    """How far a key is from the wanted one, 1 at the edge of what it serves; infinite where more differs."""
     same = replace(key, sigma=wanted.sigma, measurement_time=wanted.measurement_time)
     if same != wanted:
         return math.inf
@@ -123,7 +123,7 @@ def compute_transitions(sigma: float) -> Transitions:
 
 
 def normal_draws(count: int) -> FloatArray:
-    """(count, 3) standard normal numbers, quasi-random: the target's place and the bearing's noise, this one cut at 3."""
+    """(count, 3) standard normal numbers, quasi-random: the target's place and the bearing's noise, cut at 3."""
     uniform = (sobol(0, count, 3) + 0.5 / count) % 1.0
     return np.column_stack(
         [normal_quantile(uniform[:, 0]), normal_quantile(uniform[:, 1]), normal_quantile(uniform[:, 2], cut=3.0)]

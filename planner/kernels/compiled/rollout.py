@@ -38,9 +38,9 @@ class Workspace(NamedTuple):
     """Scratch of one call. weight: (3, n), offset, low, high: (3, r) and hull: (3, v, 2) hold beliefs: the one that
     every rollout starts with at _FIRST, then 0 and 1 in turn.
 
-    along, across: (n,) m, cell centres in the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (l,) of
-    the places, or seconds after the dynamic program's nodes, then the costs of its choices. chain: (4 r, 2) corners. Arrays of cells have BLOCK cells more, because whole blocks are written and the
-    next row overwrites the excess.
+    along, across: (n,) m, cell centres in the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (g,) of
+    the places, or seconds after the program's nodes, then the costs of its choices. chain: (4 r, 2) corners. Arrays of
+    cells have BLOCK cells more, because whole blocks are written and the next row overwrites the excess.
     """
 
     weight: FloatArray
@@ -103,7 +103,9 @@ def _workspace(start, rules):
         np.empty((3, rows), np.int64),
         np.empty((3, len(start.hull) + 2 * rules.horizon + 2, 2)),
         np.empty(HISTOGRAM_BINS),
-        np.empty(max(len(rules.places), rules.grid_x * rules.grid_y, 4 * rules.after.shape[2] + 1) + rules.after.shape[2]),
+        np.empty(
+            max(len(rules.places), rules.grid_x * rules.grid_y, 4 * rules.after.shape[2] + 1) + rules.after.shape[2]
+        ),
         np.empty((4 * rows + len(start.hull) + 2 * rules.horizon + 4, 2)),
     )
 

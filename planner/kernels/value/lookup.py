@@ -40,7 +40,9 @@ def principal_frame(x: float, y: float, xx: float, xy: float, yy: float) -> Fram
     spread = float(np.hypot(difference, xy))
     axis = 0.0 if spread <= ROUND * mean else 0.5 * float(np.arctan2(xy, difference))
     s1 = float(np.sqrt(mean + spread))
-    return Frame(x, y, float(np.cos(axis)), float(np.sin(axis)), s1, max(float(np.sqrt(max(mean - spread, 0.0))), 1e-6 * s1))
+    return Frame(
+        x, y, float(np.cos(axis)), float(np.sin(axis)), s1, max(float(np.sqrt(max(mean - spread, 0.0))), 1e-6 * s1)
+    )
 
 
 def blended(after: FloatArray, scale: float, ratio: float) -> FloatArray:

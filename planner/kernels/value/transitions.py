@@ -12,7 +12,7 @@ REACH = 3.4
 ACROSS = 68
 """Cells along the major axis; along the minor one as many a length, but at least FEWEST."""
 FEWEST = 23
-MEDIAN_STEPS = 6
+MEDIAN_STEPS = 4
 LIGHT = 1e-7
 
 
@@ -42,9 +42,7 @@ def _of_ratio(r, rho, nodes, sigma, draws, out):
     for i in range(len(nodes)):
         for j in range(len(nodes)):
             for k in range(len(draws)):
-                answer = _posterior(
-                    rho, nodes[i], nodes[j], sigma, draws[k], mass_x, mass_y, hx, hy, weight, xs, ys
-                )
+                answer = _posterior(rho, nodes[i], nodes[j], sigma, draws[k], mass_x, mass_y, hx, hy, weight, xs, ys)
                 out.shrunk[r, i, j, k] = answer[0]
                 out.ratio[r, i, j, k] = answer[1]
                 out.u1[r, i, j, k] = answer[2]
@@ -109,24 +107,41 @@ def _weigh(rho, ax, ay, c, s, sigma, mass_x, mass_y, hx, hy, weight, xs, ys):
     n = 0
     steep = np.tan(min(4.5 * sigma, 1.4))
     margin = 1.5 * max(hx, hy)
+    south, cells = -REACH / rho, len(mass_y)
     for i in range(len(mass_x)):
         x = -REACH + (i + 0.5) * hx
         dx = x - ax
-        for j in range(len(mass_y)):
-            y = -REACH / rho + (j + 0.5) * hy
+        # steep along + margin >= |across|, and along >= -margin, with along = c dx + s dy, across = c dy - s dx
+        low, high = _narrowed(south - ay, -south - ay, steep * s - c, (steep * c + s) * dx + margin)
+        low, high = _narrowed(low, high, steep * s + c, (steep * c - s) * dx + margin)
+        low, high = _narrowed(low, high, s, c * dx + margin)
+        first = max(int((low + ay - south) / hy), 0)
+        for j in range(first, min(int(np.ceil((high + ay - south) / hy)), cells)):
+            y = south + (j + 0.5) * hy
             dy = y - ay
-            along, across = c * dx + s * dy, abs(c * dy - s * dx)
-            if across > steep * max(along, 0.0) + margin or along < -margin:
-                continue
+            along, across = c * dx + s * dy, c * dy - s * dx
             r2 = max(dx * dx + dy * dy, 0.25 * (hx * hx + hy * hy) / 3.0)
             seen = (hx * hx * dy * dy + hy * hy * dx * dx) / (12.0 * r2 * r2)
             variance = sigma * sigma + seen
             error = np.arctan2(across, along)
-            w = mass_x[i] * mass_y[j] * sigma / np.sqrt(variance) * np.exp(-0.5 * error * error / variance)
+            exponent = 0.5 * error * error / variance
+            if exponent > 16.0:
+                continue
+            w = mass_x[i] * mass_y[j] * sigma / np.sqrt(variance) * np.exp(-exponent)
             if w > LIGHT:
                 weight[n], xs[n], ys[n] = w, x, y
                 n += 1
     return n
+
+
+@jit
+def _narrowed(low, high, slope, offset):
+    """The part of low..high where slope dy + offset >= 0."""
+    if slope > 0.0:
+        return max(low, -offset / slope), high
+    if slope < 0.0:
+        return low, min(high, -offset / slope)
+    return (low, high) if offset >= 0.0 else (high, low)
 
 
 transitions = _entry_point(SOURCES)
