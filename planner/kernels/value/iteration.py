@@ -1,4 +1,7 @@
-"""Value iteration over the transitions: V = min over nodes of the flight there and what a bearing there leaves."""
+"""Value iteration over the transitions: V = min over nodes of the flight there and what a bearing there leaves.
+
+See reference.sweep.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,9 @@ import numpy as np
 
 from planner.compiling import SOURCES, allocating, entry, jit
 from planner.kernels.value.model import NEAR, NODE_STEP, RATIO_STEP, SCALE_STEP, Transitions
+
+CHI_95 = 2.4477468306808166
+"""sqrt of the 95 % quantile of chi square, two degrees of freedom: semi-axes of the 95 % ellipse over deviations."""
 
 
 @jit
@@ -121,8 +127,7 @@ def _back_up(t, r, i, j, value, after, scales, ratios, nodes, unit, measurement_
 @jit
 def _clearance(u1, u2, rho):
     """Distance of (u1, u2) >= 0 to the 95 % ellipse of N(0, diag(1, 1 / rho^2)), 0 inside."""
-    k = 2.4477468306808166  # sqrt(chi2 of 2 degrees of freedom at 0.95)
-    a, b = k, k / rho
+    a, b = CHI_95, CHI_95 / rho
     if (u1 / a) ** 2 + (u2 / b) ** 2 <= 1.0:
         return 0.0
     nearest = np.inf

@@ -1,4 +1,7 @@
-"""What one bearing makes of a Gaussian belief: the exact posterior's shape, for every node and draw."""
+"""What one bearing makes of a Gaussian belief: the exact posterior's shape, for every node and draw.
+
+See reference.posterior.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,8 @@ ACROSS = 68
 """Cells along the major axis; along the minor one as many a length, but at least FEWEST."""
 FEWEST = 23
 MEDIAN_STEPS = 4
-LIGHT = 1e-7
+LIGHT, BEYOND = 1e-7, 16.0
+"""Cells of less weight, or with a larger exponent, count for nothing."""
 
 
 def _entry_point(sources: int):
@@ -115,8 +119,8 @@ def _weigh(rho, ax, ay, c, s, sigma, mass_x, mass_y, hx, hy, weight, xs, ys):
         low, high = _narrowed(south - ay, -south - ay, steep * s - c, (steep * c + s) * dx + margin)
         low, high = _narrowed(low, high, steep * s + c, (steep * c - s) * dx + margin)
         low, high = _narrowed(low, high, s, c * dx + margin)
-        first = max(int((low + ay - south) / hy), 0)
-        for j in range(first, min(int(np.ceil((high + ay - south) / hy)), cells)):
+        first = max(int(np.ceil((low + ay - south) / hy - 0.5)), 0)
+        for j in range(first, min(int(np.floor((high + ay - south) / hy - 0.5)) + 1, cells)):
             y = south + (j + 0.5) * hy
             dy = y - ay
             along, across = c * dx + s * dy, c * dy - s * dx
@@ -125,7 +129,7 @@ def _weigh(rho, ax, ay, c, s, sigma, mass_x, mass_y, hx, hy, weight, xs, ys):
             variance = sigma * sigma + seen
             error = np.arctan2(across, along)
             exponent = 0.5 * error * error / variance
-            if exponent > 16.0:
+            if exponent > BEYOND:
                 continue
             w = mass_x[i] * mass_y[j] * sigma / np.sqrt(variance) * np.exp(-exponent)
             if w > LIGHT:
