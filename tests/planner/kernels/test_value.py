@@ -18,7 +18,7 @@ def some_transitions(rho, places, sigma, draws):
 
 @pytest.mark.parametrize("sigma_deg", [2.0, 7.0])
 def test_a_bearing_leaves_the_shape_of_the_exact_posterior(sigma_deg):
-    rho, places, draws = np.array([1.3, 4.0]), np.array([0.0, 0.7, 3.1]), normal_draws(5)
+    rho, places, draws = np.array([1.3, 4.0]), np.array([0.03, 0.7, 3.1]), normal_draws(5)
     sigma = float(np.deg2rad(sigma_deg))
     out = some_transitions(rho, places, sigma, draws)
     for r, i, j, k in np.ndindex(out.shrunk.shape):
@@ -39,8 +39,9 @@ def test_value_iteration_is_the_readable_one(standoff):
     ours = np.zeros_like(value)
     for _ in range(3):
         ours_after, ours = reference.sweep(ours, t, sizes, rho, places, 5.0, 10.0, 5.0, standoff)
-    assert after == pytest.approx(ours_after, rel=1e-9)
-    assert value == pytest.approx(ours, rel=1e-9)
+    # a ratio at the grid's end counts as a millionth of a step before it
+    assert after == pytest.approx(ours_after, rel=1e-6)
+    assert value == pytest.approx(ours, rel=1e-6)
     assert (value >= 10.0).all()
 
 
