@@ -56,9 +56,7 @@ def _warm_up() -> None:
     """Compile the planner's kernels before anybody waits for them in the air."""
     home = Place(lat=0.0, lon=0.0)
     spec = suggested_mission(home)
-    task = localization(spec, home)
-    preview(task, home, threads=2)
-    value_cache.prepare(task.problem)
+    preview(localization(spec, home), home, threads=2)
 
 
 def _warming() -> asyncio.Task[None]:

@@ -49,4 +49,4 @@ STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 CROSSFIX = PlannerOptions(
     base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
 )
-"""Ours, and what new missions fly: docs/decisions/0032."""
+"""Ours (docs/decisions/0032): `crossfix` in studies, and for missions that name the dynamic program as base policy."""

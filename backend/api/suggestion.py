@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, PlannerSpec, Polygon
+from backend.spec import MissionSpec, Polygon
 from hardware.frame import LocalFrame
 from hardware.readings import Place
-from planner.options import CROSSFIX
 
 WIDTH_M, HEIGHT_M = 313.0, 200.0
 """As wide as the field system's area, and deeper, so that a newcomer's search takes more than two places."""
@@ -14,19 +13,10 @@ NAME = "New search"
 
 
 def suggested_mission(home: Place) -> MissionSpec:
-    """Our planner; all other values are the specification's defaults. The home lies on the area's southern edge.
-
-    The specification's own defaults stay the thesis' planner: missions that do not name one were flown with that.
-    """
+    """All other values are the specification's defaults. The home lies on the area's southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    planner = PlannerSpec(
-        base_policy=CROSSFIX.base_policy,
-        sampling=CROSSFIX.sampling,
-        estimator=CROSSFIX.estimator,
-        budget=CROSSFIX.budget,
-    )
-    return MissionSpec(name=NAME, area=area, planner=planner)
+    return MissionSpec(name=NAME, area=area)

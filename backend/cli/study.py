@@ -48,7 +48,7 @@ def run(
         list[str] | None,
         typer.Option(
             help="base, fisher, entpp, entpp8, sopt, vander_hook, tokekar_subset, tokekar_worst_case, tokekar_tree, "
-            "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: what new missions fly.",
+            "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: rollouts on the dynamic program.",
         ),
     ] = None,
     selection: Annotated[

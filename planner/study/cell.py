@@ -51,7 +51,7 @@ TABLED: dict[str, Policy] = {
     "dynamic_program": dynamic_program,
     "crossfix": Rollout(SELECTIONS[CROSSFIX.selection], CROSSFIX.sampling, CROSSFIX.base_policy, CROSSFIX.budget),
 }
-"""Planners that need a table (`value_cache`): the dynamic program alone, and `rollout` as new missions fly it."""
+"""Planners that need a table (`value_cache`): the dynamic program alone, and `rollout` on it."""
 
 CONTINUOUS: tuple[ContinuousSelection, ...] = get_args(ContinuousSelection)
 SELECTION_NAMES: tuple[DiscreteSelection | ContinuousSelection, ...] = (*SELECTIONS, *CONTINUOUS)
