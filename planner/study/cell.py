@@ -87,6 +87,8 @@ class Cell:
         _one_of("sampling", self.sampling, SAMPLINGS)
         if self.base_policy is not None:
             _one_of("base policy", self.base_policy, BASE_POLICY_NAMES)
+        if self.base_policy == "dynamic_program" and self.selection in CONTINUOUS:
+            raise StudyError(f"dynamic_program names its own places: {self.selection} would search for others")
         if self.budget < 1:
             raise StudyError(f"the budget must be at least one rollout, got {self.budget}")
         if self.seed < 0:

@@ -153,7 +153,7 @@ def scenario_2():
     )
 
 
-@pytest.mark.parametrize("policy", ["ellipse", "fisher"])
+@pytest.mark.parametrize("policy", ["ellipse", "fisher", "dynamic_program"])
 def test_compiled_is_the_reference_at_the_first_belief_of_scenario_2(policy):
     assert disagreements((scenario_2(), [], (150.0, 0.0), policy, 24, None), 300, 2) == 0
 
