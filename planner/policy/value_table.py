@@ -23,8 +23,8 @@ from planner.sampling import normal_quantile, sobol
 from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, Problem
 
 MEAN_TURN = math.pi / 2
-SWEEPS = 16
-TOLERANCE = 1e-3
+SWEEPS = 400
+TOLERANCE = 1e-2
 """Value iteration ends after so many sweeps, or when none changes a value by this share of a bearing's time."""
 
 SIGMA_FACTOR, TIME_FACTOR = 1.5, 2.0
