@@ -3,7 +3,7 @@
 V(b, p) = min_a t(p, a) + G(b, a),   G(b, a) = t_m + E_z V(b', a) where b' is not yet localized (Bellman's equation of
 4.5 and 4.11 for a belief that is a Gaussian after every bearing). Lengths are in units of the threshold inside.
 
-A table takes half a minute of one processor (planner.study.value_cache keeps it on disk). Plans use those that are
+A table takes a minute or more of one processor (planner.study.value_cache keeps it on disk). Plans use those that are
 kept in memory (`keep`); while none fits, `program_for` answers None and another base policy stands in.
 """
 
