@@ -85,6 +85,8 @@ ENDPOINTS: Mapping[str, Need] = {
     "WS /api/live": WATCH,
     "WS /api/payload": PAYLOAD,
     "POST /api/crafts/{craft_id}/commands": PLAN,
+    "GET /api/crafts/{craft_id}/compass": WATCH,
+    "DELETE /api/crafts/{craft_id}/compass": PLAN,
     # missions
     "GET /api/missions": EXPORT,
     "POST /api/missions": PLAN,

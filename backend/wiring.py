@@ -28,6 +28,7 @@ from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
 from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
+from backend.store.lessons_folder import LessonsFolder
 from backend.store.opening import open_journal
 from backend.version import VERSION
 from hardware.autopilot.link import check_url
@@ -183,6 +184,7 @@ async def open_simulation(
                     database=lambda: journal.report().state,
                     grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
                     prepare_planner=value_cache.prepare,
+                    lessons=LessonsFolder(settings.data_dir / "lessons"),
                 )
             )
             if not unfinished:

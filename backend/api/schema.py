@@ -15,6 +15,7 @@ from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
 from backend.api import (
+    compass,
     crafts,
     entering,
     maps,
@@ -43,6 +44,7 @@ ROUTERS = (
     system.router,
     missions.router,
     crafts.router,
+    compass.router,
     recordings.router,
     review.router,
     read_export.router,

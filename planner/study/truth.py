@@ -8,7 +8,7 @@ counted is counted at the claim: belief and estimate are those that the operator
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import isfinite
 from typing import Any, Literal
 
@@ -29,6 +29,7 @@ from planner.types import Bearing, FloatArray, InconsistentBearings, Localizatio
 Model = Literal["joint", "independent"]
 DOUBT = 0.1
 """Outlier probability of the independent model: the default of a mission."""
+SOURCES = ("craft", "somebody else")
 BEYOND = 3.0
 """Times the stated error."""
 
@@ -92,13 +93,14 @@ def missions(
     search: Search, row: Row, seeds: Sequence[int], model: Model = "joint", prior: ErrorPrior | None = None
 ) -> Iterator[Claim]:
     """Mission by mission, each with its own emitter and errors; the seed decides both. prior: of the joint model."""
+    unknown = _prior(search.problem, model, prior)
     for seed in seeds:
-        yield fly(search, row, seed, model, prior)
+        yield _flown(search, row, seed, model, unknown)[0]
 
 
 def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: ErrorPrior | None = None) -> Claim:
     """One mission."""
-    return _flown(search, row, seed, model, prior)[0]
+    return _flown(search, row, seed, model, _prior(search.problem, model, prior))[0]
 
 
 def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -> ErrorPrior:
@@ -107,20 +109,20 @@ def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -
     Only bearings are learned from: where the emitter was, nobody says.
     """
     found: list[FlightEvidence] = []
-    prior = unknown
+    prior, nowhere = unknown, joint_prior(search.problem)
     for seed in seeds:
-        _, belief = _flown(search, row, seed, "joint", prior)
+        _, belief = _flown(search, row, seed, "joint", replace(nowhere, otherwise=prior))
         assert isinstance(belief, JointBelief)
         found.append(flight_evidence(belief.errors[0]))
         prior = learned(found, unknown)
     return prior
 
 
-def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior | None) -> tuple[Claim, GridBelief]:
+def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelief) -> tuple[Claim, GridBelief]:
     problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
     target = _anywhere(problem, rng)
     sensor = row.sensor(target, rng)
-    belief = _prior(problem, model, prior)
+    belief = unknown
     here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
     while True:
         choice = fisher(problem, belief, (float(here[0]), float(here[1])))
@@ -128,8 +130,9 @@ def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior 
         time += float(flight_time(problem.motion, float(np.hypot(*(place - here))), 0.0)) + problem.measurement_time
         here = place
         angle, sigma = sensor.bearing(place, len(bearings))
-        bearings.append(_bearing(model, place, angle, sigma, row.heading_sigma))
-        belief = _updated(problem, belief, bearings, model)
+        source = SOURCES[sensor.taker(len(bearings)) is not sensor]
+        bearings.append(_bearing(model, place, angle, sigma, row.heading_sigma, source))
+        belief = _updated(unknown, belief, bearings[-1])
         said = verdict(problem, search.rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
@@ -209,18 +212,18 @@ def _prior(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBeli
     return joint_prior(problem) if prior is None else joint_prior(problem, otherwise=prior)
 
 
-def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float) -> Bearing:
+def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float, source: str) -> Bearing:
     """The independent model takes the heading's error for each bearing's own."""
     x, y = float(place[0]), float(place[1])
     if model == "independent":
         return Bearing(x, y, angle, float(np.hypot(sigma, heading_sigma)), outlier_probability=DOUBT)
-    return Bearing(x, y, angle, sigma, source="craft")
+    return Bearing(x, y, angle, sigma, source=source)
 
 
-def _updated(problem: Problem, belief: GridBelief, bearings: Sequence[Bearing], model: Model) -> GridBelief:
+def _updated(unknown: GridBelief, belief: GridBelief, bearing: Bearing) -> GridBelief:
     if isinstance(belief, JointBelief):
-        return update_joint(belief, bearings[-1])
+        return update_joint(belief, bearing)
     try:
-        return update(belief, bearings[-1])
+        return update(belief, bearing)
     except InconsistentBearings:
-        return prior_belief(problem)
+        return unknown

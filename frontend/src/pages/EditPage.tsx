@@ -2,6 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
+import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
 import { EMITTER } from "../edit/emitter";
@@ -71,6 +72,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
         failed={failed}
       />
       <ProfileRow />
+      {draft.value?.spec.sensor.bearing_errors === "joint" && <CompassCard />}
     </fieldset>
   );
 }

@@ -530,6 +530,31 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/crafts/{craft_id}/compass": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compass
+         * @description What the next mission of this craft starts from, with the antenna that it carries now.
+         */
+        get: operations["compass"];
+        put?: never;
+        post?: never;
+        /**
+         * Forget Compass
+         * @description Forget all of it: the compass was calibrated, the antenna mounted again. Missions that have started keep what
+         *     they started from.
+         */
+        delete: operations["forget_compass"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/recordings": {
         parameters: {
             query?: never;
@@ -1633,7 +1658,7 @@ export interface components {
             craft_id: string;
             by: string | null;
         };
-        /** @description left_percent: after what is planned before the way home; needed_percent: for the way home; reserve_percent: of the mission. */
+        /** @description left_percent: when the way home begins; needed_percent: for the way home; reserve_percent: of the mission. */
         BatteryShort: {
             charge_percent: number;
             left_percent: number;
@@ -2020,6 +2045,24 @@ export interface components {
              * @enum {string}
              */
             code: "command_unanswered";
+        };
+        /**
+         * @description What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
+         *
+         *     flights, bearings: that were learned from. bias_deg: mean of the flights, clockwise, and bias_spread_deg: its
+         *     standard deviation from flight to flight; None without a flight. expected_bias_deg: standard deviation of the next
+         *     flight's bias. sigma_scale: factor on the stated sigmas. outlier_rate: share of bearings.
+         */
+        CompassKnown: {
+            craft_id: string;
+            antenna: string;
+            flights: number;
+            bearings: number;
+            bias_deg: number | null;
+            bias_spread_deg: number | null;
+            expected_bias_deg: number;
+            sigma_scale: number;
+            outlier_rate: number;
         };
         /** @description compression: as the PMTiles specification names it. */
         CompressionNotRead: {
@@ -3386,6 +3429,24 @@ export interface components {
              */
             code: "last_admin";
         };
+        /**
+         * @description What is known of the errors of the craft's bearings before the flight: values, and how probable each is.
+         *
+         *     flights: of the craft with the antenna, from how many that was learned. spread_deg: standard deviations that the
+         *     bias (compass and mounting) may have. scale: factors on the stated sigmas. rate: shares of bearings that are wrong
+         *     altogether.
+         */
+        LearnedErrors: {
+            craft_id: string;
+            antenna: string;
+            flights: number;
+            spread_deg: number[];
+            spread_weight: number[];
+            scale: number[];
+            scale_weight: number[];
+            rate: number[];
+            rate_weight: number[];
+        };
         /** @description entropy_nat: Shannon entropy of the belief expected after the next bearing. */
         LeastEntropy: {
             entropy_nat: number;
@@ -3787,7 +3848,8 @@ export interface components {
         };
         /**
          * @description A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
-         *     None: nobody kept it. ground None: the ground was taken to be flat at the home's height.
+         *     None: nobody kept it. ground None: the ground was taken to be flat at the home's height. learned: of the bearings'
+         *     errors, takes the place of what the specification says; None leaves that.
          */
         MissionStarted: {
             /**
@@ -3802,6 +3864,7 @@ export interface components {
             software: string;
             antenna: components["schemas"]["AntennaFact"] | null;
             ground: components["schemas"]["GroundFact"] | null;
+            learned: components["schemas"]["LearnedErrors"] | null;
         };
         /**
          * @description One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
@@ -6127,7 +6190,8 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones.
+         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
+         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6149,11 +6213,13 @@ export interface components {
              * @enum {string}
              */
             bearing_errors: "independent" | "joint";
+            learned: components["schemas"]["LearnedErrors"] | null;
         };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones.
+         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
+         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -6175,6 +6241,7 @@ export interface components {
              * @enum {string}
              */
             bearing_errors: "independent" | "joint";
+            learned?: components["schemas"]["LearnedErrors"] | null;
         };
         /** @description incident: the same id is in the server's log. */
         ServerBroke: {
@@ -8259,6 +8326,70 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["CommandReply"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    compass: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The craft's id */
+                craft_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CompassKnown"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    forget_compass: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The craft's id */
+                craft_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CompassKnown"];
                 };
             };
             /** @description What went wrong and how to mend it */
