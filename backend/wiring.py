@@ -45,6 +45,7 @@ from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
 from hardware.sim.turntable import simulated_antenna
+from planner.study import value_cache
 
 if TYPE_CHECKING:
     from backend.auth.provider import Provider
@@ -202,6 +203,7 @@ async def open_simulation(
                     software=VERSION,
                     database=lambda: journal.report().state,
                     grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
+                    prepare_planner=value_cache.prepare,
                     lessons=LessonsFolder(settings.data_dir / "lessons"),
                 )
             )

@@ -8,8 +8,9 @@ from typing import Literal
 Method = Literal["rollout", "base_policy"]
 """Policy rollout on top of the base policy (thesis 4.3.3), or the base policy alone."""
 
-BasePolicy = Literal["ellipse", "fisher"]
-"""What rollouts follow after their first action: thesis 4.3.2 or 6.2.2."""
+BasePolicy = Literal["ellipse", "fisher", "dynamic_program"]
+"""What rollouts follow after their first action: thesis 4.3.2, 6.2.2, or the Gaussian dynamic program
+(`planner.policy.value_table`), which also closes them after two bearings and names the places to compare."""
 
 DiscreteSelection = Literal["uniform", "sequential_halving"]
 """How a budget is shared out among finitely many first actions (thesis ch. 5)."""
@@ -17,8 +18,9 @@ DiscreteSelection = Literal["uniform", "sequential_halving"]
 ContinuousSelection = Literal["quadrant", "sgd", "bfgs"]
 """How a first action is searched for in a rectangle (thesis ch. 5)."""
 
-Sampling = Literal["deterministic", "crn", "pmc"]
-"""Where sample paths come from: equal-mass points, common random numbers, independent draws (`planner.sampling`)."""
+Sampling = Literal["deterministic", "crn", "pmc", "quasi_random"]
+"""Where sample paths come from: equal-mass points, common random numbers, independent draws, common quasi-random
+points (`planner.sampling`)."""
 
 Estimator = Literal["map", "expected_value", "geometric_median"]
 """Point estimate of a belief (`planner.belief.estimate`)."""
@@ -43,3 +45,8 @@ class PlannerOptions:
 FIELD = PlannerOptions()
 STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 """What the simulation studies of the thesis use (ch. 4 and 5)."""
+
+CROSSFIX = PlannerOptions(
+    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
+)
+"""Ours (docs/decisions/0032): `crossfix` in studies, and for missions that name the dynamic program as base policy."""

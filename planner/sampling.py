@@ -2,17 +2,21 @@
 
 `deterministic`: the density split recursively into equal masses, zero noise (Klumpp and Hanebeck 2008). `crn`: common
 random numbers, the j-th path is the same for every action. `pmc`: independent paths. Chance comes from the generator
-that is given, there is no other.
+that is given, there is no other. `quasi_random`: common as `crn`, from a shifted Sobol sequence: its points lie
+more evenly than chance would have them, over the target's place and the first two bearings' noise.
 """
 
 from __future__ import annotations
+
+import math
+from functools import lru_cache
 
 import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Paths
 from planner.reasons import UnusableNumber
-from planner.types import FloatArray, PlannerError
+from planner.types import FloatArray, IntArray, PlannerError
 
 LARGEST_NOISE = 3.0
 """Noise beyond this many sigma is drawn again (spec 8)."""
@@ -39,6 +43,83 @@ def random_noise(sigma: float, shape: tuple[int, ...], rng: np.random.Generator)
     while (beyond := np.abs(noise) > LARGEST_NOISE).any():
         noise[beyond] = rng.standard_normal(int(beyond.sum()))
     return sigma * noise
+
+
+QUASI_DIMENSIONS = 4
+"""Target (2) and the noise of the first bearings; later ones are plain random."""
+
+_DIRECTIONS = ((0, 0, ()), (1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)))
+"""Degree s, polynomial a and m_1..m_s of the first dimensions (Joe and Kuo 2008); the first is van der Corput's."""
+_BITS = 30
+
+
+def quasi_random_paths(
+    belief: GridBelief, sigma: float, first: int, count: int, bearings: int, shift: FloatArray, rng: np.random.Generator
+) -> Paths:
+    """The paths first <= j < first + count of the sequence moved by `shift` (QUASI_DIMENSIONS,), in [0, 1)."""
+    points = (sobol(first, count, QUASI_DIMENSIONS) + shift) % 1.0
+    noise = random_noise(sigma, (count, bearings), rng)
+    own = min(bearings, QUASI_DIMENSIONS - 2)
+    noise[:, :own] = sigma * normal_quantile(points[:, 2 : 2 + own], cut=LARGEST_NOISE)
+    return Paths(targets_at(belief, points[:, :2]), noise)
+
+
+def targets_at(belief: GridBelief, points: FloatArray) -> FloatArray:
+    """(n, 2) m of points (n, 2) of the unit square: x by the mass of the columns, then y by that of the column's cells.
+
+    Areas go over into equal masses (Rosenblatt 1952); inside a cell the mass is even.
+    """
+    rows: FloatArray = np.cumsum(belief.density, axis=0)
+    columns: FloatArray = np.cumsum(rows[-1])
+    i, x = _inverted(columns / columns[-1], points[:, 0])
+    share = rows / np.where(rows[-1] > 0, rows[-1], 1.0)
+    one_after_another = (share + np.arange(belief.nx)).T.ravel()  # column k rises from k to k + 1
+    j, y = _inverted(one_after_another, i + points[:, 1])
+    return np.array([belief.x0, belief.y0]) + belief.h * np.column_stack([i + x, j - i * belief.ny + y])
+
+
+def _inverted(cumulative: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Index of the cell in which `at` falls, and how far into it."""
+    k = np.minimum(np.searchsorted(cumulative, at, side="right"), int(np.searchsorted(cumulative, cumulative[-1])))
+    before = np.where(k > 0, cumulative[np.maximum(k - 1, 0)], 0.0)
+    return k.astype(np.int64), np.clip((at - before) / (cumulative[k] - before), 0.0, 1.0)
+
+
+@lru_cache(256)
+def sobol(first: int, count: int, dimensions: int) -> FloatArray:
+    """(count, dimensions) points of the Sobol sequence from the number `first` on, in [0, 1); not to be written to."""
+    index = np.arange(first, first + count)
+    gray = index ^ (index >> 1)
+    points = np.zeros((count, dimensions), dtype=np.int64)
+    for d in range(dimensions):
+        for bit, direction in enumerate(_direction_numbers(d)):
+            points[:, d] ^= np.where((gray >> bit) & 1, direction, 0)
+    answer = points / float(1 << _BITS)
+    answer.setflags(write=False)
+    return answer
+
+
+def _direction_numbers(dimension: int) -> list[int]:
+    s, a, m = _DIRECTIONS[dimension]
+    if s == 0:
+        return [1 << (_BITS - 1 - k) for k in range(_BITS)]
+    v = [m[k] << (_BITS - 1 - k) for k in range(s)]
+    for k in range(s, _BITS):
+        following = v[k - s] ^ (v[k - s] >> s)
+        for j in range(1, s):
+            following ^= ((a >> (s - 1 - j)) & 1) * v[k - j]
+        v.append(following)
+    return v
+
+
+_GRID = np.linspace(-6.0, 6.0, 4801)
+_GRID_MASS = np.array([0.5 * math.erfc(-z / math.sqrt(2.0)) for z in _GRID])
+
+
+def normal_quantile(share: FloatArray, cut: float = 6.0) -> FloatArray:
+    """The standard normal number below which lies `share` of the mass within +-cut; by interpolation, to 1e-5."""
+    low, high = (0.5 * math.erfc(-z / math.sqrt(2.0)) for z in (-cut, cut))
+    return np.interp(low + share * (high - low), _GRID_MASS, _GRID)
 
 
 def deterministic_paths(belief: GridBelief, count: int, bearings: int) -> Paths:

@@ -48,14 +48,15 @@ def run(
         list[str] | None,
         typer.Option(
             help="base, fisher, entpp, entpp8, sopt, vander_hook, tokekar_subset, tokekar_worst_case, tokekar_tree, "
-            "lookahead, lookahead_myopic, or rollout.",
+            "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: rollouts on the dynamic program.",
         ),
     ] = None,
     selection: Annotated[
         str, typer.Option(help="rollout: sequential_halving, uniform, quadrant, sgd or bfgs.")
     ] = STUDY.selection,
     sampling: Annotated[
-        str, typer.Option(help="rollout: crn (common random numbers), pmc (independent) or deterministic.")
+        str,
+        typer.Option(help="rollout: crn (common random numbers), quasi_random, pmc (independent) or deterministic."),
     ] = STUDY.sampling,
     budget: Annotated[int, typer.Option(help="rollout: simulated flights a decision.")] = STUDY.budget,
     actions: Annotated[
@@ -65,7 +66,10 @@ def run(
         str | None, typer.Option(help="map, expected_value or geometric_median. Default: the scenario's.")
     ] = None,
     base_policy: Annotated[
-        str | None, typer.Option(help="rollout: followed after the first place; ellipse, or fisher (field's default).")
+        str | None,
+        typer.Option(
+            help="rollout: followed after the first place; ellipse, fisher (field's default) or dynamic_program."
+        ),
     ] = None,
     measurement_time: Annotated[
         float | None, typer.Option(help="Seconds a bearing takes, instead of the configuration's.")

@@ -11,6 +11,7 @@ from backend.ports import Grounds, Journal, Lessons, NoGrounds, NoLessons, Publi
 from backend.search.lessons import knowing
 from backend.spec import MissionSpec
 from hardware.ports import Clock
+from planner.types import Problem
 
 DatabaseState = Literal["ok", "slow", "lost"]
 
@@ -19,9 +20,16 @@ def _ok() -> DatabaseState:
     return "ok"
 
 
+def _nothing(_problem: Problem) -> None:
+    """Plans make do with what is there."""
+
+
 @dataclass(frozen=True, slots=True)
 class MissionEquipment:
-    """Made by the wiring. crafts: by id. software: version, for the record. threads: how many the planner may use."""
+    """Made by the wiring. crafts: by id. software: version, for the record. threads: how many the planner may use.
+
+    prepare_planner: has what this problem's planner needs computed, for plans to come, and does not wait for it.
+    """
 
     crafts: Mapping[str, CraftEquipment]
     journal: Journal
@@ -31,6 +39,7 @@ class MissionEquipment:
     threads: int = 2
     database: Callable[[], DatabaseState] = _ok
     grounds: Grounds = field(default_factory=NoGrounds)
+    prepare_planner: Callable[[Problem], object] = _nothing
     lessons: Lessons = field(default_factory=NoLessons)
 
     @property

@@ -41,7 +41,7 @@ from backend.search.antenna import antenna_fact
 from backend.search.errors import MissionInputError
 from backend.search.inputs import SearchOver
 from backend.search.other_area import task_or_reason
-from backend.search.planning import lay_out_ways
+from backend.search.planning import lay_out_ways, needs_program
 from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
 from backend.terrain import Terrain, unknown_terrain
@@ -265,6 +265,8 @@ class Flights:
         return unknown_terrain(search.home) if kept is None else kept
 
     def _fly(self, runner: MissionRunner) -> None:
+        if needs_program(runner.state.search.mission):
+            self.equipment.prepare_planner(runner.task.first.problem)
         runner.begin()
         self._tasks.append(asyncio.create_task(self._let_go(runner)))
 

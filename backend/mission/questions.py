@@ -17,6 +17,7 @@ from backend.search.area import centre_of
 from backend.search.errors import MissionConflict
 from backend.search.forecast import Forecast, Preview, forecast, preview
 from backend.search.other_area import Outlook, outlook, task_in
+from backend.search.planning import needs_program
 from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
 from backend.spec import MissionSpec, Place, SearchArea
@@ -106,6 +107,8 @@ class Questions:
         terrain = await self.equipment.grounds.around(home)
         task = await asyncio.to_thread(search_task, spec, home, home_amsl_m, terrain)
         start = self.equipment.first.vehicle.telemetry().position or task.home
+        if needs_program(spec):
+            self.equipment.prepare_planner(task.first.problem)
         return await asyncio.to_thread(preview, task.first, start, self.equipment.threads)
 
     def _home_for(self, spec: MissionSpec) -> tuple[Place, float]:

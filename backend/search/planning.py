@@ -16,6 +16,7 @@ import numpy as np
 from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, PlanChosen
 from backend.reasons import Reason, carried
 from backend.search.localization import Localization, own_sigma_deg, source_name
+from backend.spec import MissionSpec
 from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
@@ -151,6 +152,11 @@ def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFac
             )
         )
     return facts
+
+
+def needs_program(mission: MissionSpec) -> bool:
+    """Whether the mission's plans stand on the dynamic program, whose table takes a while on a new machine."""
+    return mission.planner.base_policy == "dynamic_program"
 
 
 def lay_out_ways(task: Localization) -> None:

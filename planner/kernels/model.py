@@ -14,7 +14,7 @@ from planner.observation import WEDGE_SIGMAS
 from planner.types import FloatArray, IntArray
 
 MAP, EXPECTED_VALUE, GEOMETRIC_MEDIAN = 0, 1, 2
-ELLIPSE, FISHER = 0, 1
+ELLIPSE, FISHER, DYNAMIC_PROGRAM = 0, 1, 2
 LINEAR, FULL = 0, 1
 
 LIKELIHOOD_DEGREE = 5
@@ -54,7 +54,8 @@ class Rules(NamedTuple):
     motion: LINEAR or FULL. standoff: m, of a Fisher action to C95. places: (l, 2) m, the fixed lattice; with none the
     grid_x x grid_y cells of the tripled belief rectangle are used, cut with window (x_min, y_min, x_max, y_max).
     travel: (l, l) m between places, or (0, 0) for straight lines. ratios, distances: (n,) the ellipse policy's table.
-    horizon: bearings after which a rollout is cut.
+    horizon: bearings after which a rollout is cut. after, nodes: the dynamic program's table
+    (planner.kernels.value), which also closes the rollouts that are cut; empty for other policies.
     """
 
     sigma: float
@@ -78,6 +79,8 @@ class Rules(NamedTuple):
     ratios: FloatArray
     distances: FloatArray
     horizon: int
+    after: FloatArray
+    nodes: FloatArray
 
 
 class Actions(NamedTuple):

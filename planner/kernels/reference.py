@@ -19,11 +19,12 @@ from planner.belief.estimate import TIE_BITS
 from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS, aligned_range
 from planner.geometry import cells_hull, centres, clip_half_plane, distance_to_convex
 from planner.kernels.model import (
+    DYNAMIC_PROGRAM,
     ELLIPSE,
-    EXPECTED_VALUE,
     FULL,
     GEOMETRIC_MEDIAN,
     LIKELIHOOD_POWER,
+    MAP,
     Actions,
     Outcomes,
     Paths,
@@ -31,15 +32,19 @@ from planner.kernels.model import (
     Start,
     Tasks,
 )
+from planner.kernels.value.lookup import Frame, after_at, blended, principal_frame
 from planner.observation import WEDGE_SIGMAS
-from planner.types import FloatArray
+from planner.types import BoolArray, FloatArray
 
 NEARLY = 1e-9
 CONFIDENCE = 0.95
 HISTOGRAM_SHIFT = 48
 """Weights are counted in bins of 1/16 octave, the leading 16 bits of a double, to find the 95 % cells."""
 HISTOGRAM_BINS = 512
-MEDIAN_STEPS = 20
+MEDIAN_STEPS = 6
+MEDIAN_REACH = 1.15
+"""The geometric median is looked for where the expected RMSE about the mean is below this many times the threshold: it
+brings no belief of one peak further down."""
 DEEPEST_DOUBLING = 12
 LIGHT = 1e-6
 """Rollouts start without the ends of rows that are lighter than this share of the heaviest cell."""
@@ -90,17 +95,22 @@ def rollout(
     while True:
         belief = measure(belief, rules, place, target, float(noise[step]))
         step += 1
-        estimated = estimate(belief, rules.estimator, start.flat)
+        estimated = estimate(belief, rules.estimator, start.flat, rules.threshold)
         localized = estimated.expected_rmse < rules.threshold  # (4.11)
-        if localized or step == rules.horizon:
+        last = step == rules.horizon
+        if localized or (last and rules.policy != DYNAMIC_PROGRAM):
             break
-        following, next_lattice = base_policy(belief, estimated, rules, place)
+        following, next_lattice, after = base_policy(belief, estimated, rules, place, lattice)
         flight = following - place
         distance = float(np.hypot(*flight))
         if lattice >= 0 and next_lattice >= 0 and len(rules.travel):
             distance = float(rules.travel[lattice, next_lattice])
         direction = float(np.arctan2(flight[1], flight[0])) if distance > 0 else heading
-        cost += flight_time(rules, distance, direction - heading) + rules.measurement_time  # (4.5)
+        cost += flight_time(rules, distance, direction - heading)  # (4.5)
+        if last:
+            cost += after  # what is cut off, by the dynamic program's value
+            break
+        cost += rules.measurement_time
         place, heading, lattice = following, direction, next_lattice
     left_over = rules.threshold if localized else estimated.expected_rmse
     end = [
@@ -189,19 +199,28 @@ def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, ahead
     return np.asarray(root**LIKELIHOOD_POWER, dtype=np.float64)
 
 
-def estimate(belief: Belief, estimator: int, flat: bool) -> PointEstimate:
-    """Point estimate, covariance about it (3.34), expected RMSE (3.58)."""
+def estimate(belief: Belief, estimator: int, flat: bool, threshold: float) -> PointEstimate:
+    """Point estimate, covariance about it (3.34), expected RMSE (3.58).
+
+    GEOMETRIC_MEDIAN: the mean, but the median where that is what brings the expected RMSE below the threshold.
+    """
     rows, columns = np.nonzero(belief.weight)
     weight = belief.weight[rows, columns]
     mass = weight / weight.sum()
     x = centres(belief.x0, belief.h, belief.weight.shape[1])[columns]
     y = centres(belief.y0, belief.h, belief.weight.shape[0])[rows]
     px, py = float(mass @ x), float(mass @ y)
-    if estimator == GEOMETRIC_MEDIAN:
-        px, py = _median(mass, x, y, px, py, 1e-3 * belief.h)
-    elif estimator != EXPECTED_VALUE and not (flat and belief.bearings <= 1):
+    if estimator == MAP and not (flat and belief.bearings <= 1):
         best = int(np.argmax(weight.view(np.int64) >> TIE_BITS))
         px, py = float(x[best]), float(y[best])
+    found = _about(mass, x, y, px, py)
+    if estimator == GEOMETRIC_MEDIAN and threshold <= found.expected_rmse < MEDIAN_REACH * threshold:
+        median = _about(mass, x, y, *_median(mass, x, y, px, py, 1e-3 * belief.h))
+        return median if median.expected_rmse < threshold else found
+    return found
+
+
+def _about(mass: FloatArray, x: FloatArray, y: FloatArray, px: float, py: float) -> PointEstimate:
     dx, dy = x - px, y - py
     expected_rmse = float(mass @ np.sqrt(dx**2 + dy**2))
     return PointEstimate(px, py, float(mass @ dx**2), float(mass @ (dx * dy)), float(mass @ dy**2), expected_rmse)
@@ -216,12 +235,19 @@ def _median(
     return px, py
 
 
-def base_policy(belief: Belief, estimated: PointEstimate, rules: Rules, place: FloatArray) -> tuple[FloatArray, int]:
-    """The next place (2,) and its index in the fixed lattice (-1: none)."""
+def base_policy(
+    belief: Belief, estimated: PointEstimate, rules: Rules, place: FloatArray, lattice: int
+) -> tuple[FloatArray, int, float]:
+    """The next place (2,), its index in the fixed lattice (-1: none), and the seconds that remain from there on, its
+    bearing's included, where the policy knows them.
+    """
     if rules.policy == ELLIPSE:
-        return ellipse_action(estimated, place, rules.ratios, rules.distances), -1
+        return ellipse_action(estimated, place, rules.ratios, rules.distances), -1, 0.0
+    if rules.policy == DYNAMIC_PROGRAM:
+        return program_action(belief, estimated, rules, place, lattice)
     places = rules.places if len(rules.places) else grid_places(belief, rules)
-    return fisher_action(belief, estimated, rules, places)
+    following, index = fisher_action(belief, estimated, rules, places)
+    return following, index, 0.0
 
 
 def ellipse_action(
@@ -268,16 +294,75 @@ def fisher_action(belief: Belief, estimated: PointEstimate, rules: Rules, places
 
     J = g g^T / sigma^2 with g = (y, -x) / r^2 has rank one: the determinant grows with g^T P g, P^-1 is not needed.
     """
-    allowed = np.ones(len(places), dtype=bool)
-    if rules.standoff > 0:
-        clearance = distance_to_convex(places, confidence_hull(belief))
-        allowed = clearance >= min(rules.standoff, second_largest(clearance)) - NEARLY * rules.standoff
+    allowed = far_enough(belief, rules, places)
     x, y = estimated.x - places[:, 0], estimated.y - places[:, 1]
     r2 = np.maximum(x**2 + y**2, belief.h**2)
     gain = (estimated.xx * y**2 - 2.0 * estimated.xy * x * y + estimated.yy * x**2) / r2**2
     candidates = np.flatnonzero(allowed)
     best = int(candidates[np.argmax(gain[candidates] >= gain[candidates].max() * (1.0 - NEARLY))])
     return places[best], best if len(rules.places) else -1
+
+
+def program_action(
+    belief: Belief, estimated: PointEstimate, rules: Rules, place: FloatArray, lattice: int
+) -> tuple[FloatArray, int, float]:
+    """argmin_a t(place, a) + G(belief, a): the Gaussian dynamic program's choice, and G, s, there.
+
+    Over the fixed lattice where there is one; else over the program's nodes beside the platform and staying, and over
+    those on all sides inside the flight window when that place lies outside.
+    """
+    frame = principal_frame(estimated.x, estimated.y, estimated.xx, estimated.xy, estimated.yy)
+    after = blended(rules.after, frame.s1 / rules.threshold, frame.s1 / frame.s2)
+    if len(rules.places):
+        distances = np.hypot(*(rules.places - place).T)
+        if lattice >= 0 and len(rules.travel):
+            distances = rules.travel[lattice]
+        left = after_at(after, rules.nodes, frame, rules.places)
+        costs = np.array([flight_time(rules, float(d), 0.0) for d in distances]) + left
+        candidates = np.flatnonzero(far_enough(belief, rules, rules.places))
+        best = int(candidates[_first_least(costs[candidates])])
+        return rules.places[best], best, float(left[best])
+    for places, left in (_beside(frame, rules, after, place), _around(frame, rules, after)):
+        inside = (places >= rules.window[:2]).all(axis=1) & (places <= rules.window[2:]).all(axis=1)
+        costs = np.array([flight_time(rules, float(d), 0.0) for d in np.hypot(*(places - place).T)]) + left
+        if len(places) <= after.size + 1:
+            best = _first_least(costs)
+            near, near_left = places[best], float(left[best])
+            if inside[best]:
+                return near, -1, near_left
+        elif inside.any():
+            best = _first_least(np.where(inside, costs, np.inf))
+            return places[best], -1, float(left[best])
+    return np.clip(near, rules.window[:2], rules.window[2:]), -1, near_left
+
+
+def _beside(frame: Frame, rules: Rules, after: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The nodes in the platform's quadrant, then where it is: places and seconds."""
+    u1, u2 = frame.seen(place)
+    sides = np.array([-1.0 if u1 < -NEARLY else 1.0, -1.0 if u2 < -NEARLY else 1.0])
+    a, b = np.meshgrid(rules.nodes, rules.nodes, indexing="ij")
+    places = frame.places(sides[0] * a.ravel(), sides[1] * b.ravel())
+    stay = after_at(after, rules.nodes, frame, place[None])
+    return np.concatenate((places, place[None])), np.concatenate((after.ravel(), stay))
+
+
+def _around(frame: Frame, rules: Rules, after: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The nodes in all quadrants."""
+    a, b = np.meshgrid(rules.nodes, rules.nodes, indexing="ij")
+    places = [frame.places(i * a.ravel(), j * b.ravel()) for i in (1.0, -1.0) for j in (1.0, -1.0)]
+    return np.concatenate(places), np.tile(after.ravel(), 4)
+
+
+def _first_least(costs: FloatArray) -> int:
+    return int(np.argmax(costs <= costs.min() * (1.0 + NEARLY)))
+
+
+def far_enough(belief: Belief, rules: Rules, places: FloatArray) -> BoolArray:
+    """(n,) which places keep r_min, or what it shrinks to, from C95 (6.1)."""
+    if not rules.standoff > 0:
+        return np.ones(len(places), dtype=bool)
+    clearance = distance_to_convex(places, confidence_hull(belief))
+    return clearance >= min(rules.standoff, second_largest(clearance)) - NEARLY * rules.standoff
 
 
 def second_largest(values: FloatArray) -> float:

@@ -7,7 +7,7 @@ Which action is sampled on which path is the selection's business (planner.selec
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -16,8 +16,10 @@ from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, DiscreteSelection, Sampling
 from planner.policy.actions import constrained_actions
+from planner.policy.dynamic_program import best_places, substitute
 from planner.policy.fisher import telling_places
 from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, simulate
+from planner.policy.value_table import ProgramTable, program_for
 from planner.reasons import (
     BudgetTooSmall,
     ChoiceReason,
@@ -26,15 +28,22 @@ from planner.reasons import (
     LongestLead,
     NoPlaceInReach,
     OnlyPlace,
+    PlannedMeanwhile,
     QuickestPlace,
 )
-from planner.sampling import deterministic_paths, random_paths
+from planner.sampling import QUASI_DIMENSIONS, deterministic_paths, quasi_random_paths, random_paths
 from planner.selection.sequential_halving import sequential_halving
 from planner.selection.types import Selection, SelectionResult
 from planner.selection.uniform import uniform
 from planner.types import Candidate, Decision, FloatArray, IntArray, PlannerError, Problem
 
 SELECTIONS: Mapping[DiscreteSelection, Selection] = {"uniform": uniform, "sequential_halving": sequential_halving}
+
+PROGRAM_PLACES = 64
+"""How many places rollouts on the dynamic program compare; it names them itself."""
+
+PROGRAM_HORIZON = 2
+"""Bearings after which the dynamic program closes a rollout: the first action's and its own first."""
 
 PATH_BLOCK = 64
 """Common random paths are drawn in blocks of this size, so that path j does not depend on who needs it first."""
@@ -63,6 +72,7 @@ class RolloutSampler:
     seen: dict[int, list[FloatArray]] = field(default_factory=dict[int, list[FloatArray]])
     _actions: Actions | None = None
     _pool: Paths | None = None
+    _shift: FloatArray | None = None
 
     def sample(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s: the `Sample` over `places`."""
@@ -99,12 +109,18 @@ class RolloutSampler:
             return self._pool
         have = 0 if self._pool is None else len(self._pool.targets)
         while have < count:
-            block = self._draw(PATH_BLOCK)
+            block = self._draw(PATH_BLOCK) if self.sampling == "crn" else self._draw_quasi(have)
             joined = () if self._pool is None else (self._pool,)
             self._pool = Paths(*(np.concatenate(arrays) for arrays in zip(*joined, block, strict=True)))
             have += PATH_BLOCK
         assert self._pool is not None
         return self._pool
+
+    def _draw_quasi(self, first: int) -> Paths:
+        if self._shift is None:
+            self._shift = self.rng.random(QUASI_DIMENSIONS)
+        rules = self.simulation.rules
+        return quasi_random_paths(self.belief, rules.sigma, first, PATH_BLOCK, rules.horizon, self._shift, self.rng)
 
     def _draw(self, count: int) -> Paths:
         rules = self.simulation.rules
@@ -116,7 +132,8 @@ class Rollout:
     """The rollout policy over a finite action space, as a `Policy`.
 
     budget: N rollouts a decision. With deterministic sampling every action gets the largest power of two of paths
-    that the budget affords. terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
+    that the budget affords. base_policy `dynamic_program`: its substitute while no table for it is kept.
+    terminal: closes rollouts cut at `horizon`. without: places (m ENU) the operator refused.
     """
 
     selection: Selection
@@ -134,18 +151,21 @@ class Rollout:
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
     ) -> Decision:
         """Raises PlannerError when no place of the action space may be flown to."""
+        program = program_for(problem) if self.base_policy == "dynamic_program" else None
+        wanted = substitute(problem) if self.base_policy == "dynamic_program" else self.base_policy
         simulation = simulate(
             problem,
             belief,
             platform,
-            base_policy=self.base_policy,
+            base_policy=wanted if program is None else "dynamic_program",
             heading=self.heading,
-            horizon=self.horizon,
+            horizon=self.horizon if program is None else min(self.horizon, PROGRAM_HORIZON),
             threads=self.threads,
             kernel=self.kernel,
             terminal=self.terminal,
+            program=program,
         )
-        places = self._places(problem, belief, simulation)
+        places = self._places(problem, belief, simulation, program)
         budget, paths = self.budget, 8
         if self.sampling == "deterministic":
             if budget < len(places):
@@ -154,7 +174,12 @@ class Rollout:
             budget = paths * len(places)
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
         result = self._selection(simulation, places, budget)(sampler.sample, len(places), budget, rng)
-        return _decision(places, result, sampler)
+        decision = _decision(places, result, sampler)
+        if self.base_policy == "dynamic_program" and program is None:
+            tried = sum(candidate.rollouts > 0 for candidate in decision.candidates)
+            expected_time = float(result.means[result.best])
+            return replace(decision, reason=PlannedMeanwhile(expected_time, tried))
+        return decision
 
     def _selection(self, simulation: Simulation, places: FloatArray, budget: int) -> Selection:
         """With common paths, uniform allocation gives up what loses for sure: no path is shorter than its first leg."""
@@ -163,8 +188,14 @@ class Rollout:
         stride = max(1, budget // len(places) // MOST_LOOKS)
         return partial(uniform, least=simulation.first_actions(places).costs, stride=stride)
 
-    def _places(self, problem: Problem, belief: GridBelief, simulation: Simulation) -> FloatArray:
-        places = constrained_actions(problem, belief)
+    def _places(
+        self, problem: Problem, belief: GridBelief, simulation: Simulation, program: ProgramTable | None
+    ) -> FloatArray:
+        if program is None:
+            places = constrained_actions(problem, belief)
+        else:
+            here = (float(simulation.platform[0]), float(simulation.platform[1]))
+            places = best_places(problem, belief, here, program, PROGRAM_PLACES)[0]
         near = problem.action_spacing or belief.h
         for refused in self.without:
             places = places[np.hypot(*(places - np.array(refused)).T) >= 0.5 * near]

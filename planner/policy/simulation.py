@@ -17,6 +17,7 @@ from planner.airspace import may_fly
 from planner.belief.grid import GridBelief
 from planner.kernels import compiled, reference
 from planner.kernels.model import (
+    DYNAMIC_PROGRAM,
     ELLIPSE,
     EXPECTED_VALUE,
     FISHER,
@@ -34,10 +35,12 @@ from planner.kernels.model import (
     likelihood_polynomial,
     outcomes,
 )
+from planner.kernels.value.model import nodes
 from planner.motion import flight_time, turn_between, validate_motion
 from planner.options import BasePolicy
 from planner.policy.actions import flight_window, lattice
 from planner.policy.ellipse import table
+from planner.policy.value_table import ProgramTable
 from planner.reasons import UnusableNumber
 from planner.travel import VisibilityGraph, lattice_distances, straight_suffices, travel_distances, visibility_graph
 from planner.types import FloatArray, FullMotion, IntArray, LinearConstantMotion, LinearMotion, PlannerError, Problem
@@ -48,6 +51,8 @@ TerminalValue = Callable[[FloatArray], FloatArray]
 
 HORIZON = 24
 """Bearings after which a rollout is given up."""
+
+_NO_TABLE = np.empty((0, 0, 0))
 
 UNKNOWN_TURN = np.pi / 2
 """Turn before the first flight when the heading is not known: the mean of all."""
@@ -118,8 +123,12 @@ def simulate(
     threads: int = 1,
     kernel: KernelName = "compiled",
     terminal: TerminalValue | None = None,
+    program: ProgramTable | None = None,
 ) -> Simulation:
-    """Prepare rollouts from this belief. PlannerError for numbers that cannot be flown or measured with."""
+    """Prepare rollouts from this belief. PlannerError for numbers that cannot be flown or measured with.
+
+    program: the dynamic program's table, for the base policy of this name only.
+    """
     here = np.array(platform, dtype=float)
     if here.shape != (2,) or not np.isfinite(here).all():
         raise PlannerError(UnusableNumber("platform_position", "finite", str(platform)))
@@ -131,7 +140,7 @@ def simulate(
     return Simulation(
         problem,
         start_of(belief),
-        rules_of(problem, base_policy, horizon, graph),
+        rules_of(problem, base_policy, horizon, graph, program),
         here,
         heading,
         graph,
@@ -159,8 +168,16 @@ def start_of(belief: GridBelief) -> Start:
     )
 
 
-def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, graph: VisibilityGraph | None = None) -> Rules:
-    """The problem as kernel numbers."""
+def rules_of(
+    problem: Problem,
+    base_policy: BasePolicy,
+    horizon: int,
+    graph: VisibilityGraph | None = None,
+    program: ProgramTable | None = None,
+) -> Rules:
+    """The problem as kernel numbers. ValueError for the dynamic program without its table."""
+    if base_policy == "dynamic_program" and program is None:
+        raise ValueError("rollouts on the dynamic program need its table")
     _validate_numbers(problem)
     validate_motion(problem.motion)
     sigma = float(min(problem.sigma, WIDEST_SIGMA))
@@ -188,7 +205,7 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, graph: Vis
         estimator={"map": MAP, "expected_value": EXPECTED_VALUE, "geometric_median": GEOMETRIC_MEDIAN}[
             problem.estimator
         ],
-        policy={"ellipse": ELLIPSE, "fisher": FISHER}[base_policy],
+        policy={"ellipse": ELLIPSE, "fisher": FISHER, "dynamic_program": DYNAMIC_PROGRAM}[base_policy],
         standoff=float(problem.standoff),
         places=places,
         travel=travel,
@@ -198,6 +215,8 @@ def rules_of(problem: Problem, base_policy: BasePolicy, horizon: int, graph: Vis
         ratios=ratios,
         distances=distances,
         horizon=int(horizon),
+        after=_NO_TABLE if program is None else program.adapted(problem),
+        nodes=nodes(),
     )
 
 

@@ -66,6 +66,20 @@ class QuickestPlaceFound:
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedMeanwhile:
+    """The specification names the dynamic program as base policy, but its table is not there yet."""
+
+    expected_time_s: float
+    places: int
+    code: Literal["planned_meanwhile"] = "planned_meanwhile"
+
+    english: ClassVar[Words] = Words(
+        "Localized in about {expected_time_s} by way of this place, the best of {places|place|places} tried. "
+        "Planned on the simpler base policy: the table of the dynamic program is still being computed."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class MostInformation:
     """about: where the emitter is taken to be; at the estimate, or the worst place in the ellipse around it."""
 
@@ -130,6 +144,7 @@ ChoiceReason = (
     | LongestLead
     | OnlyPlace
     | QuickestPlaceFound
+    | PlannedMeanwhile
     | MostInformation
     | LeastEntropy
     | BesideEllipse

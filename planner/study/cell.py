@@ -5,8 +5,18 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar, get_args
 
-from planner.options import FIELD, STUDY, BasePolicy, ContinuousSelection, DiscreteSelection, Estimator, Sampling
+from planner.options import (
+    CROSSFIX,
+    FIELD,
+    STUDY,
+    BasePolicy,
+    ContinuousSelection,
+    DiscreteSelection,
+    Estimator,
+    Sampling,
+)
 from planner.policy.continuous_rollout import ContinuousRollout
+from planner.policy.dynamic_program import dynamic_program
 from planner.policy.ellipse import ellipse
 from planner.policy.entropy import entpp, entpp8
 from planner.policy.fisher import fisher
@@ -18,6 +28,7 @@ from planner.policy.types import Policy
 from planner.policy.vander_hook import vander_hook
 from planner.study.errors import StudyError
 from planner.study.scenarios import Scenario, scenario
+from planner.study.value_cache import ensure
 
 Name = TypeVar("Name", bound=str)
 
@@ -35,6 +46,12 @@ PLANNERS: dict[str, Policy] = {
     "lookahead_myopic": Lookahead(steps=1),
 }
 """Planners without settings; `rollout` is the one with."""
+
+TABLED: dict[str, Policy] = {
+    "dynamic_program": dynamic_program,
+    "crossfix": Rollout(SELECTIONS[CROSSFIX.selection], CROSSFIX.sampling, CROSSFIX.base_policy, CROSSFIX.budget),
+}
+"""Planners that need a table (`value_cache`): the dynamic program alone, and `rollout` on it."""
 
 CONTINUOUS: tuple[ContinuousSelection, ...] = get_args(ContinuousSelection)
 SELECTION_NAMES: tuple[DiscreteSelection | ContinuousSelection, ...] = (*SELECTIONS, *CONTINUOUS)
@@ -65,11 +82,13 @@ class Cell:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        _one_of("planner", self.planner, (*PLANNERS, "rollout"))
+        _one_of("planner", self.planner, (*PLANNERS, *TABLED, "rollout"))
         _one_of("selection", self.selection, SELECTION_NAMES)
         _one_of("sampling", self.sampling, SAMPLINGS)
         if self.base_policy is not None:
             _one_of("base policy", self.base_policy, BASE_POLICY_NAMES)
+        if self.base_policy == "dynamic_program" and self.selection in CONTINUOUS:
+            raise StudyError(f"dynamic_program names its own places: {self.selection} would search for others")
         if self.budget < 1:
             raise StudyError(f"the budget must be at least one rollout, got {self.budget}")
         if self.seed < 0:
@@ -82,17 +101,23 @@ class Cell:
         return scenario(
             self.scenario,
             self.config,
-            estimator=None if self.estimator is None else self._known_estimator(self.estimator),
+            estimator=self._estimator(),
             action_grid=grid,
             measurement_time=self.measurement_time,
         )
 
-    @staticmethod
-    def _known_estimator(name: str) -> Estimator:
-        return _one_of("estimator", name, ESTIMATORS)
+    def _estimator(self) -> Estimator | None:
+        """None: the scenario's own; planners with a table bring theirs along."""
+        if self.estimator is not None:
+            return _one_of("estimator", self.estimator, ESTIMATORS)
+        return CROSSFIX.estimator if self.planner in TABLED else None
 
     def policy(self) -> Policy:
-        """The planner with its settings."""
+        """The planner with its settings; the dynamic program's table is computed when this machine has none."""
+        if self.planner in TABLED or (self.planner == "rollout" and self.base_policy == "dynamic_program"):
+            ensure(self.case().problem)
+        if self.planner in TABLED:
+            return TABLED[self.planner]
         if self.planner != "rollout":
             return PLANNERS[self.planner]
         usual = FIELD if self.scenario == "field" else STUDY
@@ -106,7 +131,7 @@ class Cell:
     def repeatable(self) -> bool:
         """Whether the planner uses no chance, so that equal beliefs get equal decisions."""
         if self.planner != "rollout":
-            return True
+            return self.planner != "crossfix"
         return self.selection == "bfgs" or (self.sampling == "deterministic" and self.selection != "sgd")
 
     def fields(self) -> dict[str, Any]:

@@ -6,7 +6,18 @@ from refusals import refusing
 
 from planner.belief.grid import prior_belief
 from planner.reasons import UnusableNumber
-from planner.sampling import deterministic_paths, equal_mass_points, random_noise, random_paths, random_targets
+from planner.sampling import (
+    QUASI_DIMENSIONS,
+    deterministic_paths,
+    equal_mass_points,
+    normal_quantile,
+    quasi_random_paths,
+    random_noise,
+    random_paths,
+    random_targets,
+    sobol,
+    targets_at,
+)
 from planner.types import GaussianPrior, LinearMotion, Problem
 
 SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
@@ -31,6 +42,53 @@ def test_random_targets_have_the_beliefs_moments():
 def test_random_targets_stay_in_cells_that_hold_mass():
     targets = random_targets(belief(), 1000, np.random.default_rng(2))
     assert ((targets >= 0) & (targets <= 300)).all()
+
+
+def test_sobol_points_are_those_of_scipy():
+    from scipy.stats import qmc
+
+    wanted = qmc.Sobol(QUASI_DIMENSIONS, scramble=False, bits=30).random(256)
+    assert (sobol(0, 256, QUASI_DIMENSIONS) == wanted).all()
+    assert (sobol(64, 64, QUASI_DIMENSIONS) == wanted[64:128]).all()
+
+
+def test_normal_quantiles_are_those_of_scipy():
+    from scipy.special import ndtri
+
+    share = np.linspace(0.0005, 0.9995, 301)
+    assert normal_quantile(share) == pytest.approx(ndtri(share), abs=1e-5)
+    cut = normal_quantile(np.array([0.0, 0.5, 1.0]), cut=3.0)
+    assert cut == pytest.approx([-3.0, 0.0, 3.0], abs=1e-4)
+
+
+def test_quasi_random_targets_share_the_mass_out_more_evenly_than_chance():
+    prior = belief(GAUSSIAN)
+    targets = targets_at(prior, sobol(0, 1024, 2))
+    assert targets.mean(axis=0) == pytest.approx([150.0, 140.0], abs=0.2)
+    assert np.cov(targets.T) == pytest.approx(GAUSSIAN.covariance, rel=0.02)
+    flat = targets_at(belief(), sobol(0, 256, 2))
+    per_sixteenth = np.histogram2d(*flat.T, bins=4, range=((0, 300), (0, 300)))[0]
+    assert (per_sixteenth == 16).all()
+
+
+def test_quasi_random_targets_stay_in_cells_that_hold_mass():
+    half = belief()
+    half.density[:, :50] = 0.0
+    half.density[50:, 50:] = 0.0
+    edges = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.5]])
+    targets = targets_at(half, edges)
+    assert (targets >= [150.0, 0.0]).all()
+    assert (targets <= [300.0, 150.0]).all()
+
+
+def test_quasi_random_paths_go_on_where_they_were_left():
+    shift = np.full(QUASI_DIMENSIONS, 0.3)
+    whole = quasi_random_paths(belief(), 0.07, 0, 128, 5, shift, np.random.default_rng(1))
+    second = quasi_random_paths(belief(), 0.07, 64, 64, 5, shift, np.random.default_rng(2))
+    assert (whole.targets[64:] == second.targets).all()
+    assert (whole.noise[64:, :2] == second.noise[:, :2]).all()
+    assert np.abs(whole.noise).max() <= 0.21 + 1e-9
+    assert whole.noise[:, 0].std() == pytest.approx(0.07 * 0.9866, rel=0.02)
 
 
 def test_noise_is_drawn_again_beyond_three_sigma():

@@ -112,6 +112,7 @@ export const sections: readonly Section[] = [
         path: "planner.base_policy",
         label: "edit.basePolicy",
         options: [
+          { value: "dynamic_program", label: "edit.basePolicy.dynamic_program" },
           { value: "fisher", label: null },
           { value: "ellipse", label: null },
         ],

@@ -614,6 +614,7 @@ export const de: Record<MessageKey, string> = {
   "edit.selection.uniform": "gleichmäßig",
   "edit.selection.sequential_halving": "fortgesetztes Halbieren",
   "edit.sampling": "Stichproben",
+  "edit.basePolicy.dynamic_program": "dynamisches Programm",
   "edit.estimator": "Schätzung ist",
   "edit.estimator.map": "die wahrscheinlichste Zelle",
   "edit.estimator.expected_value": "der Erwartungswert",

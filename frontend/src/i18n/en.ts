@@ -611,6 +611,7 @@ export const en = {
   "edit.selection.uniform": "uniform",
   "edit.selection.sequential_halving": "sequential halving",
   "edit.sampling": "Sampling",
+  "edit.basePolicy.dynamic_program": "dynamic program",
   "edit.estimator": "Estimate is the",
   "edit.estimator.map": "most likely cell",
   "edit.estimator.expected_value": "expected value",

@@ -18,6 +18,10 @@ export const reasonsEn: ReasonTable = {
     text: "Localized in about {expected_time_s} by way of this place, found by {search?quadrant=quadrant search|sgd=stochastic gradient descent|bfgs=BFGS}.",
     remedy: "",
   },
+  planned_meanwhile: {
+    text: "Localized in about {expected_time_s} by way of this place, the best of {places|place|places} tried. Planned on the simpler base policy: the table of the dynamic program is still being computed.",
+    remedy: "",
+  },
   most_information: {
     text: "A bearing from here narrows the belief most{about?estimate=|worst_case= in the worst case}, of {places|place|places} compared.",
     remedy: "",

@@ -12,7 +12,7 @@ _CHUNK = 128
 
 @jit
 def geometric_median(weight, along, across, cells, ea, eb, tolerance):
-    """Weiszfeld's iteration for the geometric median, from the mean."""
+    """A few steps of Weiszfeld's iteration towards the geometric median, from the mean."""
     for _ in range(MEDIAN_STEPS):
         pull = pull_a = pull_b = 0.0
         for i in range(cells):

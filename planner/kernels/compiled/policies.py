@@ -48,7 +48,7 @@ def fisher_action(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0,
     corners, needed = 0, -1.0
     if rules.standoff > 0.0:
         corners = confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny)
-        needed = _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, work.chain, corners)
+        needed = affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, work.chain, corners)
     outside = distance_to_hull(work.chain, corners, ex, ey) if corners > 0 else 0.0
     best, best_gain = 0, -np.inf
     for k in range(n):
@@ -75,7 +75,7 @@ def _gain(x, y, xx, xy, yy, nearest):
 
 
 @inlined
-def _affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, corners):
+def affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, corners):
     """r_min, or what it shrinks to so that two places are left (6.1)."""
     first = second = -1.0
     for k in range(n):

@@ -12,12 +12,14 @@ from planner.compiling import SOURCES, allocating, entry, inlined, jit
 from planner.kernels.compiled.estimate import below_threshold, distance_sum, geometric_median
 from planner.kernels.compiled.lanes import BLOCK
 from planner.kernels.compiled.policies import ellipse_action, fisher_action
+from planner.kernels.compiled.program import program_action
 from planner.kernels.compiled.update import measure
 from planner.kernels.model import (
+    DYNAMIC_PROGRAM,
     ELLIPSE,
-    EXPECTED_VALUE,
     FULL,
     GEOMETRIC_MEDIAN,
+    MAP,
     Actions,
     Outcomes,
     Paths,
@@ -25,7 +27,7 @@ from planner.kernels.model import (
     Start,
     Tasks,
 )
-from planner.kernels.reference import HISTOGRAM_BINS
+from planner.kernels.reference import HISTOGRAM_BINS, MEDIAN_REACH
 from planner.observation import WEDGE_SIGMAS
 from planner.types import FloatArray
 
@@ -36,9 +38,9 @@ class Workspace(NamedTuple):
     """Scratch of one call. weight: (3, n), offset, low, high: (3, r) and hull: (3, v, 2) hold beliefs: the one that
     every rollout starts with at _FIRST, then 0 and 1 in turn.
 
-    along, across: (n,) m, cell centres in the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (l,) of
-    the places. chain: (4 r, 2) corners. Arrays of cells have BLOCK cells more, because whole blocks are written and the
-    next row overwrites the excess.
+    along, across: (n,) m, cell centres in the bearing's frame. ramp: (c,) 0, 1, 2, ... histogram: (b,). gain: (g,) of
+    the places, or seconds after the program's nodes, then the costs of its choices. chain: (4 r, 2) corners. Arrays of
+    cells have BLOCK cells more, because whole blocks are written and the next row overwrites the excess.
     """
 
     weight: FloatArray
@@ -101,7 +103,9 @@ def _workspace(start, rules):
         np.empty((3, rows), np.int64),
         np.empty((3, len(start.hull) + 2 * rules.horizon + 2, 2)),
         np.empty(HISTOGRAM_BINS),
-        np.empty(max(len(rules.places), rules.grid_x * rules.grid_y)),
+        np.empty(
+            max(len(rules.places), rules.grid_x * rules.grid_y, 4 * rules.after.shape[2] + 1) + rules.after.shape[2]
+        ),
         np.empty((4 * rows + len(start.hull) + 2 * rules.horizon + 4, 2)),
     )
 
@@ -126,11 +130,8 @@ def _rollout(start, rules, actions, paths, action, path, work, out, t):
         )  # fmt: skip
         bearings += 1
         weight, along, across = work.weight[now], work.along, work.across
-        if rules.estimator == GEOMETRIC_MEDIAN:
-            ea, eb = geometric_median(weight, along, across, cells, ma / m0, mb / m0, 1e-3 * h)
-        elif rules.estimator == EXPECTED_VALUE or (start.flat and bearings <= 1):
-            ea, eb = ma / m0, mb / m0
-        else:
+        ea, eb = ma / m0, mb / m0
+        if rules.estimator == MAP and not (start.flat and bearings <= 1):
             ea, eb = along[heaviest], across[heaviest]
         vaa = (maa - 2.0 * ea * ma) / m0 + ea * ea  # (3.34), about the estimate, in the bearing's frame
         vab = (mab - ea * mb - eb * ma) / m0 + ea * eb
@@ -138,13 +139,29 @@ def _rollout(start, rules, actions, paths, action, path, work, out, t):
         ex, ey = px + c * ea - s * eb, py + s * ea + c * eb
         reach = np.hypot(max(ex - x0, x0 + nx * h - ex), max(ey - y0, y0 + ny * h - ey))
         localized = below_threshold(weight, along, across, cells, ea, eb, vaa + vbb, m0, rules.threshold, reach)
+        if not localized and rules.estimator == GEOMETRIC_MEDIAN:
+            near = MEDIAN_REACH * rules.threshold
+            if below_threshold(weight, along, across, cells, ea, eb, vaa + vbb, m0, near, reach):
+                ga, gb = geometric_median(weight, along, across, cells, ea, eb, 1e-3 * h)
+                localized = distance_sum(weight, along, across, 0, cells, ga, gb) < rules.threshold * m0
+                if localized:
+                    ea, eb = ga, gb
+                    ex, ey = px + c * ea - s * eb, py + s * ea + c * eb
+                    vaa = (maa - 2.0 * ea * ma) / m0 + ea * ea
+                    vab = (mab - ea * mb - eb * ma) / m0 + ea * eb
+                    vbb = (mbb - 2.0 * eb * mb) / m0 + eb * eb
         xx = c * c * vaa - 2.0 * c * s * vab + s * s * vbb
         xy = c * s * (vaa - vbb) + (c * c - s * s) * vab
         yy = s * s * vaa + 2.0 * c * s * vab + c * c * vbb
         step += 1
-        if localized or step == rules.horizon:
+        last, after = step == rules.horizon, 0.0
+        if localized or (last and rules.policy != DYNAMIC_PROGRAM):
             break
-        if rules.policy == ELLIPSE:
+        if rules.policy == DYNAMIC_PROGRAM:
+            qx, qy, following, after = program_action(
+                ex, ey, xx, xy, yy, px, py, lattice, rules, work, now, cells, heaviest, m0, x0, y0, h, nx, ny
+            )
+        elif rules.policy == ELLIPSE:
             qx, qy, following = ellipse_action(ex, ey, xx, xy, yy, px, py, rules.ratios, rules.distances)
         else:
             qx, qy, following = fisher_action(
@@ -156,7 +173,11 @@ def _rollout(start, rules, actions, paths, action, path, work, out, t):
         towards = heading
         if rules.motion == FULL and distance > 0.0:
             towards = np.arctan2(qy - py, qx - px)
-        cost += _flight_time(rules, distance, towards - heading) + rules.measurement_time  # (4.5)
+        cost += _flight_time(rules, distance, towards - heading)  # (4.5)
+        if last:
+            cost += after
+            break
+        cost += rules.measurement_time
         px, py, heading, lattice = qx, qy, towards, following
     out.costs[t] = cost
     out.bearings[t] = step

@@ -18,6 +18,10 @@ export const planner = {
     text: "Gefunden in etwa {expected_time_s} über diesen Ort, ermittelt durch {search?quadrant=Suche in Quadranten|sgd=stochastischen Gradientenabstieg|bfgs=BFGS}.",
     remedy: "",
   },
+  planned_meanwhile: {
+    text: "Gefunden in etwa {expected_time_s} über diesen Ort, den besten von {places|Ort|Orten}. Geplant mit der einfacheren Grundregel: die Tabelle des dynamischen Programms wird noch berechnet.",
+    remedy: "",
+  },
   most_information: {
     text: "Eine Peilung von hier engt die Karte der Wahrscheinlichkeit{about?estimate=|worst_case= im ungünstigsten Fall} am meisten ein; {places|Ort|Orte} verglichen.",
     remedy: "",

@@ -1,0 +1,141 @@
+"""Tables of the Gaussian dynamic program: for which problem, how they are computed, and which are at hand.
+
+V(b, p) = min_a t(p, a) + G(b, a),   G(b, a) = t_m + E_z V(b', a) where b' is not yet localized (Bellman's equation of
+4.5 and 4.11 for a belief that is a Gaussian after every bearing). Lengths are in units of the threshold inside.
+
+A table takes a minute or more of one processor (planner.study.value_cache keeps it on disk). Plans use those that are
+kept in memory (`keep`); while none fits, `program_for` answers None and another base policy stands in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.kernels.model import WIDEST_SIGMA
+from planner.kernels.value.iteration import iterate
+from planner.kernels.value.model import DRAWS, NODES, RATIOS, Transitions, nodes, ratios, scales
+from planner.kernels.value.transitions import transitions
+from planner.sampling import normal_quantile, sobol
+from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMotion, Motion, Problem
+
+MEAN_TURN = math.pi / 2
+SWEEPS = 400
+TOLERANCE = 1e-2
+"""Value iteration ends after so many sweeps, or when none changes a value by this share of a bearing's time."""
+
+SIGMA_FACTOR, TIME_FACTOR = 1.5, 2.0
+"""A table also serves problems whose sigma and measuring time are within these factors of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramKey:
+    """What decides a table. sigma: rad. threshold, standoff: m. measurement_time: s."""
+
+    sigma: float
+    threshold: float
+    measurement_time: float
+    motion: Motion
+    standoff: float
+
+    @property
+    def name(self) -> str:
+        """For a file: equal for equal keys only."""
+        parts = [type(self.motion).__name__, *self.numbers()]
+        return "-".join(part if isinstance(part, str) else f"{part:.9g}" for part in parts)
+
+    def numbers(self) -> tuple[float, ...]:
+        """All numbers of the key, in a fixed order."""
+        full, speed, constant, acceleration = motion_numbers(self.motion)
+        own = (self.sigma, self.threshold, self.measurement_time, self.standoff)
+        return *own, float(full), speed, constant, acceleration
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProgramTable:
+    """after: (SCALES, RATIOS, NODES^2) s, G; float32 numbers as float64, so that kept and fresh tables are equal."""
+
+    key: ProgramKey
+    after: FloatArray
+
+    def adapted(self, problem: Problem) -> FloatArray:
+        """G with the problem's own measuring time for the first bearing."""
+        return self.after + (problem.measurement_time - self.key.measurement_time)
+
+
+def key_of(problem: Problem) -> ProgramKey:
+    """The table made for exactly this problem."""
+    sigma = float(min(problem.sigma, WIDEST_SIGMA))
+    return ProgramKey(
+        sigma, float(problem.threshold), float(problem.measurement_time), problem.motion, float(problem.standoff)
+    )
+
+
+_kept: dict[ProgramKey, ProgramTable] = {}
+
+
+def keep(table: ProgramTable) -> None:
+    """Have a table at hand for every plan to come."""
+    _kept[table.key] = table
+
+
+def program_for(problem: Problem) -> ProgramTable | None:
+    """The kept table that is made for this problem, else the nearest that serves it, else None."""
+    wanted = key_of(problem)
+    exact = _kept.get(wanted)
+    if exact is not None:
+        return exact
+    serving = [table for key, table in _kept.items() if _apart(key, wanted) <= 1.0]
+    return min(serving, key=lambda table: _apart(table.key, wanted), default=None)
+
+
+def _apart(key: ProgramKey, wanted: ProgramKey) -> float:
+    """How far a key is from the wanted one, 1 at the edge of what it serves; infinite where more differs."""
+    same = replace(key, sigma=wanted.sigma, measurement_time=wanted.measurement_time)
+    if same != wanted:
+        return math.inf
+    sigma = abs(math.log(key.sigma / wanted.sigma)) / math.log(SIGMA_FACTOR)
+    times = max(key.measurement_time, 0.5), max(wanted.measurement_time, 0.5)
+    return max(sigma, abs(math.log(times[0] / times[1])) / math.log(TIME_FACTOR))
+
+
+def compute(key: ProgramKey, transitions_of: Callable[[float], Transitions] | None = None) -> ProgramTable:
+    """The table, by value iteration from 0."""
+    shape = (transitions_of or compute_transitions)(key.sigma)
+    full, speed, constant, acceleration = motion_numbers(key.motion)
+    after, _, _ = iterate(
+        shape, scales(), ratios(), nodes(), key.threshold, key.measurement_time, full, speed, constant, acceleration,
+        key.standoff, SWEEPS, TOLERANCE * max(key.measurement_time, 1.0),
+    )  # fmt: skip
+    by_scale = np.moveaxis(after, -1, 0).reshape(len(scales()), RATIOS, NODES * NODES)
+    return ProgramTable(key, np.ascontiguousarray(by_scale.astype(np.float32).astype(np.float64)))
+
+
+def compute_transitions(sigma: float) -> Transitions:
+    """What a bearing of noise sigma (rad) does to a Gaussian belief, from every node."""
+    shape = (RATIOS, NODES, NODES, DRAWS)
+    out = Transitions(*(np.empty(shape) for _ in Transitions._fields))
+    transitions(ratios(), nodes(), float(sigma), normal_draws(DRAWS), out)
+    return out
+
+
+def normal_draws(count: int) -> FloatArray:
+    """(count, 3) standard normal numbers, quasi-random: the target's place and the bearing's noise, cut at 3."""
+    uniform = (sobol(0, count, 3) + 0.5 / count) % 1.0
+    return np.column_stack(
+        [normal_quantile(uniform[:, 0]), normal_quantile(uniform[:, 1]), normal_quantile(uniform[:, 2], cut=3.0)]
+    )
+
+
+def motion_numbers(motion: Motion) -> tuple[bool, float, float, float]:
+    """Whether the ramps count, speed, constant with a mean turn, acceleration."""
+    match motion:
+        case LinearMotion(speed):
+            return False, float(speed), 0.0, 1.0
+        case LinearConstantMotion(speed, constant):
+            return False, float(speed), float(constant), 1.0
+        case FullMotion(turn_rate, acceleration, speed, constant):
+            return True, float(speed), float(constant + MEAN_TURN / turn_rate), float(acceleration)
