@@ -14,6 +14,7 @@ from planner.reasons.choice import (
     QuickestPlace,
     QuickestPlaceFound,
     RoutePlanner,
+    SoonestTogether,
 )
 from planner.reasons.not_yet import (
     BearingMissesArea,
@@ -84,6 +85,7 @@ __all__ = [
     "QuickestPlaceFound",
     "RefusalReason",
     "RoutePlanner",
+    "SoonestTogether",
     "TooFewPlaces",
     "TooFewPlacesAgree",
     "TooManyPlaces",

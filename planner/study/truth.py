@@ -120,7 +120,7 @@ def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior 
     problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
     target = _anywhere(problem, rng)
     sensor = row.sensor(target, rng)
-    belief = _prior(problem, model, prior)
+    belief = prior_of(problem, model, prior)
     here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
     while True:
         choice = fisher(problem, belief, (float(here[0]), float(here[1])))
@@ -128,8 +128,8 @@ def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior 
         time += float(flight_time(problem.motion, float(np.hypot(*(place - here))), 0.0)) + problem.measurement_time
         here = place
         angle, sigma = sensor.bearing(place, len(bearings))
-        bearings.append(_bearing(model, place, angle, sigma, row.heading_sigma))
-        belief = _updated(problem, belief, bearings, model)
+        bearings.append(bearing_of(model, place, angle, sigma, row.heading_sigma))
+        belief = folded(problem, belief, bearings)
         said = verdict(problem, search.rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
@@ -203,13 +203,14 @@ def _anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
             return target
 
 
-def _prior(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBelief:
+def prior_of(problem: Problem, model: Model, prior: ErrorPrior | None = None) -> GridBelief:
+    """What a search begins with. prior: of the joint model, None: of a sensor of which nothing is known."""
     if model == "independent":
         return prior_belief(problem)
     return joint_prior(problem) if prior is None else joint_prior(problem, otherwise=prior)
 
 
-def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float) -> Bearing:
+def bearing_of(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float) -> Bearing:
     """The independent model takes the heading's error for each bearing's own."""
     x, y = float(place[0]), float(place[1])
     if model == "independent":
@@ -217,7 +218,8 @@ def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, headin
     return Bearing(x, y, angle, sigma, source="craft")
 
 
-def _updated(problem: Problem, belief: GridBelief, bearings: Sequence[Bearing], model: Model) -> GridBelief:
+def folded(problem: Problem, belief: GridBelief, bearings: Sequence[Bearing]) -> GridBelief:
+    """The belief with the last of the bearings; one that contradicts all others starts it over."""
     if isinstance(belief, JointBelief):
         return update_joint(belief, bearings[-1])
     try:

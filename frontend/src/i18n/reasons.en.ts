@@ -14,6 +14,10 @@ export const reasonsEn: ReasonTable = {
     text: "Localized in about {expected_time_s} by way of this place, the only one {among?allowed=allowed|tried=tried}.",
     remedy: "",
   },
+  soonest_together: {
+    text: "By way of this place the {emitters} emitters still looked for are localized after about {mean_time_s} on average, sooner than by any other of {places|place|places} tried.",
+    remedy: "",
+  },
   quickest_place_found: {
     text: "Localized in about {expected_time_s} by way of this place, found by {search?quadrant=quadrant search|sgd=stochastic gradient descent|bfgs=BFGS}.",
     remedy: "",
