@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
@@ -12,6 +13,7 @@ from backend.api.suggestion import suggested_mission
 from backend.auth.access import Access
 from backend.auth.audit import AUDIT_FILE, AuditLog
 from backend.auth.records import Records
+from backend.bearing_feed import BearingFeed, DatagramRefused, open_feed
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
@@ -22,6 +24,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
 from backend.search.localization import localization
+from backend.search.reported import ReportedBearing
 from backend.settings import Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
@@ -44,6 +47,8 @@ from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
 from hardware.sim.turntable import simulated_antenna
 
+log = logging.getLogger("crossfix.bearings")
+
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
     """Time of the last fact of an unfinished mission: a sped-up clock must not run behind it."""
@@ -56,6 +61,26 @@ def _warm_up() -> None:
     home = Place(lat=0.0, lon=0.0)
     spec = suggested_mission(home)
     preview(localization(spec, home), home, threads=2)
+
+
+@asynccontextmanager
+async def _bearings_by_udp(settings: Settings, missions: MissionRoom, clock: ScaledClock) -> AsyncGenerator[None]:
+    """Raises ValueError when the port cannot be had."""
+    port = settings.bearings_udp_port
+    if port is None:
+        yield
+        return
+
+    async def add(report: ReportedBearing) -> None:
+        flying = missions.flights.active
+        if flying is None:
+            raise DatagramRefused("no search flies")
+        await missions.reports.add(flying.mission_id, report)
+
+    feed = BearingFeed(add, clock.now, time.monotonic)
+    async with open_feed(feed, settings.bearings_udp_host, port) as (host, bound):
+        log.warning("bearings are taken by UDP on %s, port %d", host, bound)
+        yield
 
 
 def _warming() -> asyncio.Task[None]:
@@ -194,7 +219,8 @@ async def open_simulation(
                 missions, journal, hub, settings, clock.now, payload, access=access, finder=finder, pattern=pattern
             )
             try:
-                yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
+                async with _bearings_by_udp(settings, missions, clock):
+                    yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:
                 await services.workers.close()
                 await services.desk.close()
