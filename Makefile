@@ -102,7 +102,7 @@ unit-and-system: # missions wait for the wall's clock, and the unit tests fill t
 	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
 
 unit: kernel ## tests without a vehicle or a browser, and how much of the code they run
-	nice -n 10 $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci --cov --cov-report= -m "not system and not browser and not long"
+	nice -n 10 $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci --cov --cov-report= --durations 25 -m "not system and not browser and not long"
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets

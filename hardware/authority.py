@@ -101,6 +101,14 @@ class SticksTookOver:
 
 
 @dataclass(frozen=True, slots=True)
+class SwitchMoved:
+    """The pilot has moved their mode switch, and a moment later the mode is `mode`. at_s: UTC."""
+
+    mode: str
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class FlightEnded:
     """What was commanded is over, and the vehicle stands on the ground."""
 
@@ -116,7 +124,14 @@ class ServerRestarted:
 
 
 Seen = (
-    CommandSent | CommandAcknowledged | ModeHeard | SticksTookOver | FlightEnded | OperatorTookControl | ServerRestarted
+    CommandSent
+    | CommandAcknowledged
+    | ModeHeard
+    | SticksTookOver
+    | SwitchMoved
+    | FlightEnded
+    | OperatorTookControl
+    | ServerRestarted
 )
 
 
@@ -131,6 +146,8 @@ def authority_after(authority: Authority, seen: Seen) -> Authority:
             return _mode_heard(authority, seen)
         case SticksTookOver(at_s=at_s):
             return _taken(authority, "pilot", "sticks", at_s, None) if authority.armed else authority
+        case SwitchMoved():
+            return _switch_moved(authority, seen)
         case FlightEnded():
             return _nothing_commanded(authority)
         case OperatorTookControl():
@@ -225,6 +242,14 @@ def _taken(
         undone=False,
         perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD,
     )
+
+
+def _switch_moved(authority: Authority, seen: SwitchMoved) -> Authority:
+    """Whoever moves the switch wants the vehicle; a mode of ours that still shows has undone it."""
+    if authority.who != "ours" or not authority.armed:
+        return authority
+    taken = _taken(authority, "pilot", "mode", seen.at_s, None)
+    return replace(taken, mode=seen.mode, undone=authority.heard in authority.commanded)
 
 
 def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authority:

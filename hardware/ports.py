@@ -7,10 +7,9 @@ only when telemetry has confirmed the deed; it raises `VehicleError` (with what 
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from hardware.authority import Authority
-from hardware.direction_finding.antenna import AntennaPattern
 from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.readings import (
     Announcement,
@@ -26,6 +25,9 @@ from hardware.readings import (
 )
 from hardware.reasons import HardwareReason
 from planner.reason import ReasonedError
+
+if TYPE_CHECKING:  # numpy comes with it, and a vehicle left in flight is held before that is loaded
+    from hardware.direction_finding.antenna import AntennaPattern
 
 
 class HardwareError(ReasonedError):

@@ -7,17 +7,19 @@ Altitudes are always named: AMSL (above mean sea level), relative (above home), 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 from annotated_types import Interval
-from numpy.typing import NDArray
 
 from hardware.authority import NOBODY, Authority
 from hardware.reasons.preflight import GpsFixName
 from hardware.reasons.sweep import SweepReason, SweepRemark
 from hardware.reasons.vehicle_news import VehicleNews
 from planner.reason import Reason
+
+if TYPE_CHECKING:  # a vehicle left in flight is held before numpy is loaded
+    import numpy as np
+    from numpy.typing import NDArray
 
 Longitude = Annotated[float, Interval(ge=-180.0, le=180.0)]
 Latitude = Annotated[float, Interval(ge=-90.0, le=90.0)]

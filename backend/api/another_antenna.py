@@ -76,9 +76,9 @@ def _pattern(upload: PatternUpload, frequency_hz: float) -> AntennaPattern:
         pattern = parse_pattern(upload.filename, upload.text)
     except PatternError as error:
         raise MissionInputError(carried(error.reason), "pattern") from error
-    elsewhere = pattern.other_frequency(frequency_hz)
-    if elsewhere is not None:
-        raise MissionInputError(carried(elsewhere), "pattern")
+    mismatch = pattern.other_frequency(frequency_hz)
+    if mismatch is not None:
+        raise MissionInputError(carried(mismatch), "pattern")
     return pattern
 
 

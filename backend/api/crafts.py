@@ -33,5 +33,5 @@ async def order_craft(
     with about(craft=craft_id, command=str(request.command_id)):
         answer = flights.command_craft(craft_id, request, principal.author)
         reply = await ordered(access, principal, http, request, answer)
-        meters.told(request.command.kind, reply)
+        meters.count_command(request.command.kind, reply)
     return reply

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import errno
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from datetime import UTC, datetime
 from pathlib import Path as FilePath
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal, Protocol, TypeVar
 
 from fastapi import Path, Query, Request
+from starlette.requests import ClientDisconnect
 
 from backend.api.problems import ApiProblem, not_found
 from backend.maps.refusal import MapRefused, NotStored
 from backend.reasons.maps import NoRoomForMap
+from backend.reasons.request import UploadBrokeOff
 from backend.reasons.terrain import TerrainTooLarge
 from backend.reasons.work import DiskFull
+from backend.workers import Workers
 
 T = TypeVar("T")
+Stored = TypeVar("Stored", covariant=True)
 What = Literal["map", "overlay", "terrain"]
 
 DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -35,10 +40,33 @@ RAW_BODY = {
 
 async def in_thread(what: What, work: Callable[..., T], *arguments: object) -> T:
     """Disk work off the event loop. Raises ApiProblem."""
-    return await told(what, asyncio.to_thread(work, *arguments))
+    return await as_problem(what, asyncio.to_thread(work, *arguments))
 
 
-async def told(what: What, doing: Awaitable[T]) -> T:
+class UploadFolder(Protocol[Stored]):
+    """Where uploads of one kind are kept."""
+
+    def store(
+        self, body: AsyncIterator[bytes], name: str, announced_bytes: int | None, now: datetime, workers: Workers
+    ) -> Awaitable[Stored]:
+        """Check and keep it. MapRefused, WorkStopped: nothing is left of it."""
+        ...
+
+
+async def upload(
+    what: What, folder: UploadFolder[Stored], request: Request, workers: Workers, name: str, filename: str
+) -> Stored:
+    """The request's body is the file itself. Raises ApiProblem."""
+    stated = request.headers.get("content-length", "")
+    announced_bytes = int(stated) if stated.isdigit() else None
+    called, now = label(name, filename), datetime.now(UTC)
+    try:
+        return await as_problem(what, folder.store(request.stream(), called, announced_bytes, now, workers))
+    except ClientDisconnect as error:
+        raise ApiProblem(400, UploadBrokeOff()) from error
+
+
+async def as_problem(what: What, doing: Awaitable[T]) -> T:
     """What the map room refuses becomes a problem."""
     try:
         return await doing
@@ -56,12 +84,6 @@ async def told(what: What, doing: Awaitable[T]) -> T:
 
 def _refused(error: MapRefused) -> ApiProblem:
     return ApiProblem(413 if isinstance(error.reason, NoRoomForMap | TerrainTooLarge) else 422, error.reason)
-
-
-def announced_bytes(request: Request) -> int | None:
-    """The size that the request states for its body, None: none."""
-    stated = request.headers.get("content-length", "")
-    return int(stated) if stated.isdigit() else None
 
 
 def label(name: str, filename: str) -> str:

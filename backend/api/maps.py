@@ -10,7 +10,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse
-from starlette.requests import ClientDisconnect
 
 from backend.api.dependencies import PrincipalDep, ServicesDep
 from backend.api.map_files import (
@@ -18,17 +17,17 @@ from backend.api.map_files import (
     ContentId,
     Filename,
     Name,
-    announced_bytes,
+    as_problem,
     in_thread,
     label,
-    told,
+    upload,
 )
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
 from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
-from backend.reasons.request import BodyTooLarge, UploadBrokeOff
+from backend.reasons.request import BodyTooLarge
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -89,12 +88,7 @@ async def upload_map(
     filename: Filename = "",
 ) -> MapPackage:
     """Store a PMTiles v3 archive: the request's body is the file itself."""
-    try:
-        called, size = label(name, filename), announced_bytes(request)
-        now = datetime.now(UTC)
-        return await told("map", folder.store(request.stream(), called, size, now, services.workers))
-    except ClientDisconnect as error:
-        raise ApiProblem(400, UploadBrokeOff()) from error
+    return await upload("map", folder, request, services.workers, name, filename)
 
 
 @router.post("/maps/coverage")
@@ -161,7 +155,7 @@ async def upload_overlay(
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
     content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
     called, now = label(name, filename), datetime.now(UTC)
-    return await told("overlay", services.workers.run(folder.store, content, called, now))
+    return await as_problem("overlay", services.workers.run(folder.store, content, called, now))
 
 
 async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:

@@ -56,7 +56,7 @@ class Meters:
         """Read the state of these when asked. Once."""
         self.registry.register(_State(services))
 
-    def told(self, kind: str, reply: CommandReply) -> None:
+    def count_command(self, kind: str, reply: CommandReply) -> None:
         """A command was answered: counted, and said in the log."""
         self.commands.labels(kind, str(reply.accepted).lower()).inc()
         because = "" if reply.reason is None else f" ({reply.reason.code})"
@@ -97,14 +97,14 @@ class Metered:
             return
         began, status = time.monotonic(), 500
 
-        async def told(message: Message) -> None:
+        async def send_counted(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
             await send(message)
 
         try:
-            await self._app(scope, receive, told)
+            await self._app(scope, receive, send_counted)
         finally:
             route = _route(scope)
             self._meters.requests.labels(scope["method"][:10], route, str(status)).inc()

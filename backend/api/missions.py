@@ -92,7 +92,7 @@ async def send_command(
     with about(mission=mission_id, command=str(request.command_id)):
         answer = flights.command(mission_id, request, principal.author, access.operates)
         reply = await ordered(access, principal, http, request, answer)
-        meters.told(request.command.kind, reply)
+        meters.count_command(request.command.kind, reply)
     return reply
 
 

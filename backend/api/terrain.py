@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import math
-from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
-from starlette.requests import ClientDisconnect
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.map_files import (
@@ -17,16 +15,13 @@ from backend.api.map_files import (
     ContentId,
     Filename,
     Name,
-    announced_bytes,
     in_thread,
-    label,
-    told,
+    upload,
 )
-from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
+from backend.api.problems import PROBLEM_RESPONSES
 from backend.maps.relief import HIGHEST_ZOOM, LOWEST_ZOOM, contours, relief_tile
 from backend.maps.terrain_folder import TerrainFolder
 from backend.mission.questions import Leg
-from backend.reasons.request import UploadBrokeOff
 from backend.terrain import Terrain
 from backend.wire.terrain import Profile, TerrainFile, TerrainList
 from hardware.readings import Latitude, Longitude, Place
@@ -71,12 +66,7 @@ async def upload_terrain(
     filename: Filename = "",
 ) -> TerrainFile:
     """Store a GeoTIFF of heights or a PMTiles archive of Terrarium tiles: the request's body is the file itself."""
-    try:
-        called, size = label(name, filename), announced_bytes(request)
-        now = datetime.now(UTC)
-        return await told("terrain", folder.store(request.stream(), called, size, now, services.workers))
-    except ClientDisconnect as error:
-        raise ApiProblem(400, UploadBrokeOff()) from error
+    return await upload("terrain", folder, request, services.workers, name, filename)
 
 
 @router.delete("/terrain/{terrain_id}", status_code=204)

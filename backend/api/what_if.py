@@ -118,15 +118,15 @@ def _taken(
     wanted: WhatIfRequest,
     antenna: AnotherAntenna | None,
 ) -> list[SweepFact]:
-    """The sweeps as wanted. A place that already told its bearing would not have been measured again."""
-    told = {fact.place_number for fact in _bearings(before)}
+    """The sweeps as wanted. A place that already gave its bearing would not have been measured again."""
+    with_bearing = {fact.place_number for fact in _bearings(before)}
     taken: list[SweepFact] = []
     for fact in flown:
-        if antenna is not None and fact.place_number in told:
+        if antenna is not None and fact.place_number in with_bearing:
             continue
         heard = fact if antenna is None else antenna.heard(mission, fact)
         if heard.kind == "bearing_measured":
-            told.add(heard.place_number)
+            with_bearing.add(heard.place_number)
             if wanted.sigma_deg is not None:
                 heard = heard.model_copy(update={"sigma_deg": wanted.sigma_deg})
         taken.append(heard)

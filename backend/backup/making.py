@@ -40,7 +40,7 @@ class Made:
 
 
 def make_backup(
-    settings: Settings, target: Path, told: Callable[[str], None] = lambda _: None, now: datetime | None = None
+    settings: Settings, target: Path, progress: Callable[[str], None] = lambda _: None, now: datetime | None = None
 ) -> Made:
     """The archive at `target`, complete and on the disk, or no file of that name. told: what is being saved now.
 
@@ -57,7 +57,7 @@ def make_backup(
     try:
         with os.fdopen(descriptor, "w+b") as file:
             with ArchiveWriter(file) as archive:
-                manifest, gone = asyncio.run(_write(settings, archive, told, now or datetime.now(UTC)))
+                manifest, gone = asyncio.run(_write(settings, archive, progress, now or datetime.now(UTC)))
             file.flush()
             os.fsync(file.fileno())
         os.replace(part, target)
@@ -82,20 +82,20 @@ def _must_be_there(settings: Settings) -> None:
 
 
 async def _write(
-    settings: Settings, archive: ArchiveWriter, told: Callable[[str], None], at: datetime
+    settings: Settings, archive: ArchiveWriter, progress: Callable[[str], None], at: datetime
 ) -> tuple[Manifest, list[str]]:
     # the spool first: what the server stores meanwhile is then in the database, and nothing is in neither
     waiting = entries_beside(settings.spool_path)
     engine = engine_for_once(settings.async_database_url, ANSWERS_S)
     try:
-        revision = await _write_tables(engine, archive, told)
+        revision = await _write_tables(engine, archive, progress)
     finally:
         await engine.dispose()
     with archive.part(SPOOL) as part:
         for payload in waiting:
             part.write(payload + b"\n")
     gone: list[str] = []
-    told("files")
+    progress("files")
     for name, path in _files(settings):
         try:
             _copy(archive, name, path)
@@ -114,7 +114,7 @@ async def _write(
     return manifest, gone
 
 
-async def _write_tables(engine: AsyncEngine, archive: ArchiveWriter, told: Callable[[str], None]) -> str:
+async def _write_tables(engine: AsyncEngine, archive: ArchiveWriter, progress: Callable[[str], None]) -> str:
     """All tables as they stood at one moment; the schema's revision."""
     if engine.dialect.name == "postgresql":
         engine = engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
@@ -124,7 +124,7 @@ async def _write_tables(engine: AsyncEngine, archive: ArchiveWriter, told: Calla
             raise BackupError("the database holds no schema of Crossfix: start the server on it once")
         metadata = await connection.run_sync(reflected)
         for table in metadata.sorted_tables:
-            told(table.name)
+            progress(table.name)
             rows = -1
             with archive.part(f"{DATABASE}{table.name}.jsonl") as part:
                 async for line in lines_of(connection, table):

@@ -40,7 +40,7 @@ class Restored:
     pattern: Path | None
 
 
-def restore(settings: Settings, source: Path, told: Callable[[str], None] = lambda _: None) -> Restored:
+def restore(settings: Settings, source: Path, progress: Callable[[str], None] = lambda _: None) -> Restored:
     """Everything of the archive, or an error and nothing. No server may run on the target.
 
     Blocking, with an event loop of its own. Raises BackupError: the target is not empty; the archive is of a later
@@ -49,11 +49,11 @@ def restore(settings: Settings, source: Path, told: Callable[[str], None] = lamb
     with Archive(source) as archive:
         _must_be_known(archive)
         _must_have_room(archive, settings)
-        told("checking the archive")
+        progress("checking the archive")
         archive.verify()
         try:
             with claimed(settings.async_database_url):
-                return asyncio.run(_put_back(archive, settings, told))
+                return asyncio.run(_put_back(archive, settings, progress))
         except DatabaseUnusable as error:
             raise BackupError(sentence_of(error.reason)) from error
         except SpoolTaken as error:
@@ -86,7 +86,7 @@ def _must_have_room(archive: Archive, settings: Settings) -> None:
         )
 
 
-async def _put_back(archive: Archive, settings: Settings, told: Callable[[str], None]) -> Restored:
+async def _put_back(archive: Archive, settings: Settings, progress: Callable[[str], None]) -> Restored:
     url, members = settings.async_database_url, archive.manifest.members
     _must_hold_no_files(settings)
     engine = engine_for_once(url, ANSWERS_S)
@@ -97,8 +97,8 @@ async def _put_back(archive: Archive, settings: Settings, told: Callable[[str], 
             await migrate(url, revision=archive.manifest.schema_revision)
         with _unpacked(archive, settings) as keep:
             async with engine.execution_options(write=True).begin() as connection:
-                await _write_tables(connection, archive, told)
-                told("files")
+                await _write_tables(connection, archive, progress)
+                progress("files")
                 pattern = keep()  # before the rows are committed: they are what a server finds
                 _write_spool(archive, settings)
         await migrate(url)
@@ -144,7 +144,7 @@ async def _must_hold_no_rows(connection: AsyncConnection) -> bool:
     return await connection.run_sync(look)
 
 
-async def _write_tables(connection: AsyncConnection, archive: Archive, told: Callable[[str], None]) -> None:
+async def _write_tables(connection: AsyncConnection, archive: Archive, progress: Callable[[str], None]) -> None:
     metadata = await connection.run_sync(reflected)
     listed = {
         member.name.removeprefix(DATABASE).removesuffix(".jsonl"): member
@@ -156,7 +156,7 @@ async def _write_tables(connection: AsyncConnection, archive: Archive, told: Cal
         raise BackupError(f"the archive holds a table {unknown[0][:60]!r} that its schema does not have")
     for table in metadata.sorted_tables:
         if member := listed.get(table.name):
-            told(table.name)
+            progress(table.name)
             with closing(archive.lines(member)) as lines:
                 rows = await write_lines(connection, table, lines)
             if rows != member.rows:

@@ -27,6 +27,8 @@ from backend.wire.resources import Health
 from planner.reason import sentence_of, text_of
 
 LONGEST_MISSION_S = 3_600.0
+START_WALL_S = 120.0
+"""The longest that an answer may take: a start sends the fence over the link and reads it back, corner by corner."""
 PATIENCE_WALL_S = 60.0
 MOST_HOLDS = 5
 
@@ -42,7 +44,7 @@ async def fly(
 
     changes: parts of the specification; an object is merged into the part it changes.
     """
-    async with httpx.AsyncClient(base_url=running.url, timeout=60.0) as client:
+    async with httpx.AsyncClient(base_url=running.url, timeout=START_WALL_S) as client:
         await _vehicles_there(client)
         if mend:
             await _mend_failsafes(running)
@@ -53,11 +55,12 @@ async def fly(
         mission_id = _answer(await client.post("/api/missions", json=spec))["mission_id"]
         await _preflight_passed(client, mission_id)
         log = MissionLog(mission_id)
+        reply = await _command(client, mission_id, "start")
+        if reply.reason is not None:
+            raise DemoFailed(f"the start was refused: {sentence_of(reply.reason)}")
         address = running.url.replace("http", "ws", 1) + f"/api/live?mission={mission_id}&after=0"
+        # not before the start: a socket that nobody reads is cut off after 40 s, and a slow link takes as long
         async with websockets.connect(address, max_size=None) as socket:
-            reply = await _command(client, mission_id, "start")
-            if reply.reason is not None:
-                raise DemoFailed(f"the start was refused: {sentence_of(reply.reason)}")
             try:
                 async with asyncio.timeout(LONGEST_MISSION_S / settings.time_factor):
                     await _watch(socket, log, client)
@@ -127,10 +130,10 @@ async def _watch(socket: websockets.ClientConnection, log: MissionLog, client: h
             resuming.result()
         if isinstance(message, bytes):
             continue
-        told = json.loads(message)
-        if told["type"] != "event":
+        content = json.loads(message)
+        if content["type"] != "event":
             continue
-        record = read.validate_python(told["recorded"])
+        record = read.validate_python(content["recorded"])
         log.recorded.append(record)
         state = evolve(state, record.event, record.at_utc.timestamp())
         if (line := progress_line(record.event)) is not None:

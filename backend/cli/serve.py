@@ -6,15 +6,17 @@ import asyncio
 import importlib
 import logging
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from backend.auth.access import Mode
 from backend.cli.edge import print_json, remark, stop
 from backend.logs import configure
 from backend.settings import Settings, settings_of
 from planner.reason import ReasonedError
+
+if TYPE_CHECKING:  # it loads seconds of libraries, and a vehicle left in flight is to be held first
+    from backend.auth.access import Mode
 
 
 def serve(
@@ -97,8 +99,8 @@ async def _serve(settings: Settings, json_: bool) -> None:
         access = running.services.access
         code = access.begin_first_admin()
         if json_:
-            told = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
-            print_json(told if code is None else {**told, "first_admin_code": code})
+            shown = {"url": running.url, "vehicle": what, "database": settings.shown_database, "people": access.mode}
+            print_json(shown if code is None else {**shown, "first_admin_code": code})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
             typer.echo(_who_may_enter(access.mode, code), err=False)

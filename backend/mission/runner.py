@@ -112,8 +112,8 @@ class MissionRunner:
                     self._adopt()
                 case Reply():
                     pass
-        told = any(isinstance(fact, BeliefUpdated) for fact in facts)
-        self.outbox.record(facts, self._show_beliefs if told else None)
+        belief_moved = any(isinstance(fact, BeliefUpdated) for fact in facts)
+        self.outbox.record(facts, self._show_beliefs if belief_moved else None)
         if not self._state.engaged and self._state.search.started_at_s is not None:
             self.finished.set()
         return asked

@@ -80,7 +80,7 @@ class BatterySilent:
 
 @dataclass(frozen=True, slots=True)
 class BatteryShort:
-    """left_percent: after what is planned; needed_percent: for the way home; reserve_percent: of the mission."""
+    """left_percent: after what is planned before the way home; needed_percent: for the way home; reserve_percent: of the mission."""
 
     charge_percent: float
     left_percent: float
@@ -88,8 +88,8 @@ class BatteryShort:
     reserve_percent: float
     code: Literal["battery_short"] = "battery_short"
     english: ClassVar[Words] = Words(
-        "Battery at {charge_percent}: {left_percent} would be left, the way home takes {needed_percent} "
-        "and the reserve is {reserve_percent}.",
+        "Battery at {charge_percent}: the way home would begin at {left_percent} and takes {needed_percent}; "
+        "the reserve is {reserve_percent}.",
         "Return home and change the battery.",
     )
 

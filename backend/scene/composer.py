@@ -89,10 +89,10 @@ class Composer:
         path = _longer(take.content.path, mark)
         shown = replace(take.content, path=path, vehicle=mark)
         palette = PALETTES[take.request.theme]
-        fresh = [item for item in moving(shown, palette, take.scene.extent_m) if item.layer not in take.request.hidden]
-        names = {item.name for item in fresh}
+        moved = [item for item in moving(shown, palette, take.scene.extent_m) if item.layer not in take.request.hidden]
+        names = {item.name for item in moved}
         still = [item for item in take.scene.items if item.layer not in MOVING_LAYERS and item.name not in names]
-        return replace(take, content=shown, scene=replace(take.scene, items=(*still, *fresh)))
+        return replace(take, content=shown, scene=replace(take.scene, items=(*still, *moved)))
 
     async def _ground(self, story: Story) -> Terrain | None:
         """Keeps that of the last digest asked for: the scene is built again at each event."""

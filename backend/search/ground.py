@@ -149,10 +149,10 @@ def _corridor(way: Way, step_m: float) -> Points:
     found: list[Points] = []
     for start, end in legs:
         length = math.dist(start, end)
-        ahead = (end - start) / length if length > 0.0 else np.array([1.0, 0.0])
-        beside = np.array([-ahead[1], ahead[0]])
+        direction = (end - start) / length if length > 0.0 else np.array([1.0, 0.0])
+        beside = np.array([-direction[1], direction[0]])
         along = np.linspace(-reach, length + reach, math.ceil((length + 2 * reach) / step_m) + 1)
-        points = start + along[:, None, None] * ahead + across[None, :, None] * beside
+        points = start + along[:, None, None] * direction + across[None, :, None] * beside
         found.append(points.reshape(-1, 2))
     return np.concatenate(found)
 

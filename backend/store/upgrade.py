@@ -193,8 +193,8 @@ def _alert_raised(body: Body) -> Body:
     """The id of an alert was its topic and a number."""
     topic = body["alert_id"].rsplit("-", 1)[0]
     craft_id = None if topic in OF_THE_MISSION else FIRST_CRAFT
-    told = {"topic": topic, "craft_id": craft_id, "reason": told_before(body["text"], body["remedy"])}
-    return _without(body, "text", "remedy") | told
+    kept = {"topic": topic, "craft_id": craft_id, "reason": told_before(body["text"], body["remedy"])}
+    return _without(body, "text", "remedy") | kept
 
 
 CHANGED: dict[str, Callable[[Body], Body]] = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
 from hardware.autopilot.link import STATION_SYSTEM
-from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, set_mode
+from hardware.autopilot.messages import HEARTBEAT_ID, TAKE_OFF, Outgoing, command_long, set_mode
 from hardware.reasons.vehicle import CommandName
 
 GUIDED, RTL, LAND, BRAKE, SMART_RTL, AUTO_RTL = 4, 6, 9, 17, 21, 27
@@ -63,7 +63,8 @@ ARDUPILOT = Dialect(
         SMART_RTL: "SMART_RTL",
         AUTO_RTL: "AUTO_RTL",
     },
-    mode_report_hz=10.0,
+    mode_report=(HEARTBEAT_ID, 5.0),
+    mode_switch="FLTMODE_CH",
     waiting_modes=frozenset({GUIDED, BRAKE}),
     returning_modes=frozenset({RTL, SMART_RTL, AUTO_RTL}),
     landing_modes=frozenset({LAND}),

@@ -81,8 +81,11 @@ class Dialect:
 
     waiting_modes: raw modes in which a flying vehicle waits for commands. returning_modes, landing_modes: those that a
     failsafe may enter by itself. takeover_text: the beginning of the text by which the autopilot reports the sticks.
-    mode_report_hz: how often to ask for CURRENT_MODE. PX4 sends it when the mode changed, at most so often, and else
-    twice a second: a fast rate costs nothing and shows a mode that lasted for an instant.
+    mode_report: the message that tells the mode, and how often to ask for it (Hz). Both autopilots send it at once when
+    the mode has changed; when that is lost the next one tells it. PX4 sends CURRENT_MODE at most so often, and twice a
+    second when nothing changed: a fast rate costs nothing and shows a mode that lasted for an instant. ArduCopter 4.7
+    has no CURRENT_MODE.
+    mode_switch: the parameter with the number of the pilot's channel that selects modes; 0: none does.
     place_refused_texts: the beginnings of those by which it refuses a place that it has acknowledged.
     hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
     the raw modes it then shows. steering: the mode in which it flies to places and turns as told.
@@ -97,7 +100,8 @@ class Dialect:
 
     name: Literal["px4", "ardupilot"]
     mode_names: Mapping[int, str]
-    mode_report_hz: float
+    mode_report: tuple[int, float]
+    mode_switch: str
     waiting_modes: frozenset[int]
     returning_modes: frozenset[int]
     landing_modes: frozenset[int]

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ctypes
 import json
 import logging
 import socket
@@ -35,6 +36,8 @@ T = TypeVar("T")
 AUTOPILOT_COMPONENT = 1
 FENCE_WALL_S = 60.0
 """The longest that a fence may take one way; one polygon takes about 4 s on a link of 250 ms each way."""
+PATIENCE_WALL_S = 1.5
+"""What a fence's part or a parameter is waited for, before it is sent again."""
 STATION_SYSTEM = 255
 """Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
 SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
@@ -74,6 +77,14 @@ def _keep_log(level: LogLevel, message: str, file: str | None, line: int) -> boo
     """MAVSDK prints to stdout by itself, where `--json` promises one JSON value: take its log over."""
     log.log(_LEVELS.get(level, logging.DEBUG), "mavsdk: %s", message)
     return True
+
+
+def _be_patient(mavsdk: Mavsdk) -> None:
+    """MAVSDK sends a part of a fence again after 0.5 s, at 250 ms each way before its answer can be here; ArduCopter
+    then ends the transfer ("invalid sequence"). Python's binding leaves out the library's way to change that."""
+    patience = mavsdk._lib.mavsdk_set_timeout_s
+    patience.argtypes, patience.restype = [ctypes.c_void_p, ctypes.c_double], None
+    patience(mavsdk._handle, PATIENCE_WALL_S)
 
 
 def check_url(url: str) -> str:
@@ -124,6 +135,7 @@ class MavlinkLink:
         configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
         configuration.system_id = STATION_SYSTEM
         mavsdk = self._mavsdk = Mavsdk(configuration)
+        _be_patient(mavsdk)
         try:
             await loop.run_in_executor(self._blocking, mavsdk.add_any_connection_with_handle, self.url)
         except Exception as error:

@@ -9,14 +9,22 @@ import time
 from collections import deque
 from collections.abc import AsyncIterator
 
-from hardware.authority import Authority, ModeHeard, SticksTookOver
+from hardware.authority import Authority, ModeHeard, SticksTookOver, SwitchMoved
 from hardware.autopilot.announcer import Announcer, Wakeup
 from hardware.autopilot.ardupilot import ARDUPILOT
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.link import Fields, MavlinkLink
-from hardware.autopilot.messages import HOME_POSITION_ID, message_interval, request_message
+from hardware.autopilot.messages import (
+    HEARTBEAT_ID,
+    HOME_POSITION_ID,
+    RC_CHANNELS_ID,
+    Outgoing,
+    message_interval,
+    request_message,
+)
+from hardware.autopilot.mode_switch import ModeSwitch
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
@@ -47,8 +55,8 @@ log = logging.getLogger(__name__)
 
 DIALECTS: dict[int, Dialect] = {12: PX4, 3: ARDUPILOT}
 """MAV_AUTOPILOT -> dialect."""
-CURRENT_MODE_ID = 436
-"""It tells a takeover in about 0.1 s where the heartbeat takes up to 1 s."""
+HEARTBEAT_WALL_S = 0.6
+"""MAVSDK keeps the first one to itself; the next comes a second later, or when it is asked for."""
 STREAMS: tuple[tuple[int, float], ...] = (
     (30, 20.0),  # ATTITUDE
     (33, 10.0),  # GLOBAL_POSITION_INT
@@ -60,6 +68,7 @@ STREAMS: tuple[tuple[int, float], ...] = (
     (147, 1.0),  # BATTERY_STATUS
     (HOME_POSITION_ID, 0.5),
 )
+MODE_SWITCH_HZ, SWITCH_ATTEMPTS = 5.0, 3
 LINK_LOST_WALL_S = 3.0
 MODE_S = 0.2
 """Longer than this nothing waits for the vehicle's next word of its mode."""
@@ -77,7 +86,7 @@ class Monitor:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.clock = clock
-        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", ARM_STATUS)
+        listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", "RC_CHANNELS", ARM_STATUS)
         self.link = MavlinkLink(url, listened, self._on_message)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
@@ -92,6 +101,7 @@ class Monitor:
         self.commander = Commander(self.link, clock, self.control, self.announce, self.mode_heard)
         self.timesync = Timesync(self.link, clock, self.snapshot)
         self.silence = Silence()
+        self.mode_switch = ModeSwitch()
         self._after_silence: Deadline | None = None
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
@@ -108,9 +118,14 @@ class Monitor:
     async def _connect(self, timeout_s: float) -> None:
         started = time.monotonic()
         await self.link.open(timeout_s)
+        asked_s = -math.inf
         while self._autopilot_number is None:
-            if time.monotonic() - started > timeout_s:
+            now_s = time.monotonic()
+            if now_s - started > timeout_s:
                 raise VehicleUnreachable(HeartbeatStopped(self.link.url))
+            if now_s - asked_s > HEARTBEAT_WALL_S:
+                asked_s = now_s
+                await self._send_once(request_message(HEARTBEAT_ID))
             await self.wakeup.wait()
         dialect = DIALECTS.get(self._autopilot_number)
         if dialect is None:
@@ -118,7 +133,9 @@ class Monitor:
         self._dialect = dialect
         self.connected = True
         self.announce(VehicleConnected(dialect.name, self.link.url))
-        await self._request_streams()
+        rates = (message_interval(message_id, hz) for message_id, hz in self._streams)
+        for outgoing in (*rates, request_message(HOME_POSITION_ID)):
+            await self._send_once(outgoing)  # whether they were heard is asked when the link is up
         first = Deadline(self.clock, 5.0, 3.0)
         while (self.snapshot.position is None or self.snapshot.in_air is None) and not first.passed:
             await self.wakeup.wait()
@@ -139,14 +156,25 @@ class Monitor:
         await self.link.close()
         self._announcer.end()
 
+    @property
+    def _streams(self) -> tuple[tuple[int, float], ...]:
+        switch = () if self.mode_switch.channel is None else ((RC_CHANNELS_ID, MODE_SWITCH_HZ),)
+        return (self.dialect.mode_report, *STREAMS, *switch)
+
+    async def _send_once(self, outgoing: Outgoing) -> None:
+        """A command that moves nothing, without waiting for its answer."""
+        await self.link.send(outgoing.message, outgoing.fields, lambda: True)
+
     async def _request_streams(self) -> None:
-        for message_id, hz in ((CURRENT_MODE_ID, self.dialect.mode_report_hz), *STREAMS):
+        for message_id, hz in self._streams:
             if not await self.commander.ask(message_interval(message_id, hz)):
                 log.info("the autopilot does not stream MAVLink message %d", message_id)
         await self.commander.ask(request_message(HOME_POSITION_ID))
 
     async def _keep_streams(self) -> None:
-        """Ask for the telemetry rates again when the autopilot has forgotten them."""
+        """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
+        await self._request_streams()
+        await self._find_mode_switch()
         reboots, odd = self.snapshot.reboots, False
         while True:
             await asyncio.sleep(1.0)
@@ -162,6 +190,16 @@ class Monitor:
                 continue
             await self._request_streams()
 
+    async def _find_mode_switch(self) -> None:
+        """Which of the transmitter's channels selects modes; asked again of a link that loses much."""
+        number = None
+        for _ in range(SWITCH_ATTEMPTS):
+            if (number := await self.link.parameter(self.dialect.mode_switch)) is not None:
+                break
+        if number:
+            self.mode_switch.channel = int(number)
+            await self.commander.ask(message_interval(RC_CHANNELS_ID, MODE_SWITCH_HZ))
+
     async def _watch_link(self) -> None:
         looked = time.monotonic()
         while True:
@@ -173,6 +211,8 @@ class Monitor:
         """Is the vehicle still heard? elapsed_s: of the wall, since the last look."""
         for text in self._texts.overdue(self.clock.now()):
             self._say(text, self.clock.now())
+        if self.mode_switch.take_moved(self.clock.now()):
+            self.control.see(SwitchMoved(self.telemetry().mode or "", self.clock.now()))
         self.silence.look(elapsed_s)
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
@@ -203,6 +243,8 @@ class Monitor:
             self.timesync.came_back(fields, now)
         elif name == "STATUSTEXT":
             self._on_text(fields, now)
+        elif name == "RC_CHANNELS":
+            self.mode_switch.see(fields, now)
         elif name == ARM_STATUS:
             self.remote_id = remote_id(int(fields["status"]), str(fields["error"]), now)
         else:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
-from hardware.autopilot.messages import TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
+from hardware.autopilot.messages import CURRENT_MODE_ID, TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
 from hardware.reasons.vehicle import CommandName
 
 
@@ -68,7 +68,8 @@ PX4 = Dialect(
         px4_mode(7): "STABILIZED",
         px4_mode(10): "TERMINATION",
     },
-    mode_report_hz=50.0,
+    mode_report=(CURRENT_MODE_ID, 200.0),
+    mode_switch="RC_MAP_FLTMODE",
     waiting_modes=frozenset({HOLD, TAKING_OFF}),
     returning_modes=frozenset({RETURNING}),
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),

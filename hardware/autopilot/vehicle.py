@@ -8,7 +8,6 @@ from typing import Literal
 
 from hardware.authority import Authority, OperatorTookControl
 from hardware.autopilot.dialect import FailsafeRule
-from hardware.autopilot.fence_plan import plan_nets
 from hardware.autopilot.flight import fly_to
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hold import hold
@@ -115,6 +114,8 @@ class MavsdkVehicle:
     async def plan_nets(self, wanted: MissionNets, own: Nets | None = None) -> NetsPlan:
         """What `set_nets` would have to set for a mission; sets nothing. own: the owner's, None: those it holds now.
         Raises VehicleError when that would loosen what the owner has set, or cannot be."""
+        from hardware.autopilot.fence_plan import plan_nets  # shapely comes with it: a hold does not wait for that
+
         present = await read_nets(self._monitor) if own is None else own
         return plan_nets(self._monitor.dialect, present, wanted)
 
@@ -131,6 +132,7 @@ class MavsdkVehicle:
     def take_control(self) -> None:
         """The operator's explicit deed that lets commands pass again after somebody else took control."""
         if self._monitor.control.authority.taken_by is not None:
+            self._monitor.mode_switch.taken_back(self._monitor.clock.now())
             self._monitor.control.see(OperatorTookControl())
             self._monitor.announce(OperatorInControl())
 

@@ -126,11 +126,11 @@ def _likeliest(
             information + np.eye(3) * (damping[:, None] * diagonal + 1e-12 + (1.0 - free))[:, None, :]
         )
         uphill: NDArray[np.float64] = np.einsum("mki,mk->mi", by, weight * residual)
-        ahead = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
-        there = look(ahead)
+        tried = x + np.linalg.solve(damped, uphill[..., None])[..., 0]
+        there = look(tried)
         risen = there[0] - value
         better = climbing & (risen >= 0.0)
-        x = np.where(better[:, None], ahead, x)
+        x = np.where(better[:, None], tried, x)
         value = np.where(better, there[0], value)
         residual, weight = (
             np.where(better[:, None], new, old) for new, old in ((there[1], residual), (there[2], weight))

@@ -90,12 +90,12 @@ class Samples(Message):
     samples: list[WireSample] = Field(min_length=1, max_length=MAXIMUM_BATCH)
 
 
-def _known_reason(told: object, check: ValidatorFunctionWrapHandler) -> Any:
+def _known_reason(value: object, check: ValidatorFunctionWrapHandler) -> Any:
     """A payload that is newer may be in a state that this server has no reason for: its samples count all the same."""
     try:
-        return check(told)
+        return check(value)
     except ValidationError:
-        if isinstance(told, dict) and isinstance(code := cast(dict[str, object], told).get("code"), str):
+        if isinstance(value, dict) and isinstance(code := cast(dict[str, object], value).get("code"), str):
             return PayloadStateUnknown(code[:80])
         raise
 

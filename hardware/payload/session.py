@@ -239,8 +239,8 @@ class PayloadSession:
             self.send(self._hub.take(self._hello.agent, self._hello.stream, message))
         else:
             state = self._hub.agents[self._hello.agent]
-            told = {name: value for name, value in message if name != "type"}
-            self._hub.agents[self._hello.agent] = replace(state, heard_at_s=self._hub.now(), **told)
+            values = {name: value for name, value in message if name != "type"}
+            self._hub.agents[self._hello.agent] = replace(state, heard_at_s=self._hub.now(), **values)
 
     async def flushed(self, sending: asyncio.Task[None], timeout_s: float = 1.0) -> None:
         """Wait until everything was sent, or the sender failed."""

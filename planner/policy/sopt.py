@@ -37,9 +37,9 @@ class Sopt(RoutePolicy):
         here, centre = np.array(platform, dtype=np.float64), np.array([estimated.x, estimated.y])
         target = pseudo_target(estimated, here, self.deviations)
         k1, k2, r1, r2 = self._quickest(problem, float(np.hypot(*(target - here))))
-        ahead = (target - here) / max(float(np.hypot(*(target - here))), 1e-9)
-        first = target - r1 * ahead
-        across = r2 * np.array([-ahead[1], ahead[0]])
+        forward = (target - here) / max(float(np.hypot(*(target - here))), 1e-9)
+        first = target - r1 * forward
+        across = r2 * np.array([-forward[1], forward[0]])
         second = min((target + across, target - across), key=lambda place: float(np.hypot(*(place - centre))))
         first, second = (nearest_feasible(problem, belief, place) for place in (first, second))
         return np.concatenate([np.repeat(first[None], k1, axis=0), np.repeat(second[None], k2, axis=0)])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
+import subprocess
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -100,3 +102,17 @@ def test_its_rows_are_of_the_form_that_is_written_now() -> None:
     from backend import events
 
     assert events.FORM == FORM
+
+
+BEFORE_THE_HOLD = """
+import sys
+import backend.cli.main, backend.cli.serve, backend.first_hold
+heavy = ("numba", "numpy", "scipy", "shapely", "sqlalchemy", "fastapi", "viser", "planner.belief")
+print(*(name for name in heavy if name in sys.modules))
+"""
+
+
+def test_nothing_that_takes_long_to_load_comes_before_the_hold() -> None:
+    loaded = subprocess.run([sys.executable, "-c", BEFORE_THE_HOLD], capture_output=True, text=True, check=True)
+
+    assert loaded.stdout.split() == []

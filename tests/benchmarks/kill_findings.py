@@ -96,8 +96,15 @@ def figures(found: Findings, database: str, load_before: float) -> list[Figure]:
         made.append(plain("whole start to HOLD, median", round(statistics.median(whole), 2), "s"))
     if found.told_s["whole"]:
         told = found.told_s["whole"]
-        made.append(plain("whole start to the vehicle's hold, median", round(statistics.median(told), 2), "s"))
-        made.append(plain("whole start to the vehicle's hold, at most", round(max(told), 2), "s"))
+        most, note = round(max(told), 2), f"starts: {len(told)}; load {load_before:.1f}"
+        if load_before < IDLE_LOAD:
+            made.append(wanted("hold_order_idle", most, of=database, note=note))
+        elif load_before >= HIGH_LOAD:
+            made.append(wanted("hold_order_loaded", most, of=database, note=note))
+        else:
+            made.append(plain("whole start to the hold order at the vehicle, at most", most, "s", note=note))
+        median = round(statistics.median(told), 2)
+        made.append(plain("whole start to the hold order at the vehicle, median", median, "s", note=note))
     return made
 
 

@@ -3,6 +3,7 @@
     python -m tests.benchmarks.kill_loop --kills 1000 --database sqlite
     python -m tests.benchmarks.kill_loop --kills 1000 --database postgresql
     python -m tests.benchmarks.kill_loop --kills 30 --away 6.2 7.0 --whole 0     restarts as the failsafe begins
+    python -m tests.benchmarks.kill_loop --kills 12 --whole 1 --speedup 1        when a whole start holds the vehicle
 
 The real server over real sockets flies the simulated vehicle, which lives in a process of its own and flies on. A
 server is a fork of a process that has imported everything, so that a thousand restarts take two hours rather than
@@ -360,7 +361,10 @@ def main() -> None:
     print(json.dumps(found.summary(), indent=2))
     database = {"sqlite": "SQLite", "postgresql": "PostgreSQL"}[given["database"]]
     made = figures(found, database, begun.load)
-    name, title, page = f"kill_{given['database']}", f"Kill -9, {database}", "faults-in-flight.md#kill--9"
+    only_whole = given["whole"] == 1
+    name = f"{'whole_starts' if only_whole else 'kill'}_{given['database']}"
+    title = f"{'Whole starts after kill -9' if only_whole else 'Kill -9'}, {database}"
+    page = "faults-in-flight.md#kill--9"
     write(out, name, title, begun, made, tables=[runs(found, begun)], page=page)
     sys.exit(not found.good)
 

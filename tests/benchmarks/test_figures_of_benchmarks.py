@@ -72,10 +72,15 @@ def test_a_database_away_for_ten_minutes_may_lose_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("load_before", "start"), [(0.4, {"start_idle": False}), (5.0, {}), (14.0, {"start_loaded": True})]
+    ("load_before", "start"),
+    [
+        (0.4, {"start_idle": False, "hold_order_idle": True}),
+        (5.0, {}),
+        (14.0, {"start_loaded": True, "hold_order_loaded": True}),
+    ],
 )
 def test_the_bound_of_a_whole_start_is_that_of_the_machines_load(load_before: float, start: dict[str, bool]) -> None:
-    found = Findings(kills=30, hold_s={"forked": [0.8, 0.9], "whole": [3.0, 3.2]})
+    found = Findings(kills=30, hold_s={"forked": [0.8, 0.9], "whole": [3.0, 3.2]}, told_s={"whole": [1.5, 1.9]})
     kept = {"kills": False, "kill_lost": True, "kill_beliefs": True, "restart": True}
     assert met(figures(found, "SQLite", load_before)) == kept | start
 

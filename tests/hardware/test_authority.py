@@ -17,6 +17,7 @@ from hardware.authority import (
     Seen,
     ServerRestarted,
     SticksTookOver,
+    SwitchMoved,
     authority_after,
 )
 
@@ -356,3 +357,28 @@ def test_an_operator_may_take_what_was_undone() -> None:
     craft.hears(POSCTL)
     craft.hears(GUIDED)
     assert (craft.sees(OperatorTookControl()).who, craft.now.undone) == ("ours", False)
+
+
+def test_a_switch_that_an_order_undid_before_its_mode_was_told_is_known_by_its_movement() -> None:
+    craft = flying()
+    craft.commands(RETURN)
+    craft.hears(RETURN)
+
+    taken = craft.sees(SwitchMoved("RETURN", craft.at_s))
+
+    assert (taken.who, taken.taken_by, taken.mode) == ("pilot", "mode", "RETURN")
+    assert taken.undone
+    assert not craft.hears(RETURN).given_back
+    craft.waits(GIVEN_BACK_S)
+    craft.hears(POSCTL)
+    assert craft.hears(HOLD).given_back
+
+
+def test_a_switch_moved_on_the_ground_or_while_nothing_is_commanded_takes_nothing() -> None:
+    found = Craft()
+    found.hears(HOLD)
+    assert found.sees(SwitchMoved("HOLD", found.at_s)).taken_by is None
+    ground = Craft()
+    ground.on_ground(HOLD)
+    ground.commands(HOLD)
+    assert ground.sees(SwitchMoved("HOLD", ground.at_s)).taken_by is None

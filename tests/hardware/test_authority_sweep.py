@@ -22,6 +22,7 @@ from hardware.authority import (
     Seen,
     ServerRestarted,
     SticksTookOver,
+    SwitchMoved,
     authority_after,
 )
 
@@ -39,6 +40,7 @@ DEEDS: tuple[Seen, ...] = (
     CommandAcknowledged(),
     SticksTookOver(EARLY_S),
     SticksTookOver(LATE_S),
+    SwitchMoved("HOLD", LATE_S),
     FlightEnded(),
     OperatorTookControl(),
     ServerRestarted(),

@@ -8,9 +8,14 @@ from collections.abc import Callable
 
 
 class Lane:
-    """A radio keeps its order: nothing overtakes what is under way, also when the delay becomes shorter meanwhile."""
+    """A radio keeps its order: nothing overtakes what is under way, also when the delay becomes shorter meanwhile.
+
+    late_s: by how much a delivery came later than due, at most; set it to 0 to begin again. It is this process that was
+    busy then, not the link.
+    """
 
     def __init__(self) -> None:
+        self.late_s = 0.0
         self._under_way: deque[tuple[float, Callable[[], None]]] = deque()
 
     def put(self, deliver: Callable[[], None], delay_s: float) -> None:
@@ -26,9 +31,16 @@ class Lane:
             loop.call_at(self._under_way[0][0], self._arrive)
 
     def _arrive(self) -> None:
+        """All that is due: one each turn of a busy loop would hold up what comes behind it."""
+        loop = asyncio.get_running_loop()
         try:
-            self._under_way[0][1]()
+            while self._under_way and self._under_way[0][0] <= loop.time():
+                due_s, deliver = self._under_way[0]
+                self.late_s = max(self.late_s, loop.time() - due_s)
+                try:
+                    deliver()
+                finally:
+                    self._under_way.popleft()
         finally:
-            self._under_way.popleft()
             if self._under_way:
-                asyncio.get_running_loop().call_at(self._under_way[0][0], self._arrive)
+                loop.call_at(self._under_way[0][0], self._arrive)

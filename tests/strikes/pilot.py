@@ -70,13 +70,15 @@ class Pilot:
 
     def _switch(self, custom: tuple[float, float]) -> float:
         return self._send(
-            self._encoder.command_long_encode(1, 1, SET_MODE, 0, 1.0, custom[0], custom[1], 0.0, 0.0, 0.0, 0.0)
+            self._encoder.command_long_encode(
+                self._proxy.system, 1, SET_MODE, 0, 1.0, custom[0], custom[1], 0.0, 0.0, 0.0, 0.0
+            )
         )
 
     def command(self, number: int, *params: float) -> float:
         """Any other command of the second station: failures made on purpose, for instance."""
         given = (*params, *(0.0,) * (7 - len(params)))
-        return self._send(self._encoder.command_long_encode(1, 1, number, 0, *given))
+        return self._send(self._encoder.command_long_encode(self._proxy.system, 1, number, 0, *given))
 
     def take_by_mode(self) -> float:
         """When, by time.monotonic."""
@@ -95,7 +97,7 @@ class Pilot:
         return self._switch(self.habits.given_back[0])
 
     def _move(self) -> float:
-        return self._send(self._encoder.manual_control_encode(1, *self._sticks, 0))
+        return self._send(self._encoder.manual_control_encode(self._proxy.system, *self._sticks, 0))
 
     async def hands_on(self) -> None:
         """The transmitter stays switched on: without it the autopilot refuses the modes that a pilot flies."""

@@ -36,6 +36,7 @@ class Passed:
 @dataclass
 class Proxy:
     """delay_s: each way. loss: share of frames, each way. url: where the program under test finds the vehicle.
+    system: the vehicle's MAVLink id, since it was heard.
 
     on_sent(number, fields): a kept message left the program under test and reaches the vehicle `delay_s` later.
     """
@@ -43,6 +44,7 @@ class Proxy:
     delay_s: float = 0.0
     loss: float = 0.0
     url: str = ""
+    system: int = 1
     kept: frozenset[int] = KEPT
     record: list[Passed] = field(default_factory=list[Passed])
     on_sent: Callable[[int, dict[str, Any]], None] | None = None
@@ -59,6 +61,14 @@ class Proxy:
             first -= 1
         return self.record[first:]
 
+    def held_up_s(self) -> float:
+        """By how much something was delivered later than due, at most, since this was asked last."""
+        lanes = (self._to_lane, self._from_lane)
+        found = max(lane.late_s for lane in lanes)
+        for lane in lanes:
+            lane.late_s = 0.0
+        return found
+
     def from_program(self, frame: Frame) -> None:
         fields = frame.fields() if frame.number in self.kept else None
         if self.chance.random() < self.loss:
@@ -73,6 +83,7 @@ class Proxy:
             self.record.append(Passed(time.monotonic(), "to", frame.number, fields))
 
     def from_vehicle(self, frame: Frame) -> None:
+        self.system = frame.system
         if frame.number in self.kept:
             self.record.append(Passed(time.monotonic(), "from", frame.number, frame.fields()))
         if self.chance.random() >= self.loss:

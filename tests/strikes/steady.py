@@ -3,8 +3,8 @@
     python -m tests.strikes.steady udpin://127.0.0.1:14540 --flavour px4 --times 5 --delays 0 80 250
 
 Each round flies a leg at 7 m/s and orders hold in the middle of it: how far does the vehicle still move after `hold()`
-said that it hovers? Then it turns once around: what the program takes for the heading at a moment, minus what the
-autopilot said at its end of the link in that moment.
+said that it hovers? And how far in as long a time once it has hovered for long? Then it turns once around: what the
+program takes for the heading at a moment, minus what the autopilot said at its end of the link in that moment.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ AFTERWARDS_S = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """moved_m: the farthest from where it was when `hold()` returned. arrived_m: the same after an arrival.
+    """moved_m: the farthest from where it was when `hold()` returned. wanders_m: the same later on, while it hovers
+    anyway. arrived_m: the same after an arrival.
 
     Heading errors in degrees while turning: median (signed) and 95 % of their amounts. clock_rate: the autopilot's
     seconds in one of the wall's, over the turn.
@@ -47,6 +48,7 @@ class Round:
     delay_s: float
     hold_s: float
     moved_m: float
+    wanders_m: float
     arrived_m: float
     heading_median_deg: float
     heading_p95_deg: float
@@ -65,7 +67,7 @@ async def one(vehicle: MavsdkVehicle, proxy: Proxy, clock: WallClock, east: floa
     await vehicle.hold()
     hold_s = time.monotonic() - began_s
     await asyncio.gather(flight, return_exceptions=True)
-    moved_m = await _moved(proxy)
+    moved_m, wanders_m = await _moved(proxy), await _moved(proxy)
     await vehicle.goto(LocalFrame(home).to_geo(0.3 * east, 0.0), amsl + HEIGHT_M, SPEED_M_S)
     arrived_m = await _moved(proxy)
 
@@ -79,7 +81,7 @@ async def one(vehicle: MavsdkVehicle, proxy: Proxy, clock: WallClock, east: floa
     ]
     amounts = sorted(map(abs, errors))
     p95 = amounts[int(0.95 * len(amounts))]
-    return Round(proxy.delay_s, hold_s, moved_m, arrived_m, statistics.median(errors), p95, told.rate())
+    return Round(proxy.delay_s, hold_s, moved_m, wanders_m, arrived_m, statistics.median(errors), p95, told.rate())
 
 
 def _speed(vehicle: MavsdkVehicle) -> float:
@@ -169,6 +171,8 @@ def table(rounds: list[Round]) -> Table:
         Column(name="rounds"),
         Column(name="moved after hold, m: median", decimals=1),
         Column(name="moved after hold, m: most", decimals=1),
+        Column(name="while it hovers anyway, m: median", decimals=1),
+        Column(name="while it hovers anyway, m: most", decimals=1),
         Column(name="moved after arrival, m: most", decimals=1),
         Column(name="hold took, s: median", decimals=1),
         Column(name="heading error in a turn, deg: median", decimals=1),
@@ -185,6 +189,8 @@ def table(rounds: list[Round]) -> Table:
                 len(of),
                 statistics.median(one.moved_m for one in of),
                 max(one.moved_m for one in of),
+                statistics.median(one.wanders_m for one in of),
+                max(one.wanders_m for one in of),
                 max(one.arrived_m for one in of),
                 statistics.median(one.hold_s for one in of),
                 statistics.median(one.heading_median_deg for one in of),
@@ -200,6 +206,7 @@ def figures(rounds: list[Round]) -> list[Figure]:
     return [
         plain("rounds of hold, arrival and turn", len(rounds), ""),
         plain("moved after hold said it hovers, most", max(one.moved_m for one in rounds), "m"),
+        plain("moved while it hovers anyway, most", max(one.wanders_m for one in rounds), "m"),
         plain("moved after an arrival, most", max(one.arrived_m for one in rounds), "m"),
         plain("heading error in a turn, 95 % of amounts, worst", max(one.heading_p95_deg for one in rounds), "deg"),
     ]

@@ -36,6 +36,9 @@ class Outcome:
     """undone: the autopilot left the pilot's mode without them. noticed_s: until we knew; None: not within a second.
 
     took_s: until the autopilot said so; None: never, the switch did not take. back_to: the raw mode that undid it.
+    told_s: until a report of that mode left the autopilot; None: none did. stalled_s: the longest that this process,
+    with the program under test in it, did nothing at all meanwhile. held_up_s: by how much it delivered what the link
+    carries later than due, at most. known: what the program knew in the end.
     last_command_s: the last flight command that reached the vehicle, after the strike; 0 when none did.
     """
 
@@ -49,10 +52,20 @@ class Outcome:
     noticed_s: float | None
     last_command_s: float
     commands: int
+    told_s: float | None = None
+    stalled_s: float = 0.0
+    held_up_s: float = 0.0
+    known: str = ""
 
     @property
     def counts(self) -> bool:
         return self.took_s is not None
+
+    @property
+    def unaware_s(self) -> float | None:
+        """From the autopilot's first word that the pilot has it until we knew; None: we never did. A busy simulator
+        takes up to 1.7 s to obey its pilot; nobody else can know earlier."""
+        return None if self.noticed_s is None else max(0.0, self.noticed_s - (self.took_s or 0.0))
 
 
 class Aim:
@@ -98,8 +111,10 @@ async def watch(
 ) -> Outcome:
     """From the strike on for three seconds and both ways of the link."""
     end_s = aim.at_s + WATCHED_S + 2.0 * proxy.delay_s
-    noticed_s: float | None = None
+    noticed_s, stalled_s, looked_s = None, 0.0, time.monotonic()
+    proxy.held_up_s()
     while (now_s := time.monotonic()) < end_s:
+        stalled_s, looked_s = max(stalled_s, now_s - looked_s), now_s
         if now_s > aim.at_s + STICKS_S:
             pilot.release_sticks()
         if noticed_s is None and vehicle.telemetry().authority.taken_by is not None:
@@ -119,7 +134,22 @@ async def watch(
         noticed_s=noticed_s,
         last_command_s=max(late, default=0.0),
         commands=len(late),
+        told_s=_told(proxy, pilot, aim.at_s),
+        stalled_s=stalled_s,
+        held_up_s=proxy.held_up_s(),
+        known=_known(vehicle),
     )
+
+
+def _told(proxy: Proxy, pilot: Pilot, since_s: float) -> float | None:
+    told = (passed.at_s for passed in proxy.since(since_s) if mode_of(passed) == pilot.flies)
+    return next((at_s - since_s for at_s in told), None)
+
+
+def _known(vehicle: MavsdkVehicle) -> str:
+    heard = vehicle.telemetry()
+    age_s = None if heard.mode_at_s is None else round(heard.at_s - heard.mode_at_s, 2)
+    return f"mode {heard.mode} {age_s} s ago, armed {heard.armed}, in the air {heard.in_air}, {heard.authority}"
 
 
 def left_for(proxy: Proxy, pilot: Pilot, took_at_s: float) -> int | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 
 from tests.strikes.lane import Lane
 
@@ -32,3 +33,16 @@ async def test_what_fails_to_be_delivered_stops_nothing_behind_it() -> None:
     await asyncio.sleep(0.05)
 
     assert arrived == [1]
+
+
+async def test_all_that_became_due_while_the_process_was_busy_comes_at_once() -> None:
+    lane, arrived = Lane(), list[int]()
+
+    for number in range(100):
+        lane.put(lambda number=number: arrived.append(number), 0.001)
+    time.sleep(0.02)  # noqa: ASYNC251 (busy)
+    for _ in range(3):
+        await asyncio.sleep(0)
+
+    assert arrived == list(range(100))
+    assert lane.late_s >= 0.01

@@ -74,8 +74,8 @@ class Consumption:
         self._seconds += seconds
         self._cubes += seconds * np.hypot(velocity[0] - wind_east, velocity[1] - wind_north) ** 3
         push_east, push_north = telemetry.push_east_m_s2, telemetry.push_north_m_s2
-        steady = math.dist(self._velocity, velocity) / seconds < STRAIGHT_M_S2
-        if push_east is not None and push_north is not None and steady:
+        straight = math.dist(self._velocity, velocity) / seconds < STRAIGHT_M_S2
+        if push_east is not None and push_north is not None and straight:
             self._wind.see(velocity, (push_east, push_north), seconds)
 
     def _look_at_charge(self, charge: float | None) -> None:

@@ -20,9 +20,9 @@ BURST, REFILL_S = 8, 5.0
 class _Heard:
     said: AutopilotSaid
     last_s: float
-    told_s: float
+    reported_s: float
     times: int = 1
-    told: int = 1
+    reported: int = 1
 
 
 @dataclass(slots=True)
@@ -58,8 +58,8 @@ class SaidWatch:
             if now_s - heard.last_s > FORGOTTEN_S:
                 del self._heard[text]
                 found.append(inputs.SaidNoMore(text))
-            elif heard.times >= 2 * heard.told and now_s - heard.told_s >= AGAIN_S:
-                heard.told, heard.told_s = heard.times, now_s
+            elif heard.times >= 2 * heard.reported and now_s - heard.reported_s >= AGAIN_S:
+                heard.reported, heard.reported_s = heard.times, now_s
                 found.append(inputs.Said(AutopilotRepeats(heard.said.severity, text, heard.times)))
         self._refill(now_s)
         if self._left_out and self._allowance >= 1.0:

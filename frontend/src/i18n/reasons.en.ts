@@ -1388,7 +1388,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "Check the battery monitor.",
   },
   battery_short: {
-    text: "Battery at {charge_percent}: {left_percent} would be left, the way home takes {needed_percent} and the reserve is {reserve_percent}.",
+    text: "Battery at {charge_percent}: the way home would begin at {left_percent} and takes {needed_percent}; the reserve is {reserve_percent}.",
     remedy: "Return home and change the battery.",
   },
   altitude_outside: {

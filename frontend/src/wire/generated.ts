@@ -1673,7 +1673,7 @@ export interface components {
             craft_id: string;
             by: string | null;
         };
-        /** @description left_percent: after what is planned; needed_percent: for the way home; reserve_percent: of the mission. */
+        /** @description left_percent: after what is planned before the way home; needed_percent: for the way home; reserve_percent: of the mission. */
         BatteryShort: {
             charge_percent: number;
             left_percent: number;

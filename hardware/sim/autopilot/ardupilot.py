@@ -32,6 +32,7 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "FENCE_ALT_MAX": (100.0, REAL32),
     "FENCE_OPTIONS": (1, INT16),
     "DISARM_DELAY": (10, INT8),
+    "FLTMODE_CH": (5, INT8),
     "BATT_LOW_VOLT": (10.5, REAL32),
     "BATT_FS_LOW_ACT": (2, INT8),
     "BATT_FS_CRT_ACT": (1, INT8),
@@ -68,7 +69,6 @@ class ArduCopter(Firmware):
     pilot_mode: ClassVar[str] = "LOITER"
     give_back_mode: ClassVar[str] = "BRAKE"
     heartbeat_on_mode_change: ClassVar[bool] = True
-    mode_reported_on_change: ClassVar[bool] = False
     prearm_has_present_bit: ClassVar[bool] = True
     any_inclusion: ClassVar[bool] = False
     ready_after: ClassVar[float] = 3.0

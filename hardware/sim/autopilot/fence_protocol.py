@@ -22,10 +22,14 @@ MOVED_E7 = 5_000
 
 
 class FenceProtocol:
-    """The autopilot's side of a fence's transfer: MISSION_COUNT to MISSION_ACK, and back."""
+    """The autopilot's side of a fence's transfer: MISSION_COUNT to MISSION_ACK, and back.
 
-    def __init__(self, fence: Fence, faults: Faults) -> None:
+    refuses_repeated: an item that came already is an error (ArduCopter), else the next one is asked for again (PX4).
+    """
+
+    def __init__(self, fence: Fence, faults: Faults, refuses_repeated: bool) -> None:
         self._fence = fence
+        self._refuses_repeated = refuses_repeated
         self._faults = faults
         self._coming: list[Item] | None = None
         self._count = 0
@@ -88,6 +92,8 @@ class FenceProtocol:
             return mavlink.MAVLink_mission_ack_message(*to, ERROR, FENCE)
         if message.seq == len(self._coming):
             self._coming.append(Item(message.command, message.param1, message.x, message.y))
+        elif self._refuses_repeated:
+            return mavlink.MAVLink_mission_ack_message(*to, INVALID_SEQUENCE, FENCE)
         return self._next(to)
 
 

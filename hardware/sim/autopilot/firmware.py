@@ -92,6 +92,9 @@ def deg_or_none(value: float) -> float | None:
     return None if math.isnan(value) else value
 
 
+SWITCH_AT_REST_US, SWITCH_MOVED_US = 1165, 1815
+
+
 class Firmware(ABC):
     """Base of the flavours. `time` is seconds since boot, simulated."""
 
@@ -103,8 +106,8 @@ class Firmware(ABC):
     """The mode that a pilot's mode switch selects to take over."""
     give_back_mode: ClassVar[str]
     heartbeat_on_mode_change: ClassVar[bool]
-    mode_reported_on_change: ClassVar[bool]
-    """CURRENT_MODE is sent when the mode changed, no faster than asked for, and else twice a second."""
+    """And as often as it is asked for. Else CURRENT_MODE is sent when the mode changed, no faster than asked for, and
+    twice a second when it did not."""
     streams_by_default: ClassVar[dict[int, float]]
     """Message id -> Hz sent without being asked."""
     prearm_has_present_bit: ClassVar[bool]
@@ -140,6 +143,8 @@ class Firmware(ABC):
         self.gcs_heard_at: float | None = None
         self.gcs_failsafe = False
         self.heartbeat_due = False
+        self.mode_switch_us = SWITCH_AT_REST_US
+        """The pulse of the channel by which the pilot's transmitter selects modes."""
         self.rebooted = False
         """Set by `reboot`, cleared by whoever keeps what a reboot forgets (the streams)."""
         self._text_id = 0 if self.name == "px4" else 1  # PX4 counts from the one that means "whole"

@@ -2,6 +2,7 @@
 
     {"do": "pilot_sticks", "north_m_s": 2, "east_m_s": 0, "up_m_s": 0, "yaw_deg_s": 0}   the pilot moves the sticks
     {"do": "pilot_mode", "mode": "POSCTL"}    the pilot's mode switch (without "mode": the flavour's usual one)
+    {"do": "move_switch"}                     the switch alone, as if an order had undone it in the same instant
     {"do": "give_back"}                       the mode switch back to the autopilot's holding mode
     {"do": "link_loss", "seconds": 8}         nothing passes the radio link, both ways (simulated seconds)
     {"do": "link_delay", "seconds": 0.08}     each way, from now on (simulated seconds)
@@ -32,7 +33,7 @@ import math
 from dataclasses import asdict
 from typing import Any, cast
 
-from hardware.sim.autopilot.firmware import Firmware
+from hardware.sim.autopilot.firmware import SWITCH_AT_REST_US, SWITCH_MOVED_US, Firmware
 
 LONGEST_DELAY = 5.0
 
@@ -85,10 +86,14 @@ class Orders:
                 velocity = tuple(_number(order, key, 0.0) for key in ("north_m_s", "east_m_s", "up_m_s"))
                 took = firmware.move_sticks((velocity[0], velocity[1], velocity[2]), _number(order, "yaw_deg_s", 0.0))
                 return {"took_control": took, "mode": firmware.mode}
+            case "move_switch":
+                firmware.mode_switch_us = SWITCH_MOVED_US
             case "pilot_mode":
+                firmware.mode_switch_us = SWITCH_MOVED_US
                 firmware.switch_mode(str(order.get("mode") or firmware.pilot_mode))
                 return {"mode": firmware.mode}
             case "give_back":
+                firmware.mode_switch_us = SWITCH_AT_REST_US
                 firmware.switch_mode(firmware.give_back_mode)
                 return {"mode": firmware.mode}
             case "link_loss":

@@ -82,7 +82,6 @@ class Px4(Firmware):
     pilot_mode: ClassVar[str] = "POSCTL"
     give_back_mode: ClassVar[str] = "HOLD"
     heartbeat_on_mode_change: ClassVar[bool] = False
-    mode_reported_on_change: ClassVar[bool] = True
     prearm_has_present_bit: ClassVar[bool] = False
     any_inclusion: ClassVar[bool] = False
     ready_after: ClassVar[float] = 6.0

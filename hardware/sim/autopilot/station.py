@@ -31,7 +31,7 @@ _DATA_STREAMS: dict[int, tuple[int, ...]] = {
 """REQUEST_DATA_STREAM's groups, as ArduPilot has them."""
 
 _MODE_PERIOD = 0.5
-"""Seconds between two reports of an unchanged mode, where it is reported on change."""
+"""Seconds between two reports of an unchanged mode."""
 _SYSTEM, _COMPONENT = 1, mavlink.MAV_COMP_ID_AUTOPILOT1
 
 
@@ -41,7 +41,7 @@ class Station:
     def __init__(self, firmware: Firmware) -> None:
         self.firmware = firmware
         self._builders = builders(firmware.name)
-        self._fence = FenceProtocol(firmware.fence, firmware.faults)
+        self._fence = FenceProtocol(firmware.fence, firmware.faults, refuses_repeated=firmware.name == "ardupilot")
         self._encoder = mavlink.MAVLink(None, _SYSTEM, _COMPONENT)
         self._decoder = mavlink.MAVLink(None)
         self._decoder.robust_parsing = True
@@ -80,7 +80,7 @@ class Station:
     def _mode_is_known(self) -> bool:
         """Asked when CURRENT_MODE is due: False sends it."""
         firmware, (sent_at, mode) = self.firmware, self._mode_sent
-        known = firmware.mode_reported_on_change and mode == firmware.mode and firmware.time - sent_at < _MODE_PERIOD
+        known = mode == firmware.mode and firmware.time - sent_at < _MODE_PERIOD
         if not known:
             self._mode_sent = firmware.time, firmware.mode
         return known
@@ -88,7 +88,8 @@ class Station:
     def _set_interval(self, message: int, hz: float) -> int:
         if message not in self._builders:
             return UNSUPPORTED
-        if message == mavlink.MAVLINK_MSG_ID_HEARTBEAT or not math.isfinite(hz):  # a station must never lose the beat
+        beat = message == mavlink.MAVLINK_MSG_ID_HEARTBEAT  # a station must never lose it
+        if not math.isfinite(hz) or (beat and not (self.firmware.heartbeat_on_mode_change and hz >= 1.0)):
             return DENIED
         if hz <= 0.0:
             self._due.pop(message, None)

@@ -37,6 +37,7 @@ _CAPABILITIES = (
 )
 
 
+_UNUSED_CHANNEL = 65535
 ESTIMATOR_LATE, SYS_STATUS_LATE = 5.2, 7.4
 """Seconds after the last fix at which PX4's estimator and its health say so; GPS_RAW_INT says it at once."""
 
@@ -202,9 +203,14 @@ def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
     return ardupilotmega.MAVLink_ekf_status_report_message(good, 0.1, 0.1, 0.1, 0.1, 0.0)
 
 
+def rc_channels(firmware: Firmware) -> Message:
+    """Eight channels of a transmitter; the fifth is its mode switch."""
+    channels = [1500, 1500, 1000, 1500, firmware.mode_switch_us, 1500, 1500, 1500, *[_UNUSED_CHANNEL] * 10]
+    return mavlink.MAVLink_rc_channels_message(_boot_ms(firmware), 8, *channels, 200)
+
+
 _COMMON: dict[int, Callable[[Firmware], Any]] = {
     mavlink.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
-    mavlink.MAVLINK_MSG_ID_CURRENT_MODE: current_mode,
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: sys_status,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: battery_status,
     mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: gps_raw_int,
@@ -221,5 +227,11 @@ _COMMON: dict[int, Callable[[Firmware], Any]] = {
 def builders(flavour: str) -> dict[int, Callable[[Firmware], Any]]:
     """Message id -> builder: what this flavour can send when asked."""
     if flavour == "ardupilot":
-        return _COMMON | {ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report}
-    return _COMMON | {mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status}
+        return _COMMON | {
+            ardupilotmega.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status_report,
+            mavlink.MAVLINK_MSG_ID_RC_CHANNELS: rc_channels,
+        }
+    return _COMMON | {
+        mavlink.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status,
+        mavlink.MAVLINK_MSG_ID_CURRENT_MODE: current_mode,
+    }

@@ -6,12 +6,10 @@ import asyncio
 from collections.abc import AsyncIterator
 
 import httpx
-import msgspec
 import pytest
 import websockets
-import zstandard
 from fastapi import FastAPI
-from viser import _messages
+from viser_page import camera_message, unpacked
 from websockets.typing import Origin, Subprotocol
 
 from backend.api.scene import close_scene_views
@@ -28,29 +26,6 @@ async def scenes(app: FastAPI, services) -> AsyncIterator[FastAPI]:
     await services.journal.append("m1", [MissionDrafted(spec=MissionSpec(name="draft", area=AREA))])
     yield app
     await close_scene_views(app)
-
-
-def camera_message() -> bytes:
-    """What viser's page sends first."""
-    message = _messages.ViewerCameraMessage(
-        wxyz=(1, 0, 0, 0),
-        position=(0, 0, 0),
-        fov=1.0,
-        near=0.1,
-        far=10.0,
-        image_height=10,
-        image_width=10,
-        look_at=(1, 0, 0),
-        up_direction=(0, 0, 1),
-    )
-    return msgspec.msgpack.encode(message.as_serializable_dict([]))
-
-
-def unpacked(frame: str | bytes) -> bytes:
-    """viser's frame: two lengths, then messages packed by zstd, then arrays."""
-    assert isinstance(frame, bytes)
-    length = int.from_bytes(frame[8:16], "little")
-    return zstandard.decompress(frame[16 : 16 + length])
 
 
 async def test_a_view_is_made_and_changed(scenes: FastAPI, client: httpx.AsyncClient) -> None:

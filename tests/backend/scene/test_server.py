@@ -8,12 +8,11 @@ import socket
 from collections.abc import Iterator
 from contextlib import suppress
 
-import msgspec
 import pytest
 import websockets
-import zstandard
 from narrowing import a
 from viser import ClientHandle, _messages
+from viser_page import camera_message, unpacked
 from websockets.typing import Subprotocol
 
 from backend.scene.server import SUBPROTOCOL, SceneServer
@@ -39,28 +38,6 @@ def server(heard: Heard, capfd: pytest.CaptureFixture[str]) -> Iterator[SceneSer
     yield server
     server.stop()
     assert capfd.readouterr().out == ""
-
-
-def camera_message() -> bytes:
-    message = _messages.ViewerCameraMessage(
-        wxyz=(1, 0, 0, 0),
-        position=(0, 0, 0),
-        fov=1.0,
-        near=0.1,
-        far=10.0,
-        image_height=10,
-        image_width=10,
-        look_at=(1, 0, 0),
-        up_direction=(0, 0, 1),
-    )
-    return msgspec.msgpack.encode(message.as_serializable_dict([]))
-
-
-def unpacked(frame: str | bytes) -> bytes:
-    """viser's frame: two lengths, then messages packed by zstd, then arrays."""
-    assert isinstance(frame, bytes)
-    length = int.from_bytes(frame[8:16], "little")
-    return zstandard.decompress(frame[16 : 16 + length])
 
 
 async def connect(server: SceneServer, own: socket.socket) -> websockets.ClientConnection:

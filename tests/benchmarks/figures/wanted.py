@@ -89,6 +89,10 @@ WANTED = (
     Wanted(21, "start_idle", "whole start to HOLD, idle machine, at most", "s", at_most=2.0),
     Wanted(21, "start_loaded", "whole start to HOLD at load 16, at most", "s", at_most=5.0),
     Wanted(
+        21, "hold_order_idle", "whole start to the hold order at the vehicle, idle machine, at most", "s", at_most=2.0
+    ),
+    Wanted(21, "hold_order_loaded", "whole start to the hold order at the vehicle, load 16, at most", "s", at_most=5.0),
+    Wanted(
         9,
         "replay",
         "replayed beliefs that differ on the same build",

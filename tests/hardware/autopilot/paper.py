@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.link import Fields, MavlinkLink
+from hardware.autopilot.messages import REQUEST_MESSAGE
 from hardware.autopilot.monitor import Monitor
 from hardware.autopilot.px4 import px4_mode
 from hardware.clock import WallClock
@@ -29,7 +30,8 @@ class HandClock(WallClock):
 
 
 class PaperLink:
-    """A command is acknowledged at once. `opened`: what is heard while the link is opened; `sent`: MAV_CMD."""
+    """A command is acknowledged at once, unless `answers` is False. `opened`: what is heard while the link is opened;
+    `requested`: what is heard when a message of that number is asked for; `sent`: MAV_CMD."""
 
     url = "paper"
 
@@ -37,6 +39,8 @@ class PaperLink:
         self.heard = heard
         self.opened = opened
         self.sent: list[int] = []
+        self.answers = True
+        self.requested = dict[int, tuple[str, Fields]]()
         self.result = 0
         """MAV_RESULT of the acknowledgements."""
 
@@ -51,8 +55,15 @@ class PaperLink:
             return True
         number = fields["command"]
         self.sent.append(number)
+        if number == REQUEST_MESSAGE and fields["param1"] in self.requested:
+            self.heard(*self.requested[fields["param1"]])
+        if not self.answers:
+            return True
         asyncio.get_running_loop().call_soon(self.heard, "COMMAND_ACK", {"command": number, "result": self.result})
         return True
+
+    async def parameter(self, name: str) -> float | None:
+        return None
 
     async def close(self) -> None:
         pass

@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
+from hardware.autopilot.fence_items import FenceItem
 from hardware.autopilot.link import FenceTransferFailed, MavlinkLink, check_url
+from hardware.sim.autopilot.launch import Setting, launch_simulated
 
 
 @pytest.mark.parametrize(
@@ -60,3 +62,19 @@ async def test_a_fence_transfer_that_never_ends_is_an_error_and_holds_up_nothing
     finally:
         mission.go_on.set()
         await link.close()
+
+
+@pytest.mark.parametrize("flavour", ["px4", "ardupilot"])
+async def test_a_fence_arrives_over_a_slow_link(flavour: str) -> None:
+    """300 ms each way. ArduCopter ends a transfer in which an item comes twice."""
+    corners = ((473970000, 85450000), (473990000, 85450000), (473990000, 85470000))
+    fence = [FenceItem(5001, 3.0, lat, lon) for lat, lon in corners]
+    autopilot = await launch_simulated(Setting(flavour=flavour, link_delay_s=0.3))
+    link = MavlinkLink(autopilot.url, (), lambda name, fields: None)
+    try:
+        await link.open(10.0)
+        await link.set_fence(fence)
+        assert await link.fence() == fence
+    finally:
+        await link.close()
+        await autopilot.stop()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from paper import ON_GROUND, PLACE, POSCTL, Scene, heartbeat
+from paper import IN_AIR, ON_GROUND, PLACE, POSCTL, Scene, heartbeat
 
 from hardware.authority import Authority, CommandSent
 from hardware.autopilot import monitor
-from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S
+from hardware.autopilot.messages import HEARTBEAT_ID, SET_MESSAGE_INTERVAL
+from hardware.autopilot.monitor import AFTER_SILENCE_S, LINK_LOST_WALL_S, STREAMS
 from hardware.autopilot.px4 import HOLD, LANDING, RETURNING
 
 
@@ -130,3 +131,17 @@ async def test_a_new_server_goes_on_from_who_flew_before(mode: int, who: str, ea
         scene.monitor.restore(before)
     assert scene.monitor.telemetry().authority.who == who
     await scene.monitor.close()
+
+
+async def test_connecting_asks_for_the_heartbeat_and_waits_for_no_answer_to_the_rates() -> None:
+    """Each answer takes both ways of the link, and a vehicle that was left in flight is not held before."""
+    scene = Scene(("EXTENDED_SYS_STATE", {"landed_state": IN_AIR}), ("GLOBAL_POSITION_INT", PLACE))
+    scene.link.answers = False
+    scene.link.requested[HEARTBEAT_ID] = heartbeat(HOLD, True)
+
+    await scene.monitor.connect(1.0)
+    telemetry, sent = scene.monitor.telemetry(), list(scene.link.sent)
+    await scene.monitor.close()
+
+    assert (telemetry.mode, telemetry.armed, telemetry.authority.who) == ("HOLD", True, "nobody")
+    assert sent.count(SET_MESSAGE_INTERVAL) == len(STREAMS) + 1

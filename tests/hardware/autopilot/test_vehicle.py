@@ -20,7 +20,7 @@ from hardware.frame import LocalFrame
 from hardware.ports import NotInControl, VehicleError
 from hardware.readings import Announcement
 from hardware.reasons.vehicle import AutopilotRefused
-from hardware.reasons.vehicle_news import PositionJumped, TriedAgain, VehicleNews
+from hardware.reasons.vehicle_news import PositionJumped, SwitchUndone, TriedAgain, VehicleNews
 from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, launch_simulated
 
 SPEEDUP = 16.0
@@ -245,3 +245,15 @@ async def test_telemetry_keeps_its_rates_in_simulated_time(rig: Rig) -> None:
 
     assert len(headings) == pytest.approx(195, abs=15)
     assert float(gaps.max()) < 0.2
+
+
+async def test_a_switch_that_an_order_undid_before_it_was_told_is_seen_by_its_channel() -> None:
+    async for ardupilot in make("ardupilot"):
+        await ardupilot.vehicle.take_off(10.0)
+        await ardupilot.vehicle.return_home()
+        await ardupilot.sim.order("move_switch")
+        await ardupilot.announced(lambda news: isinstance(news, SwitchUndone))
+
+        assert ardupilot.vehicle.telemetry().mode == "RTL"
+        with pytest.raises(NotInControl):
+            await ardupilot.vehicle.hold()

@@ -23,7 +23,7 @@ export const safety = {
   },
   battery_silent: { text: "Der Ladestand des Akkus wird nicht mehr gemeldet.", remedy: "Die Akkuüberwachung prüfen." },
   battery_short: {
-    text: "Akku {charge_percent}: Es blieben {left_percent}, der Heimweg braucht {needed_percent}, und die Reserve ist {reserve_percent}.",
+    text: "Akku {charge_percent}: Der Heimweg begänne bei {left_percent} und braucht {needed_percent}; die Reserve ist {reserve_percent}.",
     remedy: "Heimkehren und den Akku wechseln.",
   },
   altitude_outside: {

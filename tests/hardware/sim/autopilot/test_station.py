@@ -47,15 +47,25 @@ class Ground:
         return Counter(message.get_type() for message in self.run(seconds))
 
 
-def test_px4_reports_a_changed_mode_at_once_and_an_unchanged_one_twice_a_second_arducopter_as_asked() -> None:
-    for flavour, reports, pilot in ((Px4, 20, "POSCTL"), (ArduCopter, 200, "LOITER")):
-        ground = Ground(flavour)
-        ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_CURRENT_MODE, 50_000)
-        assert ground.counts(10.0)["CURRENT_MODE"] == pytest.approx(reports, abs=2)
-        ground.firmware.switch_mode(pilot)
-        number = ground.firmware.custom_mode
-        told = [message.custom_mode for message in ground.run(0.06) if message.get_type() == "CURRENT_MODE"]
-        assert number in told
+def test_px4_reports_a_changed_mode_at_once_and_an_unchanged_one_twice_a_second() -> None:
+    ground = Ground(Px4)
+    ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_CURRENT_MODE, 50_000)
+    assert ground.counts(10.0)["CURRENT_MODE"] == pytest.approx(20, abs=2)
+    ground.firmware.switch_mode("POSCTL")
+    number = ground.firmware.custom_mode
+    told = [message.custom_mode for message in ground.run(0.06) if message.get_type() == "CURRENT_MODE"]
+    assert number in told
+
+
+def test_arducopter_has_no_current_mode_and_sends_its_heartbeat_as_often_as_asked() -> None:
+    ground = Ground(ArduCopter)
+    answer = ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_CURRENT_MODE, 50_000)[0]
+    assert answer.result == mavlink.MAV_RESULT_UNSUPPORTED
+
+    assert ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, 0, 200_000)[0].result == mavlink.MAV_RESULT_ACCEPTED
+    assert ground.counts(10.0)["HEARTBEAT"] == pytest.approx(50, abs=2)
+    assert ground.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, 0, -1)[0].result == mavlink.MAV_RESULT_DENIED
+    assert ground.counts(10.0)["HEARTBEAT"] == pytest.approx(50, abs=2)
 
 
 def test_px4_streams_by_itself_and_arducopter_only_its_heartbeat_until_asked() -> None:
