@@ -59,6 +59,9 @@ ENDPOINTS: Mapping[str, Need] = {
     "POST /api/session": ENTERING,
     "DELETE /api/session": ENTERING,
     "POST /api/first-admin": ENTERING,
+    "POST /api/recovery": ENTERING,
+    "GET /api/provider/begin": ENTERING,
+    "GET /api/provider/return": ENTERING,
     "POST /api/invitation/look": ENTERING,
     "POST /api/invitation/accept": ENTERING,
     # one's own account
@@ -86,6 +89,8 @@ ENDPOINTS: Mapping[str, Need] = {
     "WS /api/live": WATCH,
     "WS /api/payload": PAYLOAD,
     "POST /api/crafts/{craft_id}/commands": PLAN,
+    "GET /api/crafts/{craft_id}/compass": WATCH,
+    "DELETE /api/crafts/{craft_id}/compass": PLAN,
     # missions
     "GET /api/missions": EXPORT,
     "POST /api/missions": PLAN,

@@ -112,6 +112,58 @@ class NoGrounds:
 
 
 @dataclass(frozen=True, slots=True)
+class Said:
+    """The natural log of how well a flight's bearings speak for a value, 0 for the best one."""
+
+    value: float
+    log_evidence: float
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """What one flight taught of the errors of its craft's bearings. bias_deg: clockwise. spread_deg: standard
+    deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers."""
+
+    mission_id: str
+    bearings: int
+    bias_deg: float
+    bias_std_error_deg: float
+    spread_deg: tuple[Said, ...]
+    scale: tuple[Said, ...]
+    rate: tuple[Said, ...]
+
+
+class Lessons(Protocol):
+    """What the flights of each craft with each antenna taught."""
+
+    async def of(self, craft_id: str, antenna: str) -> list[Lesson]:
+        """Oldest first; empty when nothing can be read."""
+        ...
+
+    async def keep(self, craft_id: str, antenna: str, lesson: Lesson) -> None:
+        """In the place of an earlier one of the same mission. Raises OSError."""
+        ...
+
+    async def forget(self, craft_id: str, antenna: str) -> None:
+        """All of them: the compass was calibrated, the antenna mounted again. Raises OSError."""
+        ...
+
+
+class NoLessons:
+    """Nothing is learned."""
+
+    async def of(self, craft_id: str, antenna: str) -> list[Lesson]:
+        """None."""
+        return []
+
+    async def keep(self, craft_id: str, antenna: str, lesson: Lesson) -> None:
+        """There is nowhere to keep it."""
+
+    async def forget(self, craft_id: str, antenna: str) -> None:
+        """There is nothing to forget."""
+
+
+@dataclass(frozen=True, slots=True)
 class OrderStatus:
     """The order that a craft carries out. way: what of it is tried, or done; because: why what was tried before was not
     done."""

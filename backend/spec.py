@@ -130,10 +130,46 @@ ErrorModel = Literal["independent", "joint"]
 and an outlier rate in common, which are estimated with the place (planner.belief.joint)."""
 
 
+Weights = Annotated[list[Annotated[float, Field(ge=0, le=1)]], Field(min_length=1, max_length=12)]
+"""Of the values they stand beside; only their ratios count."""
+
+
+class LearnedErrors(Model):
+    """What is known of the errors of the craft's bearings before the flight: values, and how probable each is.
+
+    flights: of the craft with the antenna, from how many that was learned. spread_deg: standard deviations that the
+    bias (compass and mounting) may have. scale: factors on the stated sigmas. rate: shares of bearings that are wrong
+    altogether.
+    """
+
+    craft_id: Id
+    antenna: str = Field(max_length=200)
+    flights: int = Field(ge=0)
+    spread_deg: list[Annotated[float, Field(gt=0, le=30)]] = Field(min_length=1, max_length=12)
+    spread_weight: Weights
+    scale: list[Annotated[float, Field(ge=0.2, le=5)]] = Field(min_length=1, max_length=12)
+    scale_weight: Weights
+    rate: list[Annotated[float, Field(gt=0, le=0.6)]] = Field(min_length=1, max_length=12)
+    rate_weight: Weights
+
+    @model_validator(mode="after")
+    def every_value_has_a_weight(self) -> LearnedErrors:
+        """And not all of them are zero."""
+        for name in ("spread", "scale", "rate"):
+            values = self.spread_deg if name == "spread" else getattr(self, name)
+            weights: list[float] = getattr(self, f"{name}_weight")
+            if len(values) != len(weights):
+                raise ValueError(f"{name}: {len(values)} values, {len(weights)} weights; give each value one weight")
+            if sum(weights) <= 0.0:
+                raise ValueError(f"{name}_weight: all are zero; at least one value must be possible")
+        return self
+
+
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them means independent ones.
+    bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
+    flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -146,6 +182,7 @@ class SensorSpec(Model):
     minimum_quality: float = Field(default=0.7, ge=0, le=1)
     maximum_retakes: int = Field(default=2, ge=0, le=10)
     bearing_errors: ErrorModel = "independent"
+    learned: LearnedErrors | None = None
 
 
 class PlannerSpec(Model):
@@ -257,6 +294,10 @@ class MissionSpec(Model):
             if emitter.emitter_id == emitter_id:
                 return emitter
         raise KeyError(emitter_id)
+
+    def having_learned(self, learned: LearnedErrors | None) -> MissionSpec:
+        """The same mission with another knowledge of its bearings' errors."""
+        return self.model_copy(update={"sensor": self.sensor.model_copy(update={"learned": learned})})
 
     def searching(self, where: SearchArea) -> MissionSpec:
         """The same mission elsewhere."""

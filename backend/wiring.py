@@ -7,6 +7,7 @@ import logging
 import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING
 
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
@@ -31,6 +32,7 @@ from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
 from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
+from backend.store.lessons_folder import LessonsFolder
 from backend.store.opening import open_journal
 from backend.version import VERSION
 from hardware.autopilot.link import check_url
@@ -46,6 +48,9 @@ from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
 from hardware.sim.turntable import simulated_antenna
+
+if TYPE_CHECKING:
+    from backend.auth.provider import Provider
 
 log = logging.getLogger("crossfix.bearings")
 
@@ -129,12 +134,28 @@ async def open_access(settings: Settings) -> AsyncGenerator[Access]:
         AuditLog(settings.data_dir / AUDIT_FILE, time.time),
         people_expected=settings.people_expected,
         payload_tokens=settings.payload_tokens,
+        data_dir=settings.data_dir,
     )
     try:
         await access.load()
         yield access
     finally:
         await access.close()
+
+
+def sign_in_provider(settings: Settings) -> Provider | None:
+    """None: people sign in with passwords only. Raises ValueError when its secret cannot be read."""
+    if settings.oidc_issuer is None:
+        return None
+    from backend.auth.provided import Rules
+    from backend.auth.provider import Provider  # half a second that only such a server pays
+
+    default, roles = settings.oidc_default_role, settings.oidc_roles
+    domains = tuple(domain.lower() for domain in settings.oidc_email_domains)
+    rules = Rules(settings.oidc_role_claim, roles, None if default == "none" else default, domains)
+    return Provider(
+        settings.oidc_issuer, settings.oidc_client_id, settings.oidc_client_secret, rules, name=settings.oidc_name
+    )
 
 
 @asynccontextmanager
@@ -161,7 +182,7 @@ async def open_simulation(
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
-    pattern = _pattern(settings)
+    pattern, provider = _pattern(settings), sign_in_provider(settings)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
@@ -184,7 +205,7 @@ async def open_simulation(
                 await first.vehicle.close()
             vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
             hub = Hub(journal.read, clock.now)
-            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.tokens)
+            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.machines.tokens)
             payload = PayloadHub(settings.payload_tokens, clock.now) if expected else None
             receiver = _receiver(settings, vehicle, clock, payload, emitters)
             finder = SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg)
@@ -206,6 +227,7 @@ async def open_simulation(
                     software=VERSION,
                     database=lambda: journal.report().state,
                     grounds=TerrainFolder(settings.data_dir / "terrain", settings.disk_low_bytes),
+                    lessons=LessonsFolder(settings.data_dir / "lessons"),
                 )
             )
             if not unfinished:
@@ -216,8 +238,9 @@ async def open_simulation(
             else:
                 await warming
             services = Services(
-                missions, journal, hub, settings, clock.now, payload, access=access, finder=finder, pattern=pattern
-            )
+                missions, journal, hub, settings, clock.now, payload,
+                access=access, provider=provider, finder=finder, pattern=pattern,
+            )  # fmt: skip
             try:
                 async with _bearings_by_udp(settings, missions, clock):
                     yield services, receiver if isinstance(receiver, EmittersAroundHome) else None

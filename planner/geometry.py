@@ -5,6 +5,8 @@ Frame: local ENU metres. A `Ring` is (n, 2), not closed; a `Region` combines rin
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from planner.reasons import AreaCrossesItself, UnusableArea
@@ -108,16 +110,21 @@ def convex_hull(points: FloatArray) -> Ring:
     ordered = np.unique(np.asarray(points, dtype=float).reshape(-1, 2), axis=0)
     if len(ordered) < 3:
         return ordered
+    # plain numbers: the same arithmetic, without an array for every point
+    x, y = ordered[:, 0].tolist(), ordered[:, 1].tolist()
 
-    def half(chain_points: FloatArray) -> list[FloatArray]:
-        chain: list[FloatArray] = []
-        for p in chain_points:
-            while len(chain) > 1 and _cross(chain[-2], chain[-1], p) <= 0:
+    def left_of(o: int, p: int, q: int) -> float:
+        return (x[p] - x[o]) * (y[q] - y[o]) - (y[p] - y[o]) * (x[q] - x[o])
+
+    def half(order: Iterable[int]) -> list[int]:
+        chain: list[int] = []
+        for q in order:
+            while len(chain) > 1 and left_of(chain[-2], chain[-1], q) <= 0.0:
                 chain.pop()
-            chain.append(p)
+            chain.append(q)
         return chain[:-1]
 
-    return np.array(half(ordered) + half(ordered[::-1]))
+    return np.asarray(ordered[half(range(len(x))) + half(range(len(x) - 1, -1, -1))], dtype=np.float64)
 
 
 def cells_hull(cells: BoolArray, x0: float, y0: float, h: float) -> Ring:

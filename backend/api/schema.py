@@ -15,12 +15,14 @@ from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
 from backend.api import (
+    compass,
     crafts,
     entering,
     maps,
     missions,
     people,
     planning,
+    provider,
     read_export,
     recordings,
     reported,
@@ -40,10 +42,12 @@ from backend.wire.problem import Problem
 
 ROUTERS = (
     entering.router,
+    provider.router,
     people.router,
     system.router,
     missions.router,
     crafts.router,
+    compass.router,
     recordings.router,
     reported.router,
     review.router,

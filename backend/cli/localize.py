@@ -12,7 +12,7 @@ import numpy as np
 import typer
 
 from backend.cli.edge import print_json, remark, stop
-from backend.search.localization import error_prior
+from backend.search.source_priors import unknown_errors
 from backend.settings import settings_of
 from backend.spec import ErrorModel
 from hardware.direction_finding.bearing_scatter import BearingScatter, bearing_scatter
@@ -264,7 +264,7 @@ def _fold(problem: Problem, bearings: list[Bearing]) -> GridBelief | None:
 
 def _fold_joint(problem: Problem, bearings: list[Bearing], outliers: float) -> GridBelief | None:
     """None when hardly two of several bearings agree on a place: then all of them may be outliers."""
-    belief = joint_prior(problem, otherwise=error_prior(outliers))
+    belief = joint_prior(problem, otherwise=unknown_errors(outliers))
     for bearing in bearings:
         belief = update_joint(belief, bearing)
     found = estimate(belief, problem.estimator)

@@ -9,7 +9,8 @@ import typer
 
 from backend.api.suggestion import suggested_mission
 from backend.cli.edge import print_json, remark, stop
-from backend.search.localization import error_prior, localization
+from backend.search.localization import localization
+from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
 from planner.study.errors import StudyError
 from planner.study.tags import TAGS, tags_missions
@@ -28,8 +29,9 @@ def truth(
         str,
         typer.Option(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
-            "walls or walls_bias5: how the bearings are wrong (degrees of compass bias, percent of outliers); tags_4 "
-            "or tags_8: so many tags in the field scenario, each a claim."
+            "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
+            "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: so many tags in the field "
+            "scenario, each a claim."
         ),
     ],
     missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,
@@ -73,7 +75,7 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, f
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
-    prior = error_prior(mission.sensor.outlier_probability)
+    prior = unknown_errors(mission.sensor.outlier_probability)
     if flights and known == "joint":
         prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
         remark(f"{row}: learned from {flights} flights")

@@ -10,7 +10,7 @@ from backend.craft.safety import BatteryStage
 from backend.events import AntennaFact, BearingMeasured, CheckFact, GroundFact, Link, PlanChosen, SweepRejected
 from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
-from backend.spec import Place
+from backend.spec import LearnedErrors, Place
 from hardware.authority import Authority
 from hardware.reasons.vehicle_news import AutopilotWords
 
@@ -25,6 +25,7 @@ class StartFacts:
     software: str
     antenna: AntennaFact | None = None
     ground: GroundFact | None = None
+    learned: LearnedErrors | None = None
 
 
 @dataclass(frozen=True, slots=True)

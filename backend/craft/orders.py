@@ -107,6 +107,7 @@ def _start(step: CraftStep, given: CraftOrdered) -> None:
             software=facts.software,
             antenna=facts.antenna,
             ground=facts.ground,
+            learned=facts.learned,
         )
     )
     _take_control(step, given.by)

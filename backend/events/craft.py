@@ -7,7 +7,7 @@ from typing import Literal
 from backend.events.bearings import AntennaFact
 from backend.events.fact import Fact, Known
 from backend.reasons import Reason
-from backend.spec import Id, Place
+from backend.spec import Id, LearnedErrors, Place
 from hardware.authority import Authority
 
 FIRST_CRAFT = "craft-1"
@@ -39,7 +39,8 @@ class GroundFact(Fact):
 
 class MissionStarted(Fact):
     """A craft begins to fly for the mission. The first one's home is the origin of the mission's local frame. antenna
-    None: nobody kept it. ground None: the ground was taken to be flat at the home's height."""
+    None: nobody kept it. ground None: the ground was taken to be flat at the home's height. learned: of the bearings'
+    errors, takes the place of what the specification says; None leaves that."""
 
     kind: Literal["mission_started"] = "mission_started"
     craft_id: Id
@@ -49,6 +50,7 @@ class MissionStarted(Fact):
     software: str
     antenna: AntennaFact | None = None
     ground: GroundFact | None = None
+    learned: LearnedErrors | None = None
 
 
 class PhaseChanged(Fact):

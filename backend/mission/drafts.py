@@ -35,6 +35,7 @@ class Drafts:
 
     async def create(self, spec: MissionSpec, by: str) -> str:
         """Draft a mission. Raises MissionInputError when the specification makes no sense."""
+        spec = await self.equipment.knowing(spec)
         await asyncio.to_thread(_check_spec, spec)
         mission_id = str(uuid4())
         await self.records.append(mission_id, [MissionDrafted(spec=spec)])
@@ -43,6 +44,7 @@ class Drafts:
 
     async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
         """Raises MissionNotFound, MissionConflict once it has started, MissionInputError."""
+        spec = await self.equipment.knowing(spec)
         await asyncio.to_thread(_check_spec, spec)
         async with self.records.lock(mission_id):
             state, _ = await self.records.load(mission_id)

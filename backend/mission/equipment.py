@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from backend.craft.equipment import CraftEquipment
-from backend.ports import Grounds, Journal, NoGrounds, Publisher
+from backend.ports import Grounds, Journal, Lessons, NoGrounds, NoLessons, Publisher
+from backend.search.lessons import knowing
+from backend.spec import MissionSpec
 from hardware.ports import Clock
 
 DatabaseState = Literal["ok", "slow", "lost"]
@@ -29,8 +31,15 @@ class MissionEquipment:
     threads: int = 2
     database: Callable[[], DatabaseState] = _ok
     grounds: Grounds = field(default_factory=NoGrounds)
+    lessons: Lessons = field(default_factory=NoLessons)
 
     @property
     def first(self) -> CraftEquipment:
         """The craft that a draft is planned for, while it names none."""
         return next(iter(self.crafts.values()))
+
+    async def knowing(self, spec: MissionSpec, craft: CraftEquipment | None = None) -> MissionSpec:
+        """The specification with what the flights of the craft (None: of the first) and its antenna taught."""
+        craft = craft or self.first
+        antenna = craft.pattern.name
+        return knowing(spec, await self.lessons.of(craft.craft_id, antenna), craft.craft_id, antenna)

@@ -28,6 +28,7 @@ from backend.mission import control
 from backend.mission.effects import Effect, Reply
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
+from backend.mission.learning import learn
 from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
@@ -209,23 +210,20 @@ class Flights:
             asked, seq = await self.records.give(mission_id, state, commanded({}))
             return _reply(request, asked, seq or last_seq)
         async with self.starting:
+            known = await self.equipment.knowing(state.search.mission, craft)
             objections: tuple[Reason, ...] = ()
             if self.active is not None:
                 objections = (AnotherMissionFlies(self.active.state.search.mission.name),)
             elif craft.vehicle.telemetry().in_air:
                 objections = (AlreadyInAir(),)
-            checks, task = await checklist(
-                state.search.mission,
-                craft,
-                self.listening(craft.craft_id),
-                state.search.antenna,
-                self.equipment.grounds,
-            )
+            listening, grounds = self.listening(craft.craft_id), self.equipment.grounds
+            checks, task = await checklist(known, craft, listening, state.search.antenna, grounds)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
             software, antenna = self.equipment.software, antenna_fact(craft.pattern)
             ground, not_kept = await self._keep_ground(task)
             objections += not_kept
-            start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna, ground)
+            learned = known.sensor.learned
+            start = StartFacts(() if objections else checks, home, home_amsl_m, software, antenna, ground, learned)
             objections += resume_vetoes(craft.vehicle.telemetry())
             if task is not None and not objections and all(check.ok or not check.blocking for check in checks):
                 trouble = await self.nets.put_up(mission_id, craft, task)
@@ -276,6 +274,7 @@ class Flights:
         await runner.close()
         if self.active is runner:
             self.active = None
+        await learn(self.equipment, runner)
         async with self.starting:
             if self.active is None:
                 await self.nets.settle()

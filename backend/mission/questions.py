@@ -101,6 +101,7 @@ class Questions:
 
     async def preview(self, spec: MissionSpec) -> Preview:
         """Plan the first place of a mission that is not flown yet. Raises MissionInputError, PlannerError."""
+        spec = await self.equipment.knowing(spec)
         home, home_amsl_m = self._home_for(spec)
         terrain = await self.equipment.grounds.around(home)
         task = await asyncio.to_thread(search_task, spec, home, home_amsl_m, terrain)

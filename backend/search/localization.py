@@ -30,14 +30,14 @@ from backend.reasons.search import HeadingsAskew
 from backend.search import area
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.search.errors import MissionInputError
+from backend.search.source_priors import priors_of
 from backend.spec import MissionSpec
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import Place
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief, digest, prior_belief, update
-from planner.belief.joint import UNKNOWN_SOURCE, JointBelief, joint_prior, update_joint
-from planner.belief.source_errors import ErrorPrior
+from planner.belief.joint import JointBelief, joint_prior, update_joint
 from planner.belief.verdict import verdict
 from planner.types import (
     Bearing,
@@ -60,10 +60,6 @@ from planner.types import (
 
 DOUBT = 0.05
 """Outlier probability to plan with when bearings contradict each other although the sensor was taken to be honest."""
-
-FEWEST_OUTLIERS = 0.01
-MOST_OUTLIERS = 0.6
-"""Rates that a joint belief allows for, whatever is specified."""
 
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
@@ -268,17 +264,10 @@ def source_name(source: BearingSource) -> str:
 def _prior_belief(problem: Problem, sensor: spec.SensorSpec) -> GridBelief:
     match sensor.bearing_errors:
         case "joint":
-            return joint_prior(problem, otherwise=error_prior(sensor.outlier_probability))
+            known, otherwise = priors_of(sensor)
+            return joint_prior(problem, known, otherwise)
         case "independent":
             return prior_belief(problem)
-
-
-def error_prior(outlier_probability: float) -> ErrorPrior:
-    """What is assumed of a source of which nothing is known: outliers are half or twice as frequent as specified."""
-    if outlier_probability == 0.0:
-        return replace(UNKNOWN_SOURCE, rate=np.array([FEWEST_OUTLIERS]), rate_weight=np.ones(1))
-    rate = np.clip(outlier_probability * np.array([0.5, 2.0]), FEWEST_OUTLIERS, MOST_OUTLIERS)
-    return replace(UNKNOWN_SOURCE, rate=rate)
 
 
 def _errors_facts(belief: GridBelief, measured: Sequence[BearingMeasured]) -> list[SourceErrorsFact]:

@@ -124,7 +124,8 @@ def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: Grid
     sigma = (sigma_specified prod_i sigma_i)^(1/(n+1)): a geometric mean, since sigma is a scale: one bad sweep in a
     good signal does not undo the others. The measurement time is the arithmetic mean, since missions add it up.
     A joint belief knows more: of sigma only each bearing's own share counts, times the scale that was found, and the
-    bias by as much as it is still uncertain.
+    bias by as much as it is still uncertain. Before the first bearing it is what earlier flights make of the specified
+    sigma.
     """
     sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
     sigma = _with_errors(geometric_mean(sigmas), measured, belief)
@@ -134,13 +135,28 @@ def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: Grid
 
 def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None) -> float:
     """sigma_foreseen = hypot(scale sigma_own, bias' standard deviation), of the source that measured last; rad."""
-    if not isinstance(belief, JointBelief) or not measured:
+    if not isinstance(belief, JointBelief):
         return sigma
+    if not measured:
+        return sigma * _learned_share(sigma, belief)
     errors = belief.errors_of(source_name(measured[-1].source))
     if errors is None:
         return sigma
     shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in measured]
     return math.hypot(errors.scale * sigma * geometric_mean(shares), errors.bias_sd)
+
+
+def _learned_share(sigma: float, belief: JointBelief) -> float:
+    """Expected error of a bearing after what was learned of its source, over that of one nobody knows; 1 when nothing
+    was, or when several sources are known."""
+    if len(belief.priors) != 1:
+        return 1.0
+    (known,) = belief.priors.values()
+    learned, unknown = (
+        math.hypot(sigma * math.sqrt(prior.scale_weight @ prior.scale**2), prior.bias_sd)
+        for prior in (known, belief.otherwise)
+    )
+    return learned / unknown
 
 
 def base_policy_decision(

@@ -169,12 +169,13 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, passed=passed) if state.stage in ("draft", "ready") else state
         case AntennaChecked(check=check):
             return replace(state, antenna=check)
-        case MissionStarted(home=home, home_amsl_m=home_amsl_m, ground=ground):
+        case MissionStarted(home=home, home_amsl_m=home_amsl_m, ground=ground, learned=learned):
             if state.home is not None:
                 return state
             # bearings from before the start (imported) are folded again in the frame of the home
             begun = _each(state, lambda e: replace(e, belief_current=e.belief_current and not e.measured))
-            return replace(begun, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
+            spec = state.spec if learned is None else state.mission.having_learned(learned)
+            return replace(begun, spec=spec, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
         case PlanChosen(place_number=number):
             return replace(state, place_number=max(state.place_number, number))
         case BearingMeasured() | BearingExcluded() | BeliefUpdated():

@@ -338,6 +338,24 @@ class AntennaReview(Model):
     proposed: PatternUpload | None
 
 
+class CompassKnown(Model):
+    """What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
+
+    flights, bearings: that were learned from. bias_deg: mean of the flights, clockwise, and bias_spread_deg: its
+    standard deviation from flight to flight; None without a flight. expected_bias_deg: standard deviation of the next
+    flight's bias. sigma_scale: factor on the stated sigmas. outlier_rate: share of bearings."""
+
+    craft_id: Id
+    antenna: str
+    flights: int
+    bearings: int
+    bias_deg: float | None
+    bias_spread_deg: float | None
+    expected_bias_deg: float
+    sigma_scale: float
+    outlier_rate: float
+
+
 class WhatIfRequest(Model):
     """A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
     `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`

@@ -60,7 +60,8 @@ def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: Plan
     row = Row("tags", own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
     one = row.sensor(world.target(seed, rng), rng)
     sensors = [one, *(replace(one, target=world.target(seed, rng)) for _ in range(count - 1))]
-    tags = [_Tag(sensor, prior_of(problem, model), []) for sensor in sensors]
+    unknown = prior_of(problem, model, None)
+    tags = [_Tag(sensor, unknown, []) for sensor in sensors]
     here, time, place = np.array(world.platform), 0.0, np.array(world.platform)
     for number in range(MOST_BEARINGS):
         leg = float(np.hypot(*(place - here)))
@@ -68,8 +69,8 @@ def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: Plan
         here = place
         for tag in tags:
             angle, sigma = tag.sensor.bearing(here, number)
-            tag.bearings.append(bearing_of(model, here, angle, sigma, row.heading_sigma))
-            tag.belief = folded(problem, tag.belief, tag.bearings)
+            tag.bearings.append(bearing_of(model, here, angle, sigma, row.heading_sigma, "craft"))
+            tag.belief = folded(unknown, tag.belief, tag.bearings[-1])
             tag.localized = verdict(problem, rule, tag.bearings, tag.belief).localized
             if tag.localized and tag.claim is None:
                 tag.claim = _claim(tag, world, claimed=True)

@@ -8,7 +8,7 @@ counted is counted at the claim: belief and estimate are those that the operator
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import isfinite
 from typing import Any, Literal
 
@@ -29,6 +29,7 @@ from planner.types import Bearing, FloatArray, InconsistentBearings, Localizatio
 Model = Literal["joint", "independent"]
 DOUBT = 0.1
 """Outlier probability of the independent model: the default of a mission."""
+SOURCES = ("craft", "somebody else")
 BEYOND = 3.0
 """Times the stated error."""
 
@@ -92,13 +93,14 @@ def missions(
     search: Search, row: Row, seeds: Sequence[int], model: Model = "joint", prior: ErrorPrior | None = None
 ) -> Iterator[Claim]:
     """Mission by mission, each with its own emitter and errors; the seed decides both. prior: of the joint model."""
+    unknown = prior_of(search.problem, model, prior)
     for seed in seeds:
-        yield fly(search, row, seed, model, prior)
+        yield _flown(search, row, seed, model, unknown)[0]
 
 
 def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: ErrorPrior | None = None) -> Claim:
     """One mission."""
-    return _flown(search, row, seed, model, prior)[0]
+    return _flown(search, row, seed, model, prior_of(search.problem, model, prior))[0]
 
 
 def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -> ErrorPrior:
@@ -107,20 +109,20 @@ def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -
     Only bearings are learned from: where the emitter was, nobody says.
     """
     found: list[FlightEvidence] = []
-    prior = unknown
+    prior, nowhere = unknown, joint_prior(search.problem)
     for seed in seeds:
-        _, belief = _flown(search, row, seed, "joint", prior)
+        _, belief = _flown(search, row, seed, "joint", replace(nowhere, otherwise=prior))
         assert isinstance(belief, JointBelief)
         found.append(flight_evidence(belief.errors[0]))
         prior = learned(found, unknown)
     return prior
 
 
-def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior | None) -> tuple[Claim, GridBelief]:
+def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelief) -> tuple[Claim, GridBelief]:
     problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
     target = _anywhere(problem, rng)
     sensor = row.sensor(target, rng)
-    belief = prior_of(problem, model, prior)
+    belief = unknown
     here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
     while True:
         choice = fisher(problem, belief, (float(here[0]), float(here[1])))
@@ -128,8 +130,9 @@ def _flown(search: Search, row: Row, seed: int, model: Model, prior: ErrorPrior 
         time += float(flight_time(problem.motion, float(np.hypot(*(place - here))), 0.0)) + problem.measurement_time
         here = place
         angle, sigma = sensor.bearing(place, len(bearings))
-        bearings.append(bearing_of(model, place, angle, sigma, row.heading_sigma))
-        belief = folded(problem, belief, bearings)
+        source = SOURCES[sensor.taker(len(bearings)) is not sensor]
+        bearings.append(bearing_of(model, place, angle, sigma, row.heading_sigma, source))
+        belief = folded(unknown, belief, bearings[-1])
         said = verdict(problem, search.rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
@@ -203,26 +206,28 @@ def _anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
             return target
 
 
-def prior_of(problem: Problem, model: Model, prior: ErrorPrior | None = None) -> GridBelief:
+def prior_of(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBelief:
     """What a search begins with. prior: of the joint model, None: of a sensor of which nothing is known."""
     if model == "independent":
         return prior_belief(problem)
     return joint_prior(problem) if prior is None else joint_prior(problem, otherwise=prior)
 
 
-def bearing_of(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float) -> Bearing:
+def bearing_of(
+    model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float, source: str
+) -> Bearing:
     """The independent model takes the heading's error for each bearing's own."""
     x, y = float(place[0]), float(place[1])
     if model == "independent":
         return Bearing(x, y, angle, float(np.hypot(sigma, heading_sigma)), outlier_probability=DOUBT)
-    return Bearing(x, y, angle, sigma, source="craft")
+    return Bearing(x, y, angle, sigma, source=source)
 
 
-def folded(problem: Problem, belief: GridBelief, bearings: Sequence[Bearing]) -> GridBelief:
-    """The belief with the last of the bearings; one that contradicts all others starts it over."""
+def folded(unknown: GridBelief, belief: GridBelief, bearing: Bearing) -> GridBelief:
+    """The belief with a bearing; one that contradicts all others starts it over from what was unknown."""
     if isinstance(belief, JointBelief):
-        return update_joint(belief, bearings[-1])
+        return update_joint(belief, bearing)
     try:
-        return update(belief, bearings[-1])
+        return update(belief, bearing)
     except InconsistentBearings:
-        return prior_belief(problem)
+        return unknown

@@ -25,7 +25,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState, fold
-from backend.ports import FactRefused, Grounds, JournalUnavailable, NoGrounds, Status, TrackPoint
+from backend.ports import FactRefused, Grounds, JournalUnavailable, Lessons, NoGrounds, NoLessons, Status, TrackPoint
 from backend.reasons.storage import FactUnfit, NothingStores
 from hardware.clock import ScaledClock
 from hardware.direction_finding.antenna import AntennaPattern
@@ -186,6 +186,7 @@ class Stage:
         self.journal = MemoryJournal(self.clock)
         self.publisher = MemoryPublisher(self.journal)
         self.grounds: Grounds = NoGrounds()
+        self.lessons: Lessons = NoLessons()
         self.room = self.new_room()
 
     def craft(self, pattern: AntennaPattern = PATTERN) -> CraftEquipment:
@@ -211,6 +212,7 @@ class Stage:
                 software="test",
                 threads=1,
                 grounds=self.grounds,
+                lessons=self.lessons,
             )
         )
 

@@ -2,6 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
+import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
 import { EmitterListField } from "../edit/EmitterListField";
@@ -70,6 +71,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
       )}
       <KindField />
       <ProfileRow />
+      {draft.value?.spec.sensor.bearing_errors === "joint" && <CompassCard />}
     </fieldset>
   );
 }

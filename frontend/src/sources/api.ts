@@ -8,6 +8,7 @@ import type {
   Command,
   CommandReply,
   CommandRequest,
+  CompassKnown,
   CraftCommand,
   CraftRequest,
   Defaults,
@@ -92,6 +93,10 @@ export const health = () => json<Health>("/health");
 
 export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
+const compassPath = (craftId: string) => `/crafts/${encodeURIComponent(craftId)}/compass`;
+/** What was learned of the compass of a craft with its antenna. */
+export const compass = (craftId: string) => json<CompassKnown>(compassPath(craftId));
+export const forgetCompass = (craftId: string) => json<CompassKnown>(compassPath(craftId), { method: "DELETE" });
 /** A page of the list. after: `next` of the page before. */
 export const missions = (named: string, after: string | null) =>
   json<MissionList>(`/missions?${new URLSearchParams(after === null ? { named } : { named, after })}`);

@@ -52,6 +52,7 @@ export type CommandReply = Schemas["CommandReply"];
 
 /** reason null: found by the page itself, and said in its own words. */
 export type Problem = Omit<Schemas["Problem"], "reason"> & { reason: Reason | null };
+export type CompassKnown = Schemas["CompassKnown"];
 export type Defaults = Schemas["Defaults"];
 export type MissionSummary = Schemas["MissionSummary"];
 export type Mission = Schemas["Mission"];

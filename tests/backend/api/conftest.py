@@ -27,6 +27,7 @@ from backend.mission.room import mission_room
 from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
 from backend.store.journal import SqlJournal
+from backend.store.lessons_folder import LessonsFolder
 from backend.store.spool import Spool
 from backend.workers import Workers
 from hardware.direction_finding.estimate import SparseDirectionFinder
@@ -66,7 +67,8 @@ async def running_services(settings: Settings, vehicle: PaperVehicle, workers: W
     hub, clock = Hub(journal.read, lambda: NOW_S), SteppedClock(NOW_S)
     finder, pattern = SparseDirectionFinder(), load_pattern(SMALL_YAGI)
     craft = CraftEquipment(FIRST_CRAFT, vehicle, HummingReceiver(clock), finder, pattern, clock, hub)
-    room = mission_room(MissionEquipment({FIRST_CRAFT: craft}, journal, hub, clock, "test"))
+    lessons = LessonsFolder(settings.data_dir / "lessons")
+    room = mission_room(MissionEquipment({FIRST_CRAFT: craft}, journal, hub, clock, "test", lessons=lessons))
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
         access = Access(None, AuditLog(None, lambda: NOW_S), people_expected=False)

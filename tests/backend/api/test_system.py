@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from backend.ports import Lesson, Said
 from backend.search.localization import localization
 from backend.spec import MissionSpec
 from hardware.readings import Place, Telemetry
@@ -83,3 +84,23 @@ async def test_a_craft_is_asked_by_its_name(client):
     unknown = await client.get("/api/vehicle", params={"craft": "craft-9"})
     assert unknown.status_code == 404
     assert unknown.json()["reason"] == {"what": "craft", "which": "craft-9", "code": "nothing_there"}
+
+
+async def test_what_was_learned_of_a_compass_is_shown_and_forgotten(client, services):
+    lessons, craft = services.missions.equipment.lessons, services.missions.equipment.first
+    said = (Said(0.5, 0.0), Said(10.0, -9.0))
+    for number in (1, 2):
+        one = Lesson(f"m{number}", 4, 6.0, 1.0, said, (Said(1.0, 0.0),), (Said(0.05, 0.0),))
+        await lessons.keep(craft.craft_id, craft.pattern.name, one)
+    known = (await client.get("/api/crafts/craft-1/compass")).json()
+    assert (known["flights"], known["bearings"], known["antenna"]) == (2, 8, craft.pattern.name)
+    assert known["bias_deg"] == 6.0
+    assert known["expected_bias_deg"] < 2.0
+    joint = (await client.get("/api/defaults")).json()["spec"]
+    joint["sensor"]["bearing_errors"] = "joint"
+    drafted = (await client.post("/api/missions", json=joint)).json()["spec"]
+    assert (joint["sensor"]["learned"], drafted["sensor"]["learned"]["flights"]) == (None, 2)
+    gone = (await client.delete("/api/crafts/craft-1/compass")).json()
+    assert (gone["flights"], gone["bias_deg"]) == (0, None)
+    assert gone["expected_bias_deg"] > 4.0
+    assert (await client.get("/api/crafts/craft-9/compass")).status_code == 404

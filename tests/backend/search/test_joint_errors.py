@@ -10,9 +10,10 @@ from ground import AREA, FRAME, HOME, towards
 
 from backend.events import BearingMeasured, BeliefUpdated, PersonSource
 from backend.reasons.search import BearingsCorrected
-from backend.search.localization import Localization, error_prior, localization, source_name
+from backend.search.localization import Localization, localization, source_name
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planning import foreseen
+from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState
 from backend.spec import MissionSpec, SensorSpec
 from hardware.readings import Place
@@ -98,10 +99,21 @@ def test_the_sigma_to_come_is_their_own_and_what_is_open_of_the_bias() -> None:
     assert foreseen(JOINT.problem, (), JOINT.prior).sigma == pytest.approx(JOINT.problem.sigma)
 
 
-def test_outliers_are_half_or_twice_as_frequent_as_specified() -> None:
-    assert error_prior(0.1).rate == pytest.approx([0.05, 0.2])
-    assert error_prior(0.5).rate.max() < 1.0
-    assert len(error_prior(0.0).rate) == 1
+def test_a_specification_of_before_has_the_priors_of_before() -> None:
+    """Outliers were taken to be half or twice as frequent as specified."""
+    for specified, rates in ((0.1, [0.05, 0.2]), (0.5, [0.25, 0.6]), (0.0, [0.01])):
+        known, otherwise = priors_of(SensorSpec(outlier_probability=specified, bearing_errors="joint"))
+        assert known == {}
+        assert otherwise.rate == pytest.approx(rates)
+        assert otherwise.scale == pytest.approx([0.7, 1.0, 1.45])
+
+
+def test_nothing_learned_yet_has_the_mean_rate_that_is_specified() -> None:
+    for specified in (0.05, 0.1, 0.25):
+        unknown = unknown_errors(specified)
+        assert unknown.rate @ unknown.rate_weight == pytest.approx(specified, rel=0.05)
+    assert unknown_errors(0.5).rate.max() < 1.0
+    assert len(unknown_errors(0.0).rate) == 1
 
 
 def test_a_belief_of_before_has_no_sources() -> None:

@@ -21,7 +21,18 @@ PROBLEM = Problem(
     action_spacing=30.0,
 )
 SEARCH = Search(PROBLEM, LocalizationRule(threshold=25.0), (0.0, 0.0))
-WANTED = {"independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20", "walls", "walls_bias5"}
+WANTED = {"independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20", "walls", "walls_bias5"} | {
+    "squinted",
+    "uneven",
+    "foreign",
+    "creeping",
+    "jumping",
+    "two_sources",
+}
+
+
+def seeded(seed: int) -> np.random.Generator:
+    return np.random.default_rng(seed)
 
 
 def errors(sensor: Sensor, count: int = 2000) -> np.ndarray:
@@ -60,6 +71,33 @@ def test_a_wall_bends_bearings_where_its_echo_arrives_and_not_elsewhere():
     assert 2.0 < np.abs(mirrored).max() < 60.0
     quiet.walls = (Wall(np.array([400.0, 400.0]), np.array([500.0, 400.0])),)
     assert np.abs(errors(quiet, 3)).max() < 0.5
+
+
+@pytest.mark.parametrize(("antenna", "off"), [("measured", 0.0), ("squinted", 10.0), ("uneven", 7.5)])
+def test_another_antenna_turns_all_its_bearings_by_one_angle(antenna, off):
+    wrong = errors(Row("a", own_sd=0.0, antenna=antenna, walls=1).sensor(np.array([0.0, 150.0]), seeded(1)), 20)
+    alone = errors(Row("a", own_sd=0.0, antenna=antenna).sensor(np.array([0.0, 150.0]), seeded(1)), 20)
+    assert alone == pytest.approx(np.full(20, off), abs=0.5)
+    assert np.median(wrong) == pytest.approx(off, abs=3.0)
+
+
+def test_places_creep_away_or_jump_for_one_bearing():
+    target = np.array([0.0, 150.0])
+    creeping = [Row("c", own_sd=0.0, placing="creeping").sensor(target, seeded(k)) for k in range(60)]
+    early, late = (np.std([errors(sensor, count)[-1] for sensor in creeping]) for count in (1, 12))
+    assert late > 2.0 * early > 0.0
+    jumps = np.abs(errors(Row("j", own_sd=0.0, placing="jumping").sensor(target, seeded(1)), 500)) > 1e-6
+    assert jumps.mean() == pytest.approx(0.2, abs=0.05)
+
+
+def test_two_sources_take_turns_and_each_has_its_own_bias():
+    sensor = Row("t", bias_sd=np.deg2rad(5.3), own_sd=0.0, sources=2).sensor(np.array([0.0, 150.0]), seeded(3))
+    wrong = errors(sensor, 6)
+    assert sensor.other is not None
+    assert wrong[::2] == pytest.approx(np.full(3, np.rad2deg(sensor.bias)))
+    assert wrong[1::2] == pytest.approx(np.full(3, np.rad2deg(sensor.other.bias)))
+    assert abs(wrong[0] - wrong[1]) > 0.1
+    assert fly(SEARCH, row_named("two_sources"), 3).bearings >= 2
 
 
 def test_a_mission_depends_on_its_seed_and_on_nothing_else():

@@ -1,0 +1,87 @@
+"""What a flight teaches reaches the next mission's facts; what cannot be kept holds nothing up."""
+
+from __future__ import annotations
+
+from equipment import PATTERN, spec
+from flights import order
+from stage import Stage
+
+from backend import commands
+from backend.events import FIRST_CRAFT, MissionStarted
+from backend.mission.state import fold
+from backend.ports import Lesson
+from backend.spec import MissionSpec, SensorSpec
+
+
+class MemoryLessons:
+    """`full`: nothing can be kept any more."""
+
+    def __init__(self) -> None:
+        self.kept: list[Lesson] = []
+        self.tried = 0
+        self.full = False
+
+    async def of(self, craft_id: str, antenna: str) -> list[Lesson]:
+        return [*self.kept] if (craft_id, antenna) == (FIRST_CRAFT, PATTERN.name) else []
+
+    async def keep(self, craft_id: str, antenna: str, lesson: Lesson) -> None:
+        self.tried += 1
+        if self.full:
+            raise OSError("no space left on device")
+        assert (craft_id, antenna) == (FIRST_CRAFT, PATTERN.name)
+        self.kept.append(lesson)
+
+    async def forget(self, craft_id: str, antenna: str) -> None:
+        self.kept.clear()
+
+
+def joint() -> MissionSpec:
+    return spec().model_copy(update={"sensor": SensorSpec(bearing_errors="joint")})
+
+
+async def flown(stage: Stage, lessons: MemoryLessons, mission_id: str) -> MissionStarted:
+    """To its end, and until its lesson was handed over."""
+    before = lessons.tried
+    assert (await order(stage, mission_id, commands.Start())).accepted
+    await stage.until_true(lambda: stage.vehicle.names[-1:] == ["land"], wall_s=60.0)
+    stage.vehicle.touch_down()
+    await stage.until_mission(mission_id, "done")
+    await stage.until_true(lambda: lessons.tried > before, wall_s=60.0)
+    (started,) = stage.journal.of_kind(mission_id, MissionStarted)
+    assert stage.journal.state(mission_id).search.mission.sensor.learned == started.learned
+    return started
+
+
+async def test_a_flight_teaches_the_next_one_which_keeps_what_it_started_from() -> None:
+    stage, lessons = Stage(), MemoryLessons()
+    stage.lessons = lessons
+    stage.room = stage.new_room()
+    await stage.room.start_up()
+    early = [await stage.room.drafts.create(joint(), "anna") for _ in range(3)]
+    first, second = [await flown(stage, lessons, mission_id) for mission_id in early[:2]]
+    lessons.full = True
+    third = await flown(stage, lessons, early[2])
+    await stage.room.shut_down()
+    known = [one.learned for one in (first, second, third)]
+    assert [one and one.flights for one in known] == [0, 1, 2]
+    assert len({str(one) for one in known}) == 3
+    assert [one.mission_id for one in lessons.kept] == early[:2]
+    again = fold(await stage.journal.read(early[1]))
+    assert again.search.mission.sensor.learned == second.learned
+
+
+async def test_a_mission_with_independent_errors_is_told_nothing_and_teaches_nothing() -> None:
+    stage, lessons = Stage(), MemoryLessons()
+    stage.lessons = lessons
+    stage.room = stage.new_room()
+    await stage.room.start_up()
+    mission_id = await stage.room.drafts.create(spec(), "anna")
+    assert (await order(stage, mission_id, commands.Start())).accepted
+    await stage.until_true(lambda: stage.vehicle.names[-1:] == ["land"], wall_s=60.0)
+    stage.vehicle.touch_down()
+    await stage.until_mission(mission_id, "done")
+    await stage.until_true(lambda: stage.room.flights.active is None)
+    await stage.room.shut_down()
+    (started,) = stage.journal.of_kind(mission_id, MissionStarted)
+    assert started.learned is None
+    assert lessons.tried == 0

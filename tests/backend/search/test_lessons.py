@@ -1,0 +1,157 @@
+"""What flights teach of a craft's compass: from the bearings alone, into the next mission's specification."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import pytest
+from ground import AREA, HOME, towards
+
+from backend.events import FIRST_CRAFT, BearingMeasured, PersonSource
+from backend.ports import Lesson
+from backend.search.lessons import errors_now, knowing, lesson, mean_bias
+from backend.search.localization import localization
+from backend.search.planning import foreseen
+from backend.search.source_priors import prior_in
+from backend.search.state import EmitterState, SearchState
+from backend.search.task import search_task
+from backend.spec import FIRST_EMITTER, LearnedErrors, MissionSpec, SensorSpec
+
+TARGET = (120.0, 60.0)
+AROUND = ((60.0, -40.0), (180.0, -40.0), (200.0, 100.0), (40.0, 110.0), (120.0, 160.0), (10.0, 20.0))
+WIGGLE = (0.4, -0.6, 0.2, 0.5, -0.5, -0.1)
+ANTENNA = "yagi"
+JOINT = SensorSpec(bearing_errors="joint")
+
+
+def mission(sensor: SensorSpec = JOINT) -> MissionSpec:
+    return MissionSpec(name="m", area=AREA, sensor=sensor)
+
+
+def bearings(bias: float, count: int = 6) -> tuple[BearingMeasured, ...]:
+    """Own errors of half a degree where 4 are stated."""
+    return tuple(
+        towards(x, y, TARGET, sigma=4.0).model_copy(
+            update={
+                "bearing_id": f"b{k}",
+                "bearing_deg": (towards(x, y, TARGET).bearing_deg + bias + WIGGLE[k]) % 360.0,
+            }
+        )
+        for k, (x, y) in enumerate(AROUND[:count])
+    )
+
+
+def taught(mission_id: str, measured: tuple[BearingMeasured, ...], spec: MissionSpec | None = None) -> Lesson | None:
+    spec = spec or knowing(mission(), [], FIRST_CRAFT, ANTENNA)
+    state = SearchState(spec=spec, emitters={FIRST_EMITTER: EmitterState(FIRST_EMITTER, measured)})
+    return lesson(mission_id, search_task(spec, HOME, 0.0), state, FIRST_CRAFT)
+
+
+@cache
+def flown(bias: float) -> Lesson | None:
+    return taught("m1", bearings(bias))
+
+
+def lessons(bias: float, count: int) -> list[Lesson]:
+    found = flown(bias)
+    assert found is not None
+    return [found] * count
+
+
+def now(known: list[Lesson], sensor: SensorSpec = JOINT) -> LearnedErrors:
+    return errors_now(known, sensor, FIRST_CRAFT, ANTENNA)
+
+
+def test_a_flight_tells_its_bias_clockwise() -> None:
+    found = taught("m1", bearings(7.0))
+    assert found is not None
+    assert found.bearings == 6
+    assert found.bias_deg == pytest.approx(7.0, abs=1.5)
+    assert 0.0 < found.bias_std_error_deg < 2.5
+
+
+def test_flights_of_a_right_compass_narrow_what_the_next_expects_and_never_exclude_anything() -> None:
+    unknown, some, many = (prior_in(now(lessons(0.0, count))) for count in (0, 3, 30))
+    assert unknown.bias_sd > some.bias_sd > many.bias_sd
+    assert math.degrees(many.bias_sd) < 2.0
+    assert many.scale_weight[0] > 0.5 > unknown.scale_weight[0]
+    assert many.rate_weight @ many.rate < 0.2 * (unknown.rate_weight @ unknown.rate)
+    for weights in (many.spread_weight, many.scale_weight, many.rate_weight):
+        assert weights.min() > 1e-4
+
+
+def test_flights_of_a_bad_compass_widen_it() -> None:
+    assert prior_in(now(lessons(12.0, 10))).bias_sd > 1.3 * prior_in(now([])).bias_sd
+
+
+def test_what_was_learned_decides_the_belief_of_the_craft_and_of_nobody_else() -> None:
+    spec = knowing(mission(), lessons(0.0, 30), FIRST_CRAFT, ANTENNA)
+    person = tuple(b.model_copy(update={"source": PersonSource(name="Ada")}) for b in bearings(0.0, 3))
+    for measured, better in ((bearings(0.0, 3), True), (person, False)):
+        known, unknown = (
+            localization(one, HOME).belief_fact(measured)[0] for one in (spec, knowing(mission(), [], FIRST_CRAFT, ""))
+        )
+        assert known.estimate is not None
+        assert unknown.estimate is not None
+        assert (known.estimate.expected_rmse_m < 0.7 * unknown.estimate.expected_rmse_m) == better
+        assert (known.digest == unknown.digest) == (not better)
+
+
+def test_the_specification_holds_all_of_it_so_that_the_journal_folds_to_the_same_belief() -> None:
+    spec = knowing(mission(), lessons(3.0, 5), FIRST_CRAFT, ANTENNA)
+    again = MissionSpec.model_validate_json(spec.model_dump_json())
+    digests = [localization(one, HOME).belief_fact(bearings(3.0))[0].digest for one in (spec, again)]
+    assert digests[0] == digests[1]
+    assert spec.sensor.learned is not None
+    assert (spec.sensor.learned.flights, spec.sensor.learned.antenna) == (5, ANTENNA)
+
+
+def test_the_first_forecast_knows_what_was_learned_and_nothing_learned_changes_nothing() -> None:
+    def foreseen_deg(known: list[Lesson]) -> float:
+        task = localization(knowing(mission(), known, FIRST_CRAFT, ANTENNA), HOME)
+        return math.degrees(foreseen(task.problem, (), task.prior).sigma)
+
+    assert foreseen_deg([]) == pytest.approx(JOINT.sigma_deg)
+    assert foreseen_deg(lessons(0.0, 20)) < 0.6 * JOINT.sigma_deg < JOINT.sigma_deg < foreseen_deg(lessons(12.0, 20))
+
+
+def test_independent_errors_learn_nothing_and_are_told_nothing() -> None:
+    plain = mission(SensorSpec())
+    assert knowing(plain, lessons(0.0, 3), FIRST_CRAFT, ANTENNA) == plain
+    assert taught("m1", bearings(0.0), plain) is None
+
+
+def test_a_flight_without_a_bearing_teaches_nothing() -> None:
+    assert taught("m1", ()) is None
+    assert mean_bias([]) is None
+
+
+def test_another_outlier_probability_reads_the_same_flights() -> None:
+    """The rates it compares lie between those that the flights compared."""
+    usual, rarer = (now(lessons(0.0, 20), JOINT.model_copy(update={"outlier_probability": p})) for p in (0.1, 0.04))
+    assert rarer.rate != usual.rate
+    assert rarer.rate_weight[0] > 2.0 * now([]).rate_weight[0]
+    assert sum(rarer.rate_weight) == pytest.approx(1.0)
+
+
+def test_the_mean_of_the_flights_weighs_what_each_knew_and_says_how_they_differ() -> None:
+    alike, apart = mean_bias([*lessons(6.0, 4)]), mean_bias([*lessons(6.0, 2), *lessons(-6.0, 2)])
+    assert alike is not None
+    assert apart is not None
+    assert alike[0] == pytest.approx(6.0, abs=1.5)
+    assert alike[1] < 2.0 < 5.0 < apart[1]
+    assert apart[0] == pytest.approx(0.0, abs=1.5)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"scale": [1.0]}, "scale: 1 values, 3 weights"),
+        ({"rate_weight": [0.0, 0.0, 0.0, 0.0]}, "rate_weight: all are zero"),
+        ({"rate": [0.0, 0.1, 0.2, 0.3]}, "greater than 0"),
+    ],
+)
+def test_knowledge_that_makes_no_sense_is_refused(change: dict[str, list[float]], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        LearnedErrors.model_validate({**now([]).model_dump(), **change})
