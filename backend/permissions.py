@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Role = Literal["viewer", "operator", "pilot"]
-Scope = Literal["payload", "exports", "metrics"]
+Scope = Literal["payload", "exports", "metrics", "bearings"]
 """What a machine's token is for."""
 
 ROLES: tuple[Role, ...] = ("viewer", "operator", "pilot")
@@ -50,6 +50,7 @@ ASK = Need("operator")
 """Takes the planner's time and changes nothing."""
 MANAGE = Need("viewer", admin=True, audited=True)
 METRICS = Need("viewer", scope="metrics")
+REPORT = Need("operator", scope="bearings", audited=True)
 PAYLOAD = Need(scope="payload", audited=True)
 
 ENDPOINTS: Mapping[str, Need] = {
@@ -99,6 +100,8 @@ ENDPOINTS: Mapping[str, Need] = {
     "POST /api/missions/{mission_id}/preflight": PLAN,
     "POST /api/missions/{mission_id}/antenna-check": PLAN,
     "POST /api/missions/{mission_id}/recordings": PLAN,
+    "POST /api/missions/{mission_id}/bearings": REPORT,
+    "DELETE /api/missions/{mission_id}/bearings/{bearing_id}": REPORT,
     "POST /api/missions/{mission_id}/expected-time": ASK,
     "POST /api/missions/{mission_id}/area-outlook": ASK,
     "POST /api/preview": ASK,

@@ -85,6 +85,10 @@ class Settings(BaseSettings):
     receiver: str | None = None
     """"simulated", "payload", or a device: soapy:driver=NAME, rtl_tcp://HOST[:PORT], sigmf:FILE, recording:FILE. None:
     the payload's when payloads may connect, else the simulated one."""
+    bearings_udp_port: int | None = Field(default=None, ge=0, le=65535)
+    """Where bearings arrive as UDP datagrams (JSON, type BEARING), for the search that flies. None: nowhere."""
+    bearings_udp_host: str = "127.0.0.1"
+    """Nobody signs in on UDP: beyond this machine, whoever reaches the port can add bearings."""
     antenna_pattern: Path | None = None
     """JSON pattern or turntable table of the antenna; None: the small Yagi that ships."""
     heading_sigma_deg: float = Field(default=4.0, ge=0, le=45, allow_inf_nan=False)

@@ -112,8 +112,9 @@ class EmitterSpec(Model):
     kind: Literal["carrier", "pulsed"] = "carrier"
     label: str = Field(default="emitter", max_length=80)
     pulse_width_s: float = Field(default=0.02, gt=0, le=1, allow_inf_nan=False)
-    pulse_period_s: float = Field(default=1.3, gt=0, le=10, allow_inf_nan=False)
-    pulse_jitter_s: float = Field(default=0.03, ge=0, le=1, allow_inf_nan=False)
+    pulse_period_s: float = Field(default=1.3, gt=0, le=60, allow_inf_nan=False)
+    """A 406 MHz distress beacon sends a burst of 0.44 s every 50 s, give or take 2.5."""
+    pulse_jitter_s: float = Field(default=0.03, ge=0, le=5, allow_inf_nan=False)
     prior: PriorSpec = Field(default_factory=UniformPriorSpec)
 
     @model_validator(mode="after")

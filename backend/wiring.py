@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
@@ -13,6 +14,7 @@ from backend.api.suggestion import suggested_mission
 from backend.auth.access import Access
 from backend.auth.audit import AuditLog
 from backend.auth.records import Records
+from backend.bearing_feed import BearingFeed, DatagramRefused, open_feed
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import FIRST_CRAFT
@@ -23,6 +25,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
 from backend.search.localization import localization
+from backend.search.reported import ReportedBearing
 from backend.settings import AUDIT_FILE, Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
@@ -50,6 +53,8 @@ from planner.study import value_cache
 if TYPE_CHECKING:
     from backend.auth.provider import Provider
 
+log = logging.getLogger("crossfix.bearings")
+
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
     """Time of the last fact of an unfinished mission: a sped-up clock must not run behind it."""
@@ -62,6 +67,26 @@ def _warm_up() -> None:
     home = Place(lat=0.0, lon=0.0)
     spec = suggested_mission(home)
     preview(localization(spec, home), home, threads=2)
+
+
+@asynccontextmanager
+async def _bearings_by_udp(settings: Settings, missions: MissionRoom, clock: ScaledClock) -> AsyncGenerator[None]:
+    """Raises ValueError when the port cannot be had."""
+    port = settings.bearings_udp_port
+    if port is None:
+        yield
+        return
+
+    async def add(report: ReportedBearing) -> None:
+        flying = missions.flights.active
+        if flying is None:
+            raise DatagramRefused("no search flies")
+        await missions.reports.add(flying.mission_id, report)
+
+    feed = BearingFeed(add, clock.now, time.monotonic)
+    async with open_feed(feed, settings.bearings_udp_host, port) as (host, bound):
+        log.warning("bearings are taken by UDP on %s, port %d", host, bound)
+        yield
 
 
 def _warming() -> asyncio.Task[None]:
@@ -219,7 +244,8 @@ async def open_simulation(
                 access=access, provider=provider, finder=finder, pattern=pattern,
             )  # fmt: skip
             try:
-                yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
+                async with _bearings_by_udp(settings, missions, clock):
+                    yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:
                 await services.workers.close()
                 await services.desk.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -12,6 +13,7 @@ from backend.search.localization import localization
 from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
 from planner.study.errors import StudyError
+from planner.study.tags import TAGS, tags_missions
 from planner.study.truth import Claim, Model, Search, Truth, learn, missions, row_named, truth_of
 
 HOME = Place(50.6234, 7.2046)
@@ -28,7 +30,8 @@ def truth(
         typer.Option(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
             "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
-            "wrong (degrees of compass bias, percent of outliers)."
+            "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: so many tags in the field "
+            "scenario, each a claim."
         ),
     ],
     missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,
@@ -63,10 +66,12 @@ def truth(
 
 def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0) -> Truth:
     """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before."""
-    wanted = row_named(row)
     known = _model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
+    if row in TAGS:
+        return _tags_row(row, count, known, first_seed)
+    wanted = row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
@@ -80,6 +85,16 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, f
         if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
             remark(f"{row}: {len(claims)} of {count} missions")
     return truth_of(row, known, claims)
+
+
+def _tags_row(row: str, count: int, model: Model, first_seed: int) -> Truth:
+    """Each tag is a claim; missions: how many were flown."""
+    claims: list[Claim] = []
+    for number, found in enumerate(tags_missions(row, range(first_seed, first_seed + count), model), start=1):
+        claims.extend(found)
+        if number % REMARK_EVERY == 0 and number < count:
+            remark(f"{row}: {number} of {count} missions")
+    return replace(truth_of(row, model, claims), missions=count)
 
 
 def _model(name: str) -> Model:

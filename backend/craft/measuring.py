@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import cycle
 from uuid import uuid4
@@ -43,12 +44,18 @@ async def measure(
     listening: Listening,
     place_number: int,
     attempt: int,
+    wanted: Collection[str],
 ) -> tuple[Measured, ...]:
-    """One result an emitter. Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all."""
+    """One result an emitter; the turn lasts until those with the ids `wanted` were heard well enough.
+
+    Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all.
+    """
     ordered_s = equipment.clock.now()
     progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, ordered_s))
     try:
-        began_s, ended_s = await turn_and_listen(equipment, mission, listening)
+        waited_for = [emitter for emitter in mission.emitters if emitter.emitter_id in wanted]
+        turned_for = mission.model_copy(update={"emitters": waited_for or mission.emitters})
+        began_s, ended_s = await turn_and_listen(equipment, turned_for, listening)
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)

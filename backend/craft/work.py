@@ -21,7 +21,7 @@ from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, 
 from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
 from backend.search.closed_by_ground import closed_by_ground
-from backend.search.planning import next_place, way_to
+from backend.search.planning import next_place, next_place_together, way_to
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import Place
@@ -102,7 +102,13 @@ class Work:
         if vetoes:
             return inputs.WorkVetoed(vetoes)
         found = await measure(
-            self.equipment, self.task.mission, self.mission_id, self.listening, effect.place_number, effect.attempt
+            self.equipment,
+            self.task.mission,
+            self.mission_id,
+            self.listening,
+            effect.place_number,
+            effect.attempt,
+            wanted=[emitter.emitter_id for emitter in self.search().wanted],
         )
         for measured in found:
             self.keep_sweep(measured, effect.place_number, effect.attempt)
@@ -138,20 +144,15 @@ class Work:
         effect: effects.PlanNext,
         closed: BaseGeometry | None = None,
     ) -> PlanChosen:
-        """For the first emitter that is not localized; each turn listens to all of them. closed: m ENU."""
+        """For all emitters that are not localized; each turn listens to all of them. closed: m ENU."""
+        number, threads, craft_id = effect.place_number, self.equipment.threads, self.equipment.craft_id
+        if len(search.wanted) > 1 and self.task.mission.planner.method == "rollout":
+            wanted = [(self.task.emitters[e.emitter_id].without(closed), e.bearings) for e in search.wanted]
+            return next_place_together(wanted, platform, number, effect.avoid, threads, craft_id)
         emitter = (*search.wanted, *search.emitters.values())[0]
         task = self.task.emitters[emitter.emitter_id].without(closed)
         belief = task.planning_belief(task.planner_bearings(emitter.bearings))
-        return next_place(
-            task,
-            belief,
-            emitter.bearings,
-            platform,
-            effect.place_number,
-            effect.avoid,
-            self.equipment.threads,
-            self.equipment.craft_id,
-        )
+        return next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
 
     def vetoes_against(self, place: Place, way: Sequence[tuple[float, float]] | None = None) -> tuple[Reason, ...]:
         """What safety has against flying to a place from where the vehicle is now. way: points in between (m ENU),

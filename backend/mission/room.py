@@ -13,6 +13,7 @@ from backend.mission.flights import Flights
 from backend.mission.nets import NetsKeeper
 from backend.mission.questions import Questions
 from backend.mission.records import Records
+from backend.mission.reports import Reports
 from hardware.ports import VehicleUnreachable
 
 log = logging.getLogger("crossfix.mission")
@@ -29,6 +30,7 @@ class MissionRoom:
     flights: Flights
     drafts: Drafts
     questions: Questions
+    reports: Reports
     display: Display
     _showing: asyncio.Task[None] | None = field(default=None)
 
@@ -62,5 +64,6 @@ def mission_room(equipment: MissionEquipment) -> MissionRoom:
         flights=flights,
         drafts=Drafts(equipment, records, flights),
         questions=Questions(equipment, records, flights),
+        reports=Reports(records, flights, equipment.clock),
         display=Display(equipment, flights),
     )

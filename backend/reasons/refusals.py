@@ -81,6 +81,12 @@ class NoSuchBearing:
 
 
 @dataclass(frozen=True, slots=True)
+class BearingOfAnother:
+    code: Literal["bearing_of_another"] = "bearing_of_another"
+    english: ClassVar[Words] = Words("This bearing was reported under another name.", "Ask an operator to exclude it.")
+
+
+@dataclass(frozen=True, slots=True)
 class BearingExcludedAlready:
     code: Literal["bearing_excluded_already"] = "bearing_excluded_already"
     english: ClassVar[Words] = Words("The bearing is excluded already.")
@@ -178,6 +184,7 @@ RefusalReason = (
     | NoProposedPlace
     | PlaceRefusedBefore
     | NoSuchBearing
+    | BearingOfAnother
     | BearingExcludedAlready
     | NoSuchAlert
     | NoSuchCraft

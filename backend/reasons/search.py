@@ -137,6 +137,45 @@ class RecordingTooFar:
 
 
 @dataclass(frozen=True, slots=True)
+class BearingTooFar:
+    distance_m: float
+    code: Literal["bearing_too_far"] = "bearing_too_far"
+    english: ClassVar[Words] = Words(
+        "The bearing was taken {distance_m} from the search's area.",
+        "Check where you stand, or report it to the search that it belongs to.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BearingTimeImpossible:
+    """age_s: negative of a time to come."""
+
+    age_s: float
+    code: Literal["bearing_time_impossible"] = "bearing_time_impossible"
+    english: ClassVar[Words] = Words(
+        "The bearing's time is in the future or more than a day ago.", "Set the clock of whatever sent it."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WhichEmitter:
+    emitters: int
+    code: Literal["which_emitter"] = "which_emitter"
+    english: ClassVar[Words] = Words(
+        "The search has {emitters} emitters; the bearing does not say which one was heard.", "Name the emitter."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TakenEarlier:
+    """age_s: when it was brought in."""
+
+    age_s: float
+    code: Literal["taken_earlier"] = "taken_earlier"
+    english: ClassVar[Words] = Words("It was taken {age_s} before it arrived.")
+
+
+@dataclass(frozen=True, slots=True)
 class ImportRemark:
     """What was changed about a recorded sweep when it was imported."""
 
@@ -197,6 +236,10 @@ SearchReason = (
     | LocalizedAgainst
     | RecordingTooLong
     | RecordingTooFar
+    | BearingTooFar
+    | BearingTimeImpossible
+    | WhichEmitter
+    | TakenEarlier
     | ImportRemark
     | OtherFrequency
     | SweepIncomplete

@@ -22,6 +22,7 @@ from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.plan import expected_time_from, plan
 from planner.policy.base import BASE_POLICIES
+from planner.policy.several import Wanted, plan_several
 from planner.travel import straight_suffices, travel_path, visibility_graph
 from planner.types import Decision, FloatArray, PlannerError, Problem, Ring
 
@@ -42,13 +43,47 @@ def next_place(
     began = time.perf_counter()
     without = [task.frame.to_enu(p) for p in avoid]
     decision = decide(task, belief, measured, platform, without, threads)
+    return _plan_fact(task, decision, place_number, craft_id, task.emitter_id, began)
+
+
+def next_place_together(
+    wanted: Sequence[tuple[Localization, Sequence[BearingMeasured]]],
+    platform: tuple[float, float],
+    place_number: int,
+    avoid: Sequence[Place],
+    threads: int,
+    craft_id: str = FIRST_CRAFT,
+) -> PlanChosen:
+    """The choice for several emitters (each with its counted bearings) that one turn hears at once; it is to tell most
+    of none of them. Raises PlannerError when no place is allowed or reachable."""
+    began = time.perf_counter()
+    task = wanted[0][0]
+    decision = plan_several(
+        [_still_wanted(one, measured) for one, measured in wanted],
+        platform,
+        task.mission.planner.options,
+        threads=threads,
+        without=[task.frame.to_enu(place) for place in avoid],
+    )
+    return _plan_fact(task, decision, place_number, craft_id, None, began)
+
+
+def _still_wanted(task: Localization, measured: Sequence[BearingMeasured]) -> Wanted:
+    belief = task.planning_belief(task.planner_bearings(measured))
+    return Wanted(foreseen(task.problem, measured, belief), belief)
+
+
+def _plan_fact(
+    task: Localization, decision: Decision, place_number: int, craft_id: str, emitter_id: str | None, began: float
+) -> PlanChosen:
+    """began: by time.perf_counter."""
     plan_ms = 1e3 * (time.perf_counter() - began)
     times = decision.times
     chosen = next((c for c in decision.candidates if (c.x, c.y) == (decision.x, decision.y)), None)
     mean = float(times.mean()) if len(times) else None if chosen is None else chosen.value
     return PlanChosen(
         craft_id=craft_id,
-        emitter_id=task.emitter_id,
+        emitter_id=emitter_id,
         place_number=place_number,
         place=task.place(decision.x, decision.y),
         source="planner",

@@ -15,6 +15,7 @@ from planner.reasons.choice import (
     QuickestPlace,
     QuickestPlaceFound,
     RoutePlanner,
+    SoonestTogether,
 )
 from planner.reasons.not_yet import (
     BearingMissesArea,
@@ -86,6 +87,7 @@ __all__ = [
     "QuickestPlaceFound",
     "RefusalReason",
     "RoutePlanner",
+    "SoonestTogether",
     "TooFewPlaces",
     "TooFewPlacesAgree",
     "TooManyPlaces",

@@ -52,6 +52,21 @@ class OnlyPlace:
 
 
 @dataclass(frozen=True, slots=True)
+class SoonestTogether:
+    """Of several emitters. mean_time_s: until each of them is localized, on average."""
+
+    mean_time_s: float
+    emitters: int
+    places: int
+    code: Literal["soonest_together"] = "soonest_together"
+
+    english: ClassVar[Words] = Words(
+        "By way of this place the {emitters} emitters still looked for are localized after about {mean_time_s} "
+        "on average, sooner than by any other of {places|place|places} tried."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class QuickestPlaceFound:
     """By a search over a continuous action space."""
 
@@ -143,6 +158,7 @@ ChoiceReason = (
     QuickestPlace
     | LongestLead
     | OnlyPlace
+    | SoonestTogether
     | QuickestPlaceFound
     | PlannedMeanwhile
     | MostInformation

@@ -93,14 +93,14 @@ def missions(
     search: Search, row: Row, seeds: Sequence[int], model: Model = "joint", prior: ErrorPrior | None = None
 ) -> Iterator[Claim]:
     """Mission by mission, each with its own emitter and errors; the seed decides both. prior: of the joint model."""
-    unknown = _prior(search.problem, model, prior)
+    unknown = prior_of(search.problem, model, prior)
     for seed in seeds:
         yield _flown(search, row, seed, model, unknown)[0]
 
 
 def fly(search: Search, row: Row, seed: int, model: Model = "joint", prior: ErrorPrior | None = None) -> Claim:
     """One mission."""
-    return _flown(search, row, seed, model, _prior(search.problem, model, prior))[0]
+    return _flown(search, row, seed, model, prior_of(search.problem, model, prior))[0]
 
 
 def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -> ErrorPrior:
@@ -131,8 +131,8 @@ def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelie
         here = place
         angle, sigma = sensor.bearing(place, len(bearings))
         source = SOURCES[sensor.taker(len(bearings)) is not sensor]
-        bearings.append(_bearing(model, place, angle, sigma, row.heading_sigma, source))
-        belief = _updated(unknown, belief, bearings[-1])
+        bearings.append(bearing_of(model, place, angle, sigma, row.heading_sigma, source))
+        belief = folded(unknown, belief, bearings[-1])
         said = verdict(problem, search.rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
@@ -206,13 +206,16 @@ def _anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
             return target
 
 
-def _prior(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBelief:
+def prior_of(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBelief:
+    """What a search begins with. prior: of the joint model, None: of a sensor of which nothing is known."""
     if model == "independent":
         return prior_belief(problem)
     return joint_prior(problem) if prior is None else joint_prior(problem, otherwise=prior)
 
 
-def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float, source: str) -> Bearing:
+def bearing_of(
+    model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float, source: str
+) -> Bearing:
     """The independent model takes the heading's error for each bearing's own."""
     x, y = float(place[0]), float(place[1])
     if model == "independent":
@@ -220,7 +223,8 @@ def _bearing(model: Model, place: FloatArray, angle: float, sigma: float, headin
     return Bearing(x, y, angle, sigma, source=source)
 
 
-def _updated(unknown: GridBelief, belief: GridBelief, bearing: Bearing) -> GridBelief:
+def folded(unknown: GridBelief, belief: GridBelief, bearing: Bearing) -> GridBelief:
+    """The belief with a bearing; one that contradicts all others starts it over from what was unknown."""
     if isinstance(belief, JointBelief):
         return update_joint(belief, bearing)
     try:

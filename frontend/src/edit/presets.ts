@@ -24,9 +24,11 @@ export const presetNames = Object.keys(presets) as PresetName[];
 
 export function withPreset(spec: MissionSpec, name: PresetName): MissionSpec {
   const preset = presets[name];
-  const emitter = { ...firstEmitter(spec), frequency_hz: preset.frequencyHz, kind: preset.kind, label: t(`edit.preset.${name}`) };
+  const emitter = { ...firstEmitter(spec), frequency_hz: preset.frequencyHz, label: t(`edit.preset.${name}`) };
+  const named = set(spec, EMITTER, emitter);
   return {
-    ...set(spec, EMITTER, emitter),
+    ...named,
+    emitters: named.emitters.map((one) => ({ ...one, kind: preset.kind })),
     sensor: {
       ...spec.sensor,
       sigma_deg: preset.sigmaDeg,

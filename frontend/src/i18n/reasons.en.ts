@@ -14,6 +14,10 @@ export const reasonsEn: ReasonTable = {
     text: "Localized in about {expected_time_s} by way of this place, the only one {among?allowed=allowed|tried=tried}.",
     remedy: "",
   },
+  soonest_together: {
+    text: "By way of this place the {emitters} emitters still looked for are localized after about {mean_time_s} on average, sooner than by any other of {places|place|places} tried.",
+    remedy: "",
+  },
   quickest_place_found: {
     text: "Localized in about {expected_time_s} by way of this place, found by {search?quadrant=quadrant search|sgd=stochastic gradient descent|bfgs=BFGS}.",
     remedy: "",
@@ -1224,6 +1228,10 @@ export const reasonsEn: ReasonTable = {
     text: "This mission has no such bearing.",
     remedy: "Reload the page.",
   },
+  bearing_of_another: {
+    text: "This bearing was reported under another name.",
+    remedy: "Ask an operator to exclude it.",
+  },
   bearing_excluded_already: {
     text: "The bearing is excluded already.",
     remedy: "",
@@ -1499,6 +1507,22 @@ export const reasonsEn: ReasonTable = {
   recording_too_far: {
     text: "The recording was taken {distance_m} from the mission's area.",
     remedy: "Import it into a mission whose area is around it, or name the right place.",
+  },
+  bearing_too_far: {
+    text: "The bearing was taken {distance_m} from the search's area.",
+    remedy: "Check where you stand, or report it to the search that it belongs to.",
+  },
+  bearing_time_impossible: {
+    text: "The bearing's time is in the future or more than a day ago.",
+    remedy: "Set the clock of whatever sent it.",
+  },
+  which_emitter: {
+    text: "The search has {emitters} emitters; the bearing does not say which one was heard.",
+    remedy: "Name the emitter.",
+  },
+  taken_earlier: {
+    text: "It was taken {age_s} before it arrived.",
+    remedy: "",
   },
   import_remark: {
     text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}.",

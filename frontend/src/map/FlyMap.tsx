@@ -10,7 +10,7 @@ import { source } from "../state/connection";
 import { boundsOf, lonLat } from "../state/geometry";
 import { highlighted } from "../state/highlight";
 import { inFlight, isHomeward } from "../state/mission";
-import { cursor } from "../state/moment";
+import { cursor, emittersThen } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { path, vehicle } from "../state/vehicle";
@@ -92,6 +92,7 @@ function nextElement(): HTMLElement {
 const spec = computed(() => mission.value.spec);
 const bearings = computed(() => mission.value.bearings);
 const estimated = computed(() => mission.value.belief);
+const emitterId = computed(() => mission.value.emitterId);
 const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.plan));
 const home = computed(() => mission.value.home);
 const phase = computed(() => mission.value.phase);
@@ -128,7 +129,10 @@ function bind(map: GlMap): () => void {
       put(map, "home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(at) } }] : []));
     }),
     effect(() => paintBelief(map)),
-    effect(() => put(map, "measured", measuredFeatures({ spec: spec.value, bearings: bearings.value, belief: estimated.value }))),
+    effect(() => {
+      const shown = { spec: spec.value, bearings: bearings.value, belief: estimated.value, emitterId: emitterId.value };
+      put(map, "measured", measuredFeatures(shown, emittersThen.value));
+    }),
     effect(() => {
       for (const layer of missionLayers(palettes[settings.value.theme], basemap.value !== null)) {
         const by = layer.metadata?.switch;

@@ -4,7 +4,7 @@ import { missionAt } from "../state/mission";
 import { type MissionView, viewOf } from "../state/view";
 import type { MissionEvent } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
-import { excluded, record, someBearing, somePlan, someSpec } from "../wire/examples";
+import { excluded, record, someBearing, someBelief, somePlan, someSpec } from "../wire/examples";
 import { candidateFeatures, measuredFeatures, planFeatures } from "./features";
 
 const of = (state: MissionView, ...what: string[]) => measuredFeatures(state).features.filter((f) => what.includes(f.properties?.what));
@@ -17,6 +17,11 @@ it("a bearing's line points where the bearing points, past the area", () => {
   const geometry = of(state, "main")[0]!.geometry;
   const [from, to] = (geometry as GeoJSON.LineString).coordinates as [LonLat, LonLat];
   expect(bearingDeg(from, to)).toBeCloseTo(217, 0);
+});
+
+it("the place of a bearing that somebody reported has their name, not a number", () => {
+  const state = seen(someBearing({ source: { kind: "person", name: "Ada" }, place_number: 0 }));
+  expect(of(state, "place").map((f) => f.properties?.label)).toEqual(["Ada"]);
 });
 
 it("two peaks of one sweep stay two hypotheses", () => {
@@ -38,6 +43,18 @@ it("the newest rose is the strongest", () => {
 it("the chosen candidate is drawn last, on top", () => {
   const state = seen(somePlan());
   expect(candidateFeatures(state, 2).features.at(-1)!.properties).toMatchObject({ index: 1, shade: 5, lit: false });
+});
+
+it("of several emitters each has its number and colour, and those not looked at their region", () => {
+  const spec = { ...someSpec(), emitters: ["a", "b", "c"].map((id) => ({ ...someSpec().emitters[0]!, emitter_id: id })) };
+  const beliefs = ["a", "b"].map((emitter_id) => someBelief({ emitter_id }));
+  const state = missionAt(record({ kind: "mission_drafted", spec }, ...beliefs), Infinity);
+  const drawn = measuredFeatures(viewOf(state, null, "b"), state.emitters).features;
+  const properties = (what: string) => drawn.filter((f) => f.properties?.what === what).map((f) => f.properties!);
+  expect(properties("emitter").map((p) => p.label)).toEqual(["1", "2"]);
+  expect(new Set(properties("emitter").map((p) => p.colour)).size).toBe(2);
+  expect(properties("emitter_c95").map((p) => p.colour)).toEqual([properties("emitter")[0]!.colour]);
+  expect(properties("c95")).toHaveLength(1);
 });
 
 it("nothing is drawn of an estimate that is not there", () => {

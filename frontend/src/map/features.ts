@@ -2,6 +2,8 @@
 
 import { marginOutline } from "../state/areas";
 import { rankCandidates, roundShade } from "../state/candidates";
+import type { EmitterState } from "../state/emitter";
+import { emitterColour } from "../state/emitterColours";
 import { boundsOf, circle, destination, distanceM, lonLat, wedge } from "../state/geometry";
 import { polarScale, radius } from "../state/polar";
 import type { MissionView } from "../state/view";
@@ -60,12 +62,13 @@ export function planFeatures(spec: MissionSpec | null): Features {
 const ONE_PLACE_M = 3;
 
 function placeFeatures({ bearings }: Bearings): GeoJSON.Feature[] {
-  const places: { at: LonLat; numbers: number[] }[] = [];
+  const places: { at: LonLat; numbers: (number | string)[] }[] = [];
   for (const { fact } of bearings) {
     const at = lonLat(fact.place);
     const near = places.find((p) => distanceM(p.at, at) < ONE_PLACE_M);
-    if (!near) places.push({ at, numbers: [fact.place_number] });
-    else if (!near.numbers.includes(fact.place_number)) near.numbers.push(fact.place_number);
+    const called = fact.source.kind === "person" ? fact.source.name.slice(0, 12) : fact.place_number;
+    if (!near) places.push({ at, numbers: [called] });
+    else if (!near.numbers.includes(called)) near.numbers.push(called);
   }
   return places.map(({ at, numbers }) => point(at, { what: "place", label: numbers.join(",") }));
 }
@@ -118,9 +121,32 @@ function estimateFeatures({ belief }: Pick<MissionView, "belief">): GeoJSON.Feat
   ];
 }
 
+type Emitters = ReadonlyMap<string, EmitterState>;
+
+/** The estimates of all emitters of a search that has several, each in its colour with its number; the regions of those not looked at. */
+function emittersFeatures(spec: MissionSpec | null, emitters: Emitters, looked: string | null): GeoJSON.Feature[] {
+  if (!spec || spec.emitters.length < 2) return [];
+  return spec.emitters.flatMap(({ emitter_id: id }, index) => {
+    const estimate = emitters.get(id)?.belief?.fact.estimate;
+    if (!estimate) return [];
+    const { fill: colour, ink } = emitterColour(index);
+    const marked = point(lonLat(estimate), { what: "emitter", colour, ink, label: String(index + 1) });
+    return id === looked ? [marked] : [feature(estimate.c95 as GeoJSON.Geometry, { what: "emitter_c95", colour }), marked];
+  });
+}
+
 /** What the sweeps say and what follows, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
-export const measuredFeatures = (mission: Bearings & Pick<MissionView, "belief">): Features =>
-  collection([...directionFeatures(mission), ...roseFeatures(mission), ...placeFeatures(mission), ...estimateFeatures(mission)]);
+export const measuredFeatures = (
+  mission: Bearings & Pick<MissionView, "belief"> & Partial<Pick<MissionView, "emitterId">>,
+  emitters: Emitters = new Map(),
+): Features =>
+  collection([
+    ...directionFeatures(mission),
+    ...roseFeatures(mission),
+    ...placeFeatures(mission),
+    ...estimateFeatures(mission),
+    ...emittersFeatures(mission.spec, emitters, mission.emitterId ?? null),
+  ]);
 
 export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: number | null): Features {
   const plan = mission.plan?.fact;

@@ -149,6 +149,7 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
     line("excluded", "measured", "excluded", "bearings", { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] }),
     line("c95-halo", "measured", "c95", "belief", { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }),
     line("c95", "measured", "c95", "belief", { "line-color": colours.c95, "line-width": 2.2 }),
+    line("emitter-c95", "measured", "emitter_c95", "belief", { "line-color": ["get", "colour"], "line-width": 2 }),
     fill("roses", "measured", "rose", "roses", {
       "fill-color": colours.rose,
       "fill-opacity": ["case", ["get", "excluded"], 0.05, fading(0.35, 0.08)],
@@ -211,6 +212,26 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       source: "measured",
       filter: of("estimate"),
       paint: { "circle-radius": 5, "circle-color": colours.ink, "circle-stroke-color": colours.halo, "circle-stroke-width": 2.5 },
+    },
+    {
+      id: "emitters",
+      type: "circle",
+      source: "measured",
+      filter: of("emitter"),
+      paint: {
+        "circle-radius": 9,
+        "circle-color": ["get", "colour"],
+        "circle-stroke-color": colours.halo,
+        "circle-stroke-width": 2,
+      },
+    },
+    {
+      id: "emitter-numbers",
+      type: "symbol",
+      source: "measured",
+      filter: of("emitter"),
+      layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-allow-overlap": true },
+      paint: { "text-color": ["get", "ink"] },
     },
   ];
 }

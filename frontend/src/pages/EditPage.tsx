@@ -5,9 +5,11 @@ import { AreaSection } from "../edit/AreaSection";
 import { CompassCard } from "../edit/CompassCard";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { EMITTER } from "../edit/emitter";
+import { EmitterListField } from "../edit/EmitterListField";
+import { EMITTER, firstEmitter } from "../edit/emitter";
 import { FormField, TextField } from "../edit/FormField";
 import { type NumberField, sections } from "../edit/fields";
+import { KindField } from "../edit/KindField";
 import { PreviewCard } from "../edit/PreviewCard";
 import { ProfileRow } from "../edit/ProfileRow";
 import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
@@ -33,6 +35,8 @@ async function specFor(route: EditRoute): Promise<{ spec: MissionSpec; suggested
 const FREQUENCY: NumberField = { kind: "number", path: `${EMITTER}.frequency_hz`, label: "edit.frequency", unit: "MHz", scale: 1e6 };
 
 function NameSection({ failed }: { failed: RequestFailed | null }) {
+  const { spec } = draft.value!;
+  const asList = spec.emitters.length > 1 || firstEmitter(spec).kind === "pulsed"; // who looks for tags looks for several
   return (
     <fieldset class="panel">
       <legend>{t("edit.section.name")}</legend>
@@ -57,20 +61,15 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
           ))}
         </select>
       </div>
-      <TextField path={`${EMITTER}.label`} label={t("edit.label")} failed={failed} />
-      <FormField field={FREQUENCY} failed={failed} />
-      <FormField
-        field={{
-          kind: "choice",
-          path: `${EMITTER}.kind`,
-          label: "edit.kind",
-          options: [
-            { value: "carrier", label: "edit.kind.carrier" },
-            { value: "pulsed", label: "edit.kind.pulsed" },
-          ],
-        }}
-        failed={failed}
-      />
+      {asList ? (
+        <EmitterListField />
+      ) : (
+        <>
+          <TextField path={`${EMITTER}.label`} label={t("edit.label")} failed={failed} />
+          <FormField field={FREQUENCY} failed={failed} />
+        </>
+      )}
+      <KindField />
       <ProfileRow />
       {draft.value?.spec.sensor.bearing_errors === "joint" && <CompassCard />}
     </fieldset>

@@ -4,7 +4,7 @@ import { t } from "../i18n";
 import * as access from "../sources/accessApi";
 import type { Try } from "./PeoplePage";
 
-const SCOPES: readonly access.Scope[] = ["payload", "exports", "metrics"];
+const SCOPES: readonly access.Scope[] = ["payload", "exports", "metrics", "bearings"];
 
 export function Machines({ list, attempt }: { list: access.Token[]; attempt: Try }) {
   const [name, setName] = useState("");

@@ -75,7 +75,7 @@ it("shows another emitter of several, and the first again in another mission", (
   show(drafted(2), started());
   expect(part("which-craft")).toBeNull();
   expect(mission.value.emitterId).toBe("e1");
-  choose("which-emitter", "e2");
+  act(() => part("emitter-e2")!.click());
   expect(mission.value.emitterId).toBe("e2");
   show(drafted(2));
   expect(mission.value.emitterId).toBe("e1");

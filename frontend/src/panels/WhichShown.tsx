@@ -1,9 +1,9 @@
-// Which emitter and which craft the panels and the map show. With one of each there is nothing to choose.
+// Which craft and which emitter the panels and the map show. With one of each there is nothing to choose.
 import { type MessageKey, t } from "../i18n";
-import { emitterName } from "../state/emitterName";
 import { craftIds } from "../state/moment";
-import { selectedCraft, selectedEmitter } from "../state/selection";
+import { selectedCraft } from "../state/selection";
 import { mission } from "../state/shown";
+import { EmitterList } from "./EmitterList";
 
 interface Choice {
   label: MessageKey;
@@ -31,19 +31,12 @@ function Choose({ label, testId, ids, shown, nameOf, onChoose }: Choice) {
 }
 
 export function WhichShown() {
-  const { spec, emitterId, craftId } = mission.value;
+  const { spec, craftId } = mission.value;
   const emitters = spec?.emitters ?? [];
   if (emitters.length < 2 && craftIds.value.length < 2) return null;
   return (
     <div class="which-shown" data-testid="which-shown">
-      <Choose
-        label="which.emitter"
-        testId="which-emitter"
-        ids={emitters.map((emitter) => emitter.emitter_id)}
-        shown={emitterId}
-        nameOf={(id) => emitterName(emitters, id)}
-        onChoose={(id) => (selectedEmitter.value = id)}
-      />
+      <EmitterList />
       <Choose
         label="which.craft"
         testId="which-craft"

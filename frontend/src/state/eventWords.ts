@@ -104,6 +104,10 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "sweep_rejected":
       return t("event.sweep_rejected", { quality: formatNumber(event.quality, 2), reason: reasonText(event.reason) });
     case "bearing_measured":
+      if (event.source.kind === "person") {
+        const told = { name: event.source.name, bearing: formatBearing(event.bearing_deg), sigma: formatNumber(event.sigma_deg, 1) };
+        return [t("event.bearing_reported", told), ...event.remarks.map(reasonText)].join(" ");
+      }
       return t("event.bearing_measured", {
         bearing: formatBearing(event.bearing_deg),
         sigma: formatNumber(event.sigma_deg, 1),

@@ -16,6 +16,9 @@ const stateThen = computed(() => (cursor.value === null ? stateNow.value : missi
 /** All craft that fly, or flew, for the mission. */
 export const craftIds = computed<readonly string[]>(() => [...stateNow.value.crafts.keys()]);
 
+/** By id, at the moment looked at. */
+export const emittersThen = computed(() => stateThen.value.emitters);
+
 export const liveMission = computed<MissionView>(() => viewOf(stateNow.value, selectedCraft.value, selectedEmitter.value));
 
 export const happened = computed<MissionView>(() =>

@@ -56,6 +56,7 @@ CALLERS = (
     Caller("payload", scope="payload"),
     Caller("exports", scope="exports"),
     Caller("metrics", scope="metrics"),
+    Caller("bearings", scope="bearings"),
 )
 
 

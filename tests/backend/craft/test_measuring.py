@@ -28,7 +28,7 @@ async def measured(stage: Stage, mission: MissionSpec | None = None) -> tuple[Me
     listening = Listening(stage.receiver, stage.clock, channels_of(mission), 5.0)
     listening.start()
     try:
-        return await measure(stage.craft(), mission, "m", listening, 1, 1)
+        return await measure(stage.craft(), mission, "m", listening, 1, 1, [e.emitter_id for e in mission.emitters])
     finally:
         await listening.stop()
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from equipment import spec
 
-from backend.craft.sweep_turns import complete, turn_rate_deg_s
+from backend.craft.listening import channel_of
+from backend.craft.sweep_turns import MOST_TURNS, SLOWEST_DEG_S, complete, turn_rate_deg_s
 from backend.spec import EmitterSpec, MissionSpec, SensorSpec
-from hardware.readings import HeadingSample, PowerSample
+from hardware.readings import HeadingSample, PowerSample, Pulses
 
 PERIOD_S = 1.0
 
@@ -46,6 +47,17 @@ def test_a_tag_turns_slowly_enough_for_its_pulses_and_never_faster_than_specifie
 def test_of_several_tags_the_slowest_sets_the_turn() -> None:
     slow = turn_rate_deg_s(mission(tag(2.0)))
     assert turn_rate_deg_s(mission(tag(), EmitterSpec(), tag(2.0))) == slow < turn_rate_deg_s(mission(tag()))
+
+
+def test_bursts_every_fifty_seconds_are_turned_for_as_slowly_as_may_be() -> None:
+    """A 406 MHz beacon: some eleven bursts in three turns, which is nine minutes of hovering."""
+    beacon = EmitterSpec(
+        frequency_hz=406.028e6, kind="pulsed", pulse_width_s=0.44, pulse_period_s=50.0, pulse_jitter_s=2.5
+    )
+    rate = turn_rate_deg_s(mission(beacon))
+    assert rate == SLOWEST_DEG_S
+    assert channel_of(beacon).pulses == Pulses(0.44, 50.0, 2.5)
+    assert 10 < MOST_TURNS * 360.0 / rate / beacon.pulse_period_s < 12
 
 
 @pytest.mark.parametrize("lost", [(8.0, 16.0), (0.0, 4.0)])

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from backend.search.localization import Localization, localization
-from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, way_to
-from backend.spec import FlightSpec, MissionSpec, PlannerSpec, Polygon
+from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, next_place_together, way_to
+from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
 from hardware.readings import Place
 
 
@@ -55,6 +55,26 @@ def test_a_refused_place_is_not_chosen_again(method: str) -> None:
         choice = next_place(made, belief, seen, (0.0, -20.0), 2, refused, 1).place
         assert choice not in refused
         refused.append(choice)
+
+
+def test_the_place_for_several_emitters_is_allowed_explained_and_not_refused_before() -> None:
+    emitters = [EmitterSpec(emitter_id=name, frequency_hz=150e6 + k) for k, name in enumerate(("a", "b"))]
+    mission = MissionSpec(name="m", area=AREA, emitters=emitters, planner=PlannerSpec(budget=200))
+    targets = {"a": (40.0, 80.0), "b": (260.0, 90.0)}
+    wanted = [(localization(mission, HOME, name), [towards(0.0, -20.0, at)]) for name, at in targets.items()]
+    refused: list[Place] = []
+    for _ in range(3):
+        choice, again = (next_place_together(wanted, (0.0, -20.0), 2, refused, 1) for _ in range(2))
+        assert choice.place == again.place
+        assert choice.place not in refused
+        assert (choice.emitter_id, choice.place_number, choice.reason.code) == (None, 2, "soonest_together")
+        x, y = FRAME.to_enu(choice.place)
+        assert -61 <= x <= 361
+        assert -61 <= y <= 181
+        assert choice.expected_time_s is not None
+        chosen = next(c for c in choice.candidates if (c.lat, c.lon) == (choice.place.lat, choice.place.lon))
+        assert choice.expected_time_s > chosen.value_s, "the last of two is found later than they are on average"
+        refused.append(choice.place)
 
 
 def test_the_way_goes_around_a_zone_and_straight_without_one() -> None:

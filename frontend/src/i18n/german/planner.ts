@@ -14,6 +14,10 @@ export const planner = {
     text: "Gefunden in etwa {expected_time_s} über diesen Ort, den einzigen {among?allowed=erlaubten|tried=erprobten}.",
     remedy: "",
   },
+  soonest_together: {
+    text: "Über diesen Ort sind die {emitters} noch gesuchten Sender im Mittel nach etwa {mean_time_s} gefunden, eher als über jeden anderen von {places} erprobten.",
+    remedy: "",
+  },
   quickest_place_found: {
     text: "Gefunden in etwa {expected_time_s} über diesen Ort, ermittelt durch {search?quadrant=Suche in Quadranten|sgd=stochastischen Gradientenabstieg|bfgs=BFGS}.",
     remedy: "",

@@ -100,6 +100,19 @@ export const recording = {
   recording_unusable: { text: "Die Aufnahme {file} ist nicht verwendbar. {because}", remedy: "{because!remedy}" },
 
   recording_too_long: { text: "Die Aufnahme enthält {sweeps} Drehungen.", remedy: "Höchstens {most} auf einmal einlesen." },
+  bearing_too_far: {
+    text: "Die Peilung wurde {distance_m} vom Suchgebiet entfernt genommen.",
+    remedy: "Prüfen, wo man steht, oder sie der Suche melden, zu der sie gehört.",
+  },
+  bearing_time_impossible: {
+    text: "Die Zeit der Peilung liegt in der Zukunft oder mehr als einen Tag zurück.",
+    remedy: "Die Uhr des Geräts stellen, das sie gesendet hat.",
+  },
+  which_emitter: {
+    text: "Die Suche hat {emitters} Sender; die Peilung sagt nicht, welcher gehört wurde.",
+    remedy: "Den Sender nennen.",
+  },
+  taken_earlier: { text: "Sie wurde {age_s} vor ihrem Eintreffen genommen.", remedy: "" },
   recording_too_far: {
     text: "Die Aufnahme entstand {distance_m} vom Gebiet der Mission entfernt.",
     remedy: "In eine Mission einlesen, deren Gebiet sie umgibt, oder den richtigen Ort nennen.",

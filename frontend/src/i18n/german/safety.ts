@@ -75,6 +75,10 @@ export const safety = {
   place_refused_before: { text: "Der Autopilot hat es abgelehnt, an diesen Ort zu fliegen.", remedy: "Einen anderen Ort wählen." },
   no_proposed_place: { text: "Es ist kein Ort vorgeschlagen.", remedy: "Auf den nächsten Ort des Planers warten." },
   no_such_bearing: { text: "Diese Peilung hat die Mission nicht.", remedy: "Die Seite neu laden." },
+  bearing_of_another: {
+    text: "Diese Peilung wurde unter einem anderen Namen gemeldet.",
+    remedy: "Einen Bediener bitten, sie wegzulassen.",
+  },
   bearing_excluded_already: { text: "Die Peilung ist schon weggelassen.", remedy: "" },
   no_such_alert: { text: "Diesen offenen Alarm gibt es nicht.", remedy: "Er ist vielleicht von selbst vorbei." },
   no_such_craft: { text: "Für diese Mission fliegt kein Fluggerät {craft_id}.", remedy: "Die Seite neu laden." },

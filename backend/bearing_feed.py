@@ -1,0 +1,184 @@
+"""Bearings by UDP, as Project Horus' programs and others send them: JSON objects of type BEARING (see `read_datagram`).
+
+Nobody signs in on UDP: whoever can send to the port can add bearings to the search that flies. It is off unless a port
+is set, and listens to this machine only unless a host is.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import math
+from collections.abc import AsyncGenerator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any
+from uuid import uuid4
+
+from backend.auth.buckets import Buckets, neighbourhood
+from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
+from backend.search.reported import ReportedBearing
+from hardware.frame import LocalFrame
+from hardware.readings import Place
+from planner.reason import sentence_of
+
+log = logging.getLogger("crossfix.bearings")
+
+LARGEST_BYTES = 32 * 2**10
+"""With the raw directions of a whole circle in it."""
+BURST, EVERY_S = 20.0, 0.2
+"""Datagrams of one address: so many at once, then one every 0.2 s."""
+SAID_EVERY_S = 10.0
+SAME_PLACE_M = 25.0
+ANEW_S = 60.0
+"""A direction finder that stands still sends the same errors again and again: from one place, one bearing a minute."""
+MOST_WAITING = 64
+MOST_SOURCES = 256
+SIGMA_DEG = 12.0
+
+
+class DatagramRefused(ValueError):
+    """Why a datagram is no bearing, in words for the log."""
+
+
+def read_datagram(data: bytes, now_s: float) -> ReportedBearing:
+    """{"type": "BEARING", "bearing_type": "absolute", "latitude", "longitude", "bearing", and optionally "source",
+    "timestamp" (epoch seconds), "sigma" (degrees), "emitter_id"}; what else stands in it is not looked at.
+
+    A confidence is not: its scale is each program's own. A relative bearing is refused: nobody tells the car's heading.
+    Raises DatagramRefused.
+    """
+    if len(data) > LARGEST_BYTES:
+        raise DatagramRefused(f"it has {len(data)} bytes; {LARGEST_BYTES} are the most")
+    try:
+        told = json.loads(data)
+    except (ValueError, RecursionError):
+        raise DatagramRefused("it is not JSON") from None
+    if not isinstance(told, dict) or told.get("type") != "BEARING":
+        raise DatagramRefused('it is no object of type "BEARING"')
+    if told.get("bearing_type") != "absolute":
+        raise DatagramRefused('its bearing_type is not "absolute": send the bearing from true north, and the place')
+    lat, lon = _number(told, "latitude", -90.0, 90.0), _number(told, "longitude", -180.0, 180.0)
+    taken_at_s = _number(told, "timestamp", 0.0, 1e11) if "timestamp" in told else now_s
+    emitter_id = told.get("emitter_id")
+    if emitter_id is not None and not isinstance(emitter_id, str):
+        raise DatagramRefused("its emitter_id is no text")
+    return ReportedBearing(
+        bearing_id=str(uuid4()),
+        by=_name(told.get("source", "udp")),
+        place=Place(lat, lon),
+        bearing_deg=_number(told, "bearing", 0.0, 360.0),
+        sigma_deg=_number(told, "sigma", 1.0, 60.0) if "sigma" in told else SIGMA_DEG,
+        taken_at_s=taken_at_s,
+        emitter_id=emitter_id,
+    )
+
+
+def _number(told: dict[str, Any], name: str, low: float, high: float) -> float:
+    value = told.get(name)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise DatagramRefused(f"its {name} is no number")
+    if not low <= value <= high:
+        raise DatagramRefused(f"its {name} is {value:g}; it must be between {low:g} and {high:g}")
+    return float(value)
+
+
+def _name(source: object) -> str:
+    """Printable, so that no sender writes into a log or a page what it likes."""
+    if not isinstance(source, str):
+        raise DatagramRefused("its source is no text")
+    return "".join(c for c in source if c.isprintable()).strip()[:40] or "udp"
+
+
+Add = Callable[[ReportedBearing], Awaitable[object]]
+"""To the search that flies. Raises DatagramRefused when none does, and what `Reports.add` raises."""
+
+
+@dataclass(slots=True)
+class BearingFeed(asyncio.DatagramProtocol):
+    """now: the mission's clock, UTC epoch seconds; steady: one that never runs backwards, s."""
+
+    add: Add
+    now: Callable[[], float]
+    steady: Callable[[], float]
+    taken: int = 0
+    refused: int = 0
+    _queue: asyncio.Queue[ReportedBearing] = field(default_factory=lambda: asyncio.Queue(MOST_WAITING))
+    _buckets: Buckets = field(default_factory=lambda: Buckets(BURST, EVERY_S))
+    _last: dict[str, tuple[Place, float]] = field(default_factory=dict[str, tuple[Place, float]])
+    _said_at_s: float = -math.inf
+    _unsaid: int = 0
+
+    def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
+        """From the loop; never raises."""
+        key, now_s = neighbourhood(str(addr[0])), self.steady()
+        if self._buckets.wait_s(key, now_s) > 0.0:
+            self._refuse(key, "its sender sends too many")
+            return
+        self._buckets.take(key, now_s)
+        try:
+            report = read_datagram(data, self.now())
+            self._check_fresh(report, now_s)
+            self._queue.put_nowait(report)
+        except DatagramRefused as refused:
+            self._refuse(key, str(refused))
+        except asyncio.QueueFull:
+            self._refuse(key, "too many wait")
+
+    def _check_fresh(self, report: ReportedBearing, now_s: float) -> None:
+        last = self._last.get(report.by)
+        if last is not None:
+            place, at_s = last
+            away_m = math.hypot(*LocalFrame(place).to_enu(report.place))
+            if away_m < SAME_PLACE_M and now_s - at_s < ANEW_S:
+                raise DatagramRefused(f"{report.by!r} took one here less than {ANEW_S:.0f} s ago, with the same errors")
+        if len(self._last) >= MOST_SOURCES and report.by not in self._last:
+            self._last.pop(next(iter(self._last)))
+        self._last[report.by] = (report.place, now_s)
+
+    async def run(self) -> None:
+        """Until it is cancelled: one bearing after another into the search."""
+        while True:
+            report = await self._queue.get()
+            try:
+                await self.add(report)
+                self.taken += 1
+            except (MissionInputError, MissionConflict, MissionNotFound) as error:
+                self._refuse(report.by, sentence_of(error.reason))
+            except DatagramRefused as refused:
+                self._refuse(report.by, str(refused))
+            except Exception:
+                log.exception("a bearing of %s was not taken", report.by)
+
+    def _refuse(self, sender: str, why: str) -> None:
+        """Logged at most every ten seconds; what was not logged is counted."""
+        self.refused += 1
+        now_s = self.steady()
+        if now_s - self._said_at_s < SAID_EVERY_S:
+            self._unsaid += 1
+            return
+        more = f" ({self._unsaid} more were refused since the last line)" if self._unsaid else ""
+        log.warning("a datagram of %s is refused: %s%s", sender, why, more)
+        self._said_at_s, self._unsaid = now_s, 0
+
+
+@asynccontextmanager
+async def open_feed(feed: BearingFeed, host: str, port: int) -> AsyncGenerator[tuple[str, int]]:
+    """Listening address while inside. Raises ValueError when it cannot be had."""
+    loop = asyncio.get_running_loop()
+    try:
+        transport, _ = await loop.create_datagram_endpoint(lambda: feed, local_addr=(host, port))
+    except OSError as error:
+        raise ValueError(
+            f"cannot listen for bearings on {host}, UDP port {port}: {error.strerror}; choose another with "
+            "CROSSFIX_BEARINGS_UDP_HOST and CROSSFIX_BEARINGS_UDP_PORT"
+        ) from error
+    running = asyncio.create_task(feed.run())
+    try:
+        name = transport.get_extra_info("sockname")
+        yield str(name[0]), int(name[1])
+    finally:
+        transport.close()
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)

@@ -1,0 +1,94 @@
+"""A bearing that somebody reports, with an antenna in their hand or on their roof, as the fact it becomes. Pure.
+
+No sweep stands behind it, so what it is worth is what its reporter states. The share that a compass contributes is the
+same for all bearings of a source: a joint belief finds it out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from backend.events import BearingMeasured, PersonSource
+from backend.reasons import Reason
+from backend.reasons import search as reasons
+from backend.reasons.refusals import NoSuchEmitter
+from backend.search.area import centre_of
+from backend.search.errors import MissionInputError
+from backend.search.state import SearchState
+from backend.spec import Place
+from hardware.frame import LocalFrame
+
+FAR_M = 50_000.0
+"""A bearing from further away belongs to another search."""
+COMPASS_SIGMA_DEG = 5.0
+"""Of a hand-held compass, as all bearings of one source have it in common."""
+COMPASS_SHARE = 0.8
+"""Of the stated sigma, at most: something is always left that differs from bearing to bearing."""
+AT_ONCE_S = 5.0
+LATEST_S = 24 * 3600.0
+AHEAD_S = 120.0
+"""The clock of a phone may be so far ahead."""
+NO_PLACE_NUMBER = 0
+"""Places are counted for the craft's sake, which has so many to fly to; nobody else uses them up."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReportedBearing:
+    """bearing_id: made by whoever reports, the same when it is sent again. emitter_id None: of the search's only one.
+
+    bearing_deg: from true north. sigma_deg: standard deviation of all its errors. snr_db None: not said. taken_at_s:
+    UTC epoch seconds.
+    """
+
+    bearing_id: str
+    by: str
+    place: Place
+    bearing_deg: float
+    sigma_deg: float
+    taken_at_s: float
+    emitter_id: str | None = None
+    snr_db: float | None = None
+
+
+def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> BearingMeasured:
+    """Raises MissionInputError for a place far off, a time that cannot be, or an emitter that is not told."""
+    mission = state.mission
+    east, north = LocalFrame(centre_of(mission.area)).to_enu(report.place)
+    away_m = math.hypot(east, north)
+    if not away_m <= FAR_M:
+        raise MissionInputError(reasons.BearingTooFar(away_m), "place")
+    age_s = now_s - report.taken_at_s
+    if not -AHEAD_S <= age_s <= LATEST_S:
+        raise MissionInputError(reasons.BearingTimeImpossible(age_s), "taken_at_utc")
+    remarks: list[Reason] = [reasons.TakenEarlier(age_s)] if age_s > AT_ONCE_S else []
+    return BearingMeasured(
+        emitter_id=_emitter_id(state, report.emitter_id),
+        source=PersonSource(name=report.by),
+        bearing_id=report.bearing_id,
+        sweep_id=None,
+        place_number=NO_PLACE_NUMBER,
+        place=report.place,
+        altitude_amsl_m=state.home_amsl_m,
+        bearing_deg=report.bearing_deg % 360.0,
+        sigma_deg=report.sigma_deg,
+        quality=1.0,
+        peaks=[],
+        snr_db=report.snr_db,
+        drift_m=0.0,
+        binned_db=[],
+        fitted_db=[],
+        heading_sigma_deg=min(COMPASS_SIGMA_DEG, COMPASS_SHARE * report.sigma_deg),
+        remarks=remarks,
+    )
+
+
+def _emitter_id(state: SearchState, wanted: str | None) -> str:
+    known = [emitter.emitter_id for emitter in state.mission.emitters]
+    if wanted is None and len(known) == 1:
+        return known[0]
+    if wanted is None:
+        raise MissionInputError(reasons.WhichEmitter(len(known)), "emitter_id")
+    if wanted not in known:
+        raise MissionInputError(NoSuchEmitter(wanted), "emitter_id")
+    return wanted

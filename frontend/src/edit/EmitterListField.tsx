@@ -1,0 +1,51 @@
+// Several emitters as a list to paste into. What is wrong is said line by line, and nothing is taken until all is right.
+import { type MessageKey, t } from "../i18n";
+import { draft, update } from "./draft";
+import { EMITTER } from "./emitter";
+import { badLineWords, LIST, listOf, readList } from "./emitterList";
+
+/** What the list replaces: raw text of its first emitter's own fields. */
+const OWN = [`${EMITTER}.frequency_hz`, `${EMITTER}.label`];
+
+function take(text: string): void {
+  const now = draft.peek()!;
+  const { emitters, bad } = readList(text, now.spec.emitters);
+  const kept = Object.fromEntries(Object.entries(now.text).filter(([path]) => path !== LIST && !OWN.includes(path)));
+  if (bad.length > 0 || emitters.length === 0) update({ ...now, text: { ...kept, [LIST]: text } });
+  else update({ ...now, spec: { ...now.spec, emitters }, text: kept });
+}
+
+export function EmitterListField() {
+  const { spec, text } = draft.value!;
+  const raw = text[LIST];
+  const bad = raw === undefined ? [] : readList(raw, spec.emitters).bad;
+  const empty = raw !== undefined && raw.trim() === "";
+  const words = empty ? [t("edit.list.empty" satisfies MessageKey)] : bad.map(badLineWords);
+  return (
+    <div class="field emitter-list">
+      <label for="emitter-list">{t("edit.list")}</label>
+      <textarea
+        id="emitter-list"
+        data-testid="emitter-list"
+        rows={Math.min(10, Math.max(3, (raw ?? listOf(spec.emitters)).split("\n").length + 1))}
+        spellcheck={false}
+        value={raw ?? listOf(spec.emitters)}
+        aria-invalid={words.length > 0}
+        aria-describedby="emitter-list-message"
+        onChange={(e) => take(e.currentTarget.value)}
+      />
+      <div id="emitter-list-message" class="emitter-list-said">
+        {words.length === 0 && (
+          <span class="muted" data-testid="emitter-count">
+            {t(spec.emitters.length === 1 ? "edit.list.one" : "edit.list.count", { count: spec.emitters.length })}
+          </span>
+        )}
+        {words.map((word) => (
+          <div class="field-message" role="alert" data-testid="emitter-list-bad" key={word}>
+            {word}
+          </div>
+        ))}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,47 @@
+import { expect, it } from "vitest";
+import { someSpec } from "../wire/examples";
+import { listOf, MOST_EMITTERS, readList } from "./emitterList";
+
+const [first] = someSpec().emitters;
+const before = [{ ...first!, emitter_id: "emitter-1", frequency_hz: 150_000_000, label: "tag" }];
+
+it("a pasted list becomes emitters in its order, each under an id of its own", () => {
+  const { emitters, bad } = readList("150.125 vixen\r\n\n 150,250;boar 3\n868300 kHz\n150.0\n", before);
+  expect(bad).toEqual([]);
+  expect(emitters.map((e) => [e.emitter_id, e.frequency_hz, e.label])).toEqual([
+    ["emitter-2", 150_125_000, "vixen"],
+    ["emitter-3", 150_250_000, "boar 3"],
+    ["emitter-4", 868_300_000, "tag"],
+    ["emitter-1", 150_000_000, "tag"],
+  ]);
+});
+
+it("what is shown is read as the same emitters", () => {
+  const { emitters } = readList("150.1251 a\n151.5 b c", before);
+  expect(readList(listOf(emitters), emitters)).toEqual({ emitters, bad: [] });
+});
+
+it("a frequency that stays keeps its prior and its rhythm", () => {
+  const known = [{ ...before[0]!, emitter_id: "mine", pulse_period_s: 2.5 }];
+  const { emitters } = readList("151\n150 renamed", known);
+  expect(emitters[1]).toEqual({ ...known[0], label: "renamed" });
+});
+
+it("every bad line is named with what is wrong with it", () => {
+  const { bad } = readList("150.1\nvixen 150.2\n-3\n0\n150.1 again\n1.2.3\n2000 GHz", before);
+  expect(bad.map(({ line, problem }) => [line, problem])).toEqual([
+    [2, "edit.list.bad.frequency"],
+    [3, "edit.list.bad.frequency"],
+    [4, "edit.list.bad.range"],
+    [5, "edit.list.bad.twice"],
+    [6, "edit.list.bad.frequency"],
+    [7, "edit.list.bad.range"],
+  ]);
+});
+
+it("more emitters than a search may have are refused, not cut off in silence", () => {
+  const lines = Array.from({ length: MOST_EMITTERS + 2 }, (_, i) => String(150 + i / 100)).join("\n");
+  const { emitters, bad } = readList(lines, before);
+  expect(emitters).toHaveLength(MOST_EMITTERS);
+  expect(bad.map((b) => b.problem)).toEqual(["edit.list.bad.many", "edit.list.bad.many"]);
+});

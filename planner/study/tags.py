@@ -1,0 +1,108 @@
+"""Several tags, one craft: every turn is heard for all of them, and the planner chooses for those still wanted.
+
+The rows tags_4 and tags_8 of the truth study, in the field scenario with its errors. Each tag is one claim; the time is
+that of the whole mission, until every tag is localized or the last bearing is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.belief.estimate import confidence_region, estimate
+from planner.belief.grid import GridBelief
+from planner.belief.joint import JointBelief
+from planner.belief.verdict import verdict
+from planner.geometry import distance_to_convex
+from planner.motion import flight_time
+from planner.options import FIELD, PlannerOptions
+from planner.plan import plan
+from planner.policy.several import Wanted, plan_several
+from planner.study.error_worlds import Row, Sensor
+from planner.study.errors import StudyError
+from planner.study.scenarios import Scenario, scenario
+from planner.study.truth import Claim, Model, bearing_of, folded, prior_of
+from planner.types import Bearing, FloatArray, LocalizationRule
+
+TAGS = {"tags_4": 4, "tags_8": 8}
+"""Rows by name: how many tags."""
+MOST_BEARINGS = 40
+OPTIONS = replace(FIELD, budget=250)
+"""A quarter of a flight's work a decision; eight tags make it eight rollouts a path."""
+TAGS_SEED = 15
+
+
+@dataclass(slots=True)
+class _Tag:
+    sensor: Sensor
+    belief: GridBelief
+    bearings: list[Bearing]
+    localized: bool = False
+    claim: Claim | None = None
+
+
+def tags_missions(
+    row: str, seeds: Sequence[int], model: Model, options: PlannerOptions = OPTIONS
+) -> Iterator[list[Claim]]:
+    """Mission by mission: a claim a tag, those that were never claimed too, all with the mission's time."""
+    if row not in TAGS:
+        raise StudyError(f"there is no row {row!r}: choose one of {', '.join(TAGS)}")
+    for seed in seeds:
+        yield fly_tags(scenario("field"), TAGS[row], seed, model, options)
+
+
+def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: PlannerOptions = OPTIONS) -> list[Claim]:
+    """One mission from the scenario's place, its first bearing taken there."""
+    problem, rng = world.problem, np.random.default_rng([seed, TAGS_SEED])
+    rule = LocalizationRule(threshold=problem.threshold)
+    row = Row("tags", own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
+    one = row.sensor(world.target(seed, rng), rng)
+    sensors = [one, *(replace(one, target=world.target(seed, rng)) for _ in range(count - 1))]
+    unknown = prior_of(problem, model, None)
+    tags = [_Tag(sensor, unknown, []) for sensor in sensors]
+    here, time, place = np.array(world.platform), 0.0, np.array(world.platform)
+    for number in range(MOST_BEARINGS):
+        leg = float(np.hypot(*(place - here)))
+        time += problem.measurement_time + (float(flight_time(problem.motion, leg, 0.0)) if leg > 0.0 else 0.0)
+        here = place
+        for tag in tags:
+            angle, sigma = tag.sensor.bearing(here, number)
+            tag.bearings.append(bearing_of(model, here, angle, sigma, row.heading_sigma, "craft"))
+            tag.belief = folded(unknown, tag.belief, tag.bearings[-1])
+            tag.localized = verdict(problem, rule, tag.bearings, tag.belief).localized
+            if tag.localized and tag.claim is None:
+                tag.claim = _claim(tag, world, claimed=True)
+        if all(tag.localized for tag in tags):
+            break
+        place = _next_place(world, [tag for tag in tags if not tag.localized], here, options)
+    claims = [tag.claim or _claim(tag, world, claimed=False) for tag in tags]
+    return [replace(claim, time_s=time) for claim in claims]
+
+
+def _next_place(world: Scenario, wanted: Sequence[_Tag], here: FloatArray, options: PlannerOptions) -> FloatArray:
+    platform = (float(here[0]), float(here[1]))
+    if len(wanted) == 1:
+        only = wanted[0]
+        chosen = plan(world.problem, only.belief, only.bearings, platform, options, threads=1)
+    else:
+        chosen = plan_several([Wanted(world.problem, tag.belief) for tag in wanted], platform, options, threads=1)
+    return np.array([chosen.x, chosen.y])
+
+
+def _claim(tag: _Tag, world: Scenario, *, claimed: bool) -> Claim:
+    """time_s: not known yet."""
+    spread = estimate(tag.belief, world.problem.estimator)
+    target = tag.sensor.target
+    errors = tag.belief.errors[0] if isinstance(tag.belief, JointBelief) else None
+    return Claim(
+        claimed=claimed,
+        in_c95=bool(distance_to_convex(target[None], confidence_region(tag.belief))[0] <= 0.0),
+        error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
+        stated_m=spread.expected_rmse,
+        bearings=len(tag.bearings),
+        time_s=0.0,
+        bias_off_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias - tag.sensor.bias)),
+        bias_sd_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias_sd)),
+    )

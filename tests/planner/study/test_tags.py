@@ -1,0 +1,27 @@
+"""Missions with several tags: seeded, each tag a claim, one time for all."""
+
+import pytest
+
+from planner.options import PlannerOptions
+from planner.study.errors import StudyError
+from planner.study.scenarios import scenario
+from planner.study.tags import TAGS, fly_tags, tags_missions
+
+QUICK = PlannerOptions(budget=60)
+
+
+def test_the_rows_that_are_asked_for_exist_and_no_other():
+    assert TAGS == {"tags_4": 4, "tags_8": 8}
+    with pytest.raises(StudyError, match="tags_8"):
+        next(tags_missions("tags_5", [1], "independent"))
+
+
+def test_a_mission_depends_on_its_seed_and_finds_every_tag_sooner_than_one_after_another():
+    world = scenario("field")
+    claims, again, other = (fly_tags(world, 3, seed, "independent", QUICK) for seed in (5, 5, 6))
+    assert repr(claims) == repr(again) != repr(other)  # NaN equals nothing
+    assert [claim.claimed for claim in claims] == [True] * 3
+    assert {claim.time_s for claim in claims} == {claims[0].time_s}
+    alone = [fly_tags(world, 1, seed, "independent", QUICK)[0] for seed in (5, 6, 7)]
+    assert claims[0].time_s < sum(claim.time_s for claim in alone)
+    assert all(2 <= claim.bearings <= max(c.bearings for c in claims) for claim in claims)
