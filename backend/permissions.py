@@ -58,6 +58,9 @@ ENDPOINTS: Mapping[str, Need] = {
     "POST /api/session": ENTERING,
     "DELETE /api/session": ENTERING,
     "POST /api/first-admin": ENTERING,
+    "POST /api/recovery": ENTERING,
+    "GET /api/provider/begin": ENTERING,
+    "GET /api/provider/return": ENTERING,
     "POST /api/invitation/look": ENTERING,
     "POST /api/invitation/accept": ENTERING,
     # one's own account

@@ -5,14 +5,16 @@ from __future__ import annotations
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Any, Literal
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 BUILT_PAGE, INSTALLED_PAGE = REPOSITORY / "frontend" / "dist", Path(__file__).resolve().parent / "page"
 """Where `make build` puts the page, and where a wheel has it."""
+AUDIT_FILE = "audit.jsonl"
+"""Who did what, in the data directory."""
 
 
 class Settings(BaseSettings):
@@ -32,6 +34,21 @@ class Settings(BaseSettings):
     plain_http: bool = False
     """Passwords and sessions may go over unencrypted connections from other machines. Only for a network that encrypts
     by itself, such as WireGuard."""
+    oidc_issuer: str | None = None
+    """Address of an OpenID Connect provider that people may sign in with; with one, people sign in."""
+    oidc_client_id: str = ""
+    oidc_client_secret_file: Path | None = None
+    """Its content is the secret; None: the provider knows this server as a public client."""
+    oidc_name: str = Field(default="", max_length=40)
+    """Of the provider, on the page; its host's name by default."""
+    oidc_role_claim: str | None = None
+    """The claim of the ID token that holds groups or roles; one inside another by a dot: realm_access.roles."""
+    oidc_roles: dict[str, Literal["viewer", "operator", "pilot", "admin"]] = Field(default_factory=dict)
+    """Value of that claim -> role here; admin: manages people. Values that are missing here give nothing."""
+    oidc_default_role: Literal["viewer", "operator", "pilot", "none"] = "viewer"
+    """Of whoever has no such value; none: they do not enter."""
+    oidc_email_domains: tuple[str, ...] = ()
+    """When there are any, only verified addresses in one of them enter: for providers where anybody has an account."""
     connections_max: int = Field(default=600, ge=10, le=100_000)
     """Of HTTP, open at the same time; live websockets are counted by live_clients_max."""
     connections_each: int = Field(default=100, ge=5, le=100_000)
@@ -98,6 +115,36 @@ class Settings(BaseSettings):
             return url
         raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
 
+    @field_validator("oidc_issuer")
+    @classmethod
+    def encrypted_issuer(cls, issuer: str | None) -> str | None:
+        """By https, but for one on this machine, which only tests have."""
+        if issuer is None:
+            return None
+        parts = urlsplit(issuer)
+        if (parts.scheme == "https" and parts.hostname) or parts.hostname in {"127.0.0.1", "localhost"}:
+            return issuer
+        raise ValueError("the sign-in provider's address must begin with https://")
+
+    @model_validator(mode="after")
+    def whole_provider(self) -> Settings:
+        """A provider knows this server by an id; a claim without roles, or roles without a claim, give nothing."""
+        if self.oidc_issuer is not None and not self.oidc_client_id:
+            raise ValueError("CROSSFIX_OIDC_CLIENT_ID is missing: the provider gives it when this server is registered")
+        if bool(self.oidc_roles) != bool(self.oidc_role_claim):
+            raise ValueError("CROSSFIX_OIDC_ROLE_CLAIM and CROSSFIX_OIDC_ROLES work only together: set both or neither")
+        return self
+
+    @property
+    def oidc_client_secret(self) -> str | None:
+        """Raises ValueError when its file cannot be read."""
+        if self.oidc_client_secret_file is None:
+            return None
+        try:
+            return self.oidc_client_secret_file.read_text().strip()
+        except (OSError, UnicodeDecodeError) as error:
+            raise ValueError(f"the sign-in provider's secret cannot be read: {error}") from error
+
     @property
     def reachable_from_outside(self) -> bool:
         """Does the server listen on more than this machine's loopback?"""
@@ -109,7 +156,7 @@ class Settings(BaseSettings):
     @property
     def people_expected(self) -> bool:
         """Others can reach the server, so whoever uses it signs in."""
-        return self.users or bool(self.trusted_proxies) or self.reachable_from_outside
+        return self.users or bool(self.trusted_proxies) or self.oidc_issuer is not None or self.reachable_from_outside
 
     @property
     def simulated(self) -> bool:

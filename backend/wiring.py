@@ -6,11 +6,12 @@ import asyncio
 import time
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING
 
 from backend.api.services import Services
 from backend.api.suggestion import suggested_mission
 from backend.auth.access import Access
-from backend.auth.audit import AUDIT_FILE, AuditLog
+from backend.auth.audit import AuditLog
 from backend.auth.records import Records
 from backend.craft.equipment import CraftEquipment
 from backend.craft.reconnecting_vehicle import ReconnectingVehicle
@@ -22,7 +23,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.search.forecast import preview
 from backend.search.localization import localization
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
 from backend.simulation.hangar import Hangar
 from backend.simulation.receiver import EmittersAroundHome
@@ -44,6 +45,9 @@ from hardware.readings import Place
 from hardware.reasons.payload import PayloadTokensMissing
 from hardware.sdr.device import receiver_from
 from hardware.sim.turntable import simulated_antenna
+
+if TYPE_CHECKING:
+    from backend.auth.provider import Provider
 
 
 async def _latest_utc_s(journal: SqlJournal) -> float | None:
@@ -105,12 +109,28 @@ async def open_access(settings: Settings) -> AsyncGenerator[Access]:
         AuditLog(settings.data_dir / AUDIT_FILE, time.time),
         people_expected=settings.people_expected,
         payload_tokens=settings.payload_tokens,
+        data_dir=settings.data_dir,
     )
     try:
         await access.load()
         yield access
     finally:
         await access.close()
+
+
+def sign_in_provider(settings: Settings) -> Provider | None:
+    """None: people sign in with passwords only. Raises ValueError when its secret cannot be read."""
+    if settings.oidc_issuer is None:
+        return None
+    from backend.auth.provided import Rules
+    from backend.auth.provider import Provider  # half a second that only such a server pays
+
+    default, roles = settings.oidc_default_role, settings.oidc_roles
+    domains = tuple(domain.lower() for domain in settings.oidc_email_domains)
+    rules = Rules(settings.oidc_role_claim, roles, None if default == "none" else default, domains)
+    return Provider(
+        settings.oidc_issuer, settings.oidc_client_id, settings.oidc_client_secret, rules, name=settings.oidc_name
+    )
 
 
 @asynccontextmanager
@@ -137,7 +157,7 @@ async def open_simulation(
     leave_flying: a simulated vehicle in the middle of a mission flies on by itself, as a real one would, and the next
     server on the same data directory finds it.
     """
-    pattern = _pattern(settings)
+    pattern, provider = _pattern(settings), sign_in_provider(settings)
     if settings.vehicle_url is not None:
         check_url(settings.vehicle_url)
     clock = ScaledClock(factor=settings.time_factor) if first is None else first.clock
@@ -160,7 +180,7 @@ async def open_simulation(
                 await first.vehicle.close()
             vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
             hub = Hub(journal.read, clock.now)
-            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.tokens)
+            expected = settings.payload_tokens or any(token.scope == "payload" for token in access.machines.tokens)
             payload = PayloadHub(settings.payload_tokens, clock.now) if expected else None
             receiver = _receiver(settings, vehicle, clock, payload, emitters)
             finder = SparseDirectionFinder(heading_sigma_deg=settings.heading_sigma_deg)
@@ -193,8 +213,9 @@ async def open_simulation(
             else:
                 await warming
             services = Services(
-                missions, journal, hub, settings, clock.now, payload, access=access, finder=finder, pattern=pattern
-            )
+                missions, journal, hub, settings, clock.now, payload,
+                access=access, provider=provider, finder=finder, pattern=pattern,
+            )  # fmt: skip
             try:
                 yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:

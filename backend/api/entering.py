@@ -1,4 +1,4 @@
-"""Signing in and out, the first admin, and accepting an invitation."""
+"""Signing in and out, the first admin, accepting an invitation, and a new password after one was lost."""
 
 from __future__ import annotations
 
@@ -11,14 +11,16 @@ from backend.api.dependencies import ServicesDep
 from backend.api.gate import FORWARDED, PLAIN_COOKIE, SECURE_COOKIE, address_of, cookie_of, encrypted
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
 from backend.api.services import Services
-from backend.auth.access import LONGEST_S
+from backend.auth.access import Visit
 from backend.auth.principal import Principal
+from backend.auth.sessions import LONGEST_S
 from backend.reasons.access import NotEncrypted
 from backend.wire.people import (
     FirstAdmin,
     InvitationAnswer,
     InvitationCode,
     InvitationOffer,
+    LostPassword,
     SessionState,
     SignedIn,
     SignIn,
@@ -39,29 +41,38 @@ def may_carry_secrets(request: Request, services: Services) -> bool:
         return False
 
 
-def _require_encryption(request: Request, services: Services) -> None:
+def require_encryption(request: Request, services: Services) -> None:
+    """Raises ApiProblem 403."""
     if not may_carry_secrets(request, services):
         raise ApiProblem(403, NotEncrypted())
 
 
-def device_of(request: Request) -> str:
-    """What the browser says of itself, printable."""
-    return "".join(letter for letter in request.headers.get("user-agent", "")[:200] if letter.isprintable())
+def visit_of(request: Request) -> Visit:
+    """Where the request comes from; what the browser says of itself, printable."""
+    device = "".join(letter for letter in request.headers.get("user-agent", "")[:200] if letter.isprintable())
+    return Visit(address_of(request.scope), device)
 
 
 def _state(request: Request, services: Services, principal: Principal | None) -> SessionState:
     access = services.access
-    person = None if principal is None or principal.person is None else access.person(principal.person)
+    person = None if principal is None or principal.person is None else access.people.known(principal.person)
     return SessionState(
         mode=access.mode,
         person=None
         if person is None
-        else SignedIn(person_id=person.person_id, name=person.name, role=person.role, admin=person.admin),
+        else SignedIn(
+            person_id=person.person_id,
+            name=person.name,
+            role=person.role,
+            admin=person.admin,
+            has_password=bool(person.password_hash),
+        ),
         encrypted=may_carry_secrets(request, services),
+        provider=None if services.provider is None else services.provider.name,
     )
 
 
-async def _entered(request: Request, response: Response, services: Services, secret: str) -> SessionState:
+async def entered(request: Request, response: Response, services: Services, secret: str) -> SessionState:
     """Signed in from now on; a session that this browser had before ends."""
     access, address = services.access, address_of(request.scope)
     before = cookie_of(request.scope, request.headers)
@@ -80,7 +91,7 @@ async def _entered(request: Request, response: Response, services: Services, sec
         samesite="strict",
     )
     if old is not None and old[0].person is not None:
-        await access.end_session(old[0].person, old[1].row.session_id)
+        await access.sessions.end(old[0].person, old[1].row.session_id)
     return _state(request, services, found[0])
 
 
@@ -93,12 +104,12 @@ async def get_session(request: Request, services: ServicesDep) -> SessionState:
 @router.post("/session")
 async def sign_in(asked: SignIn, request: Request, response: Response, services: ServicesDep) -> SessionState:
     """A new session, in a cookie. 403: name or password is wrong; 429: too many tries."""
-    _require_encryption(request, services)
-    address, account = address_of(request.scope), services.access.named(asked.name)
+    require_encryption(request, services)
+    account = services.access.people.named(asked.name)
     if account is not None:  # another name may be a password in the wrong field
         request.state.audit["account"] = account.name
-    secret = await services.access.sign_in(asked.name, asked.password, address, device_of(request))
-    return await _entered(request, response, services, secret)
+    secret = await services.access.sign_in(asked.name, asked.password, visit_of(request))
+    return await entered(request, response, services, secret)
 
 
 @router.delete("/session", status_code=204)
@@ -108,7 +119,7 @@ async def sign_out(request: Request, response: Response, services: ServicesDep) 
     for name, secure in ((SECURE_COOKIE, True), (PLAIN_COOKIE, False)):
         response.delete_cookie(name, path="/", secure=secure, httponly=True, samesite="strict")
     if principal is not None and principal.person is not None and principal.session is not None:
-        await services.access.end_session(principal.person, principal.session)
+        await services.access.sessions.end(principal.person, principal.session)
 
 
 @router.post("/first-admin", status_code=201)
@@ -116,11 +127,9 @@ async def make_first_admin(
     asked: FirstAdmin, request: Request, response: Response, services: ServicesDep
 ) -> SessionState:
     """With the code that the server printed; once."""
-    _require_encryption(request, services)
-    secret = await services.access.make_first_admin(
-        asked.code, asked.name, asked.password, address_of(request.scope), device_of(request)
-    )
-    return await _entered(request, response, services, secret)
+    require_encryption(request, services)
+    secret = await services.access.make_first_admin(asked.code, asked.name, asked.password, visit_of(request))
+    return await entered(request, response, services, secret)
 
 
 @router.post("/invitation/look")
@@ -136,8 +145,14 @@ async def accept_invitation(
     asked: InvitationAnswer, request: Request, response: Response, services: ServicesDep
 ) -> SessionState:
     """Makes the account and signs it in; the invitation is used up."""
-    _require_encryption(request, services)
-    secret = await services.access.accept_invitation(
-        asked.code, asked.name, asked.password, address_of(request.scope), device_of(request)
-    )
-    return await _entered(request, response, services, secret)
+    require_encryption(request, services)
+    secret = await services.access.accept_invitation(asked.code, asked.name, asked.password, visit_of(request))
+    return await entered(request, response, services, secret)
+
+
+@router.post("/recovery")
+async def recover(asked: LostPassword, request: Request, response: Response, services: ServicesDep) -> SessionState:
+    """A new password, with a code that `crossfix recover` printed on the server's machine; all other sessions end."""
+    require_encryption(request, services)
+    secret = await services.access.recover(asked.code, asked.password, visit_of(request))
+    return await entered(request, response, services, secret)

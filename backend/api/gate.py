@@ -23,9 +23,11 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from backend.api.guard import SAFE_METHODS, refuse
 from backend.api.problems import retry_after
-from backend.auth.access import Access, Denied, Entry
+from backend.auth.access import Access
+from backend.auth.keeping import Denied
 from backend.auth.principal import Principal, local_person
 from backend.auth.registry import Session
+from backend.auth.sessions import Entry
 from backend.permissions import BEFORE_PEOPLE, ENDPOINTS, Need
 from backend.reasons import Reason, carried
 from backend.reasons.access import BehindProxy, CallNotListed, FirstAdminNeeded, OriginMissing, SignInNeeded
@@ -111,7 +113,7 @@ class Gate:
         state = scope.setdefault("state", {})
         state["need"], state["principal"], state["audit"] = name, visitor.principal, {}
         if visitor.session is not None:
-            access.seen(visitor.session)
+            access.sessions.seen(visitor.session)
         if scope["type"] == "websocket":
             if need.audited:
                 _note(access, scope, name, visitor.principal, address, 101)
@@ -172,10 +174,10 @@ async def _over(access: Access, session: Entry[Session] | None, ended: asyncio.E
         except TimeoutError:
             if session is None:
                 continue
-            if not access.lasts(session):
+            if not access.sessions.lasts(session):
                 session.ended.set()
             else:
-                access.seen(session)
+                access.sessions.seen(session)
 
 
 def address_of(scope: Scope) -> str:
@@ -212,7 +214,7 @@ def _named(access: Access, scope: Scope, address: str) -> Visitor:
     headers = Headers(scope=scope)
     scheme, _, token = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
-        machine = access.machine(token.strip(), address)
+        machine = access.machines.found(token.strip(), address)
         return Visitor(None) if machine is None else Visitor(machine[0], ended=machine[1])
     secret = cookie_of(scope, headers)
     found = None if secret is None else access.signed_in(secret, address)
@@ -252,7 +254,7 @@ def _note(
     detail: dict[str, object] | None = None,
 ) -> None:
     outcome = "allowed" if status < 400 else "refused" if status < 500 else "failed"
-    if outcome == "refused" and not access.notes_refusal():
+    if outcome == "refused" and not access.limits.notes_refusal():
         return
     who = None if principal is None else principal.name
     person = None if principal is None else principal.person
@@ -265,13 +267,14 @@ def _note(
 def _noting(
     access: Access, scope: Scope, name: str, principal: Principal | None, address: str, need: Need, send: Send
 ) -> Send:
-    """Notes how an audited call was answered, and every refusal; an endpoint may add to it (request.state.audit)."""
+    """Notes how an audited call was answered, and every refusal; an endpoint may add to it (request.state.audit),
+    and says there with which status it refused whoever it sends back to the page."""
 
     async def noting(message: Message) -> None:
         if message["type"] == "http.response.start":
-            status: int = message["status"]
+            detail = dict(scope["state"]["audit"])
+            status: int = detail.pop("status", message["status"])
             if need.audited or status in (401, 403, 429):
-                detail = dict(scope["state"]["audit"])
                 who = detail.pop("principal", principal)
                 _note(access, scope, name, who, address, status, detail=detail)
         await send(message)

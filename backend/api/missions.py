@@ -90,7 +90,7 @@ async def send_command(
     access, flights = services.access, services.missions.flights
     permit(access, principal, request)
     with about(mission=mission_id, command=str(request.command_id)):
-        answer = flights.command(mission_id, request, principal.author, access.operates)
+        answer = flights.command(mission_id, request, principal.author, access.people.operates)
         reply = await ordered(access, principal, http, request, answer)
         meters.count_command(request.command.kind, reply)
     return reply

@@ -7,7 +7,8 @@ from collections.abc import Awaitable
 from fastapi import Request
 
 from backend.api.problems import ApiProblem
-from backend.auth.access import Access, Denied
+from backend.auth.access import Access
+from backend.auth.keeping import Denied
 from backend.auth.principal import Principal
 from backend.commands import CommandReply, CommandRequest, CraftRequest
 from backend.permissions import COMMANDS, SAFETY, Need
@@ -24,9 +25,9 @@ def permit(access: Access, principal: Principal, request: CommandRequest | Craft
         raise ApiProblem(403, CallNotListed())
     refused = principal.refused(Need(need.role))
     if refused is not None:
-        access.command_refused(principal)
+        access.limits.command_refused(principal)
         raise ApiProblem(403, refused)
-    if need is not SAFETY and (wait_s := access.command_wait_s(principal)) > 0:
+    if need is not SAFETY and (wait_s := access.limits.command_wait_s(principal)) > 0:
         raise Denied(429, TooManyTries(wait_s))
 
 
@@ -44,5 +45,5 @@ async def ordered(
     http.state.audit["accepted"] = reply.accepted
     if reply.reason is not None:
         http.state.audit["reason"] = reply.reason.code
-        access.command_refused(principal)
+        access.limits.command_refused(principal)
     return reply

@@ -54,10 +54,10 @@ async def list_sessions(services: ServicesDep, principal: PrincipalDep) -> Sessi
                 address=row.address,
                 device=row.device,
                 made_utc=_utc(row.made_at_us),
-                idle_s=access.last_seen_s(row),
+                idle_s=access.sessions.idle_s(row),
                 own=row.session_id == principal.session,
             )
-            for row in access.sessions_of(_myself(principal))
+            for row in access.sessions.of(_myself(principal))
         ]
     )
 
@@ -65,26 +65,27 @@ async def list_sessions(services: ServicesDep, principal: PrincipalDep) -> Sessi
 @router.delete("/account/sessions", status_code=204)
 async def sign_out_everywhere(services: ServicesDep, principal: PrincipalDep) -> None:
     """This browser too."""
-    await services.access.end_sessions(_myself(principal))
+    await services.access.sessions.end_all(_myself(principal))
 
 
 @router.delete("/account/sessions/{session_id}", status_code=204)
 async def end_session(session_id: RowId, services: ServicesDep, principal: PrincipalDep) -> None:
     """One of one's own."""
-    await services.access.end_session(_myself(principal), session_id)
+    await services.access.sessions.end(_myself(principal), session_id)
 
 
 @router.put("/account/password", status_code=204)
 async def change_password(asked: NewPassword, services: ServicesDep, principal: PrincipalDep) -> None:
-    """Ends all sessions of one's own."""
-    await services.access.change_password(_myself(principal), asked.old, asked.new, principal.address or "unknown")
+    """Ends all other sessions of one's own."""
+    address = principal.address or "unknown"
+    await services.access.change_password(_myself(principal), asked.old, asked.new, address, principal.session)
 
 
 @router.get("/people")
 async def list_people(services: ServicesDep, principal: PrincipalDep) -> PersonList:
     """All, those who are shut out too."""
     _myself(principal)
-    return PersonList(people=[_person(services, person) for person in services.access.people])
+    return PersonList(people=[_person(services, person) for person in services.access.people.by_name])
 
 
 @router.put("/people/{person_id}")
@@ -102,15 +103,15 @@ async def change_person(
 async def sign_person_out(person_id: RowId, request: Request, services: ServicesDep, principal: PrincipalDep) -> None:
     """Everywhere."""
     _myself(principal)
-    request.state.audit["of"] = services.access.person(person_id).name
-    await services.access.end_sessions(person_id)
+    request.state.audit["of"] = services.access.people.known(person_id).name
+    await services.access.sessions.end_all(person_id)
 
 
 @router.get("/invitations")
 async def list_invitations(services: ServicesDep, principal: PrincipalDep) -> InvitationList:
     """Those that wait to be accepted."""
     _myself(principal)
-    waiting = [row for row, left_s in services.access.invitations if left_s > 0]
+    waiting = [row for row, left_s in services.access.invitations.waiting if left_s > 0]
     return InvitationList(invitations=[_invitation(services, row) for row in waiting])
 
 
@@ -119,7 +120,8 @@ async def invite(
     asked: NewInvitation, request: Request, services: ServicesDep, principal: PrincipalDep
 ) -> MadeInvitation:
     """A link for one person, and its QR code. The secret stands behind the #, so no server logs it."""
-    secret, made = await services.access.invite(asked.role, asked.admin, asked.hours * 3600.0, _myself(principal))
+    by, lasts_s = _myself(principal), asked.hours * 3600.0
+    secret, made = await services.access.invitations.make(asked.role, asked.admin, lasts_s, by)
     request.state.audit.update(invitation=made.invitation_id, offers=asked.model_dump())
     scheme = "https" if encrypted(request.scope) else "http"
     link = f"{scheme}://{request.headers.get('host', '')}/#/join/{secret}"
@@ -131,21 +133,21 @@ async def invite(
 async def take_back_invitation(invitation_id: RowId, services: ServicesDep, principal: PrincipalDep) -> None:
     """Nobody can accept it any more."""
     _myself(principal)
-    await services.access.take_back_invitation(invitation_id)
+    await services.access.invitations.take_back(invitation_id)
 
 
 @router.get("/tokens")
 async def list_tokens(services: ServicesDep, principal: PrincipalDep) -> TokenList:
     """Of machines, without their secrets."""
     _myself(principal)
-    return TokenList(tokens=[_token(services, row) for row in services.access.tokens])
+    return TokenList(tokens=[_token(services, row) for row in services.access.machines.tokens])
 
 
 @router.post("/tokens", status_code=201)
 async def make_token(asked: NewToken, request: Request, services: ServicesDep, principal: PrincipalDep) -> MadeToken:
     """The secret is shown once: a payload agent or a program shows it as "Authorization: Bearer SECRET"."""
     lasts_s = None if asked.days is None else asked.days * 86_400.0
-    secret, made = await services.access.make_token(asked.name, asked.scope, lasts_s, _myself(principal))
+    secret, made = await services.access.machines.make(asked.name, asked.scope, lasts_s, _myself(principal))
     request.state.audit.update(token=made.token_id, scope=made.scope)
     return MadeToken(token=_token(services, made), secret=secret)
 
@@ -154,7 +156,7 @@ async def make_token(asked: NewToken, request: Request, services: ServicesDep, p
 async def revoke_token(token_id: RowId, services: ServicesDep, principal: PrincipalDep) -> None:
     """At once; what is connected with it is cut off."""
     _myself(principal)
-    await services.access.revoke_token(token_id)
+    await services.access.machines.revoke(token_id)
 
 
 def _utc(at_us: int) -> datetime:
@@ -162,7 +164,8 @@ def _utc(at_us: int) -> datetime:
 
 
 def _name_of(services: Services, person_id: str) -> str:
-    return next((person.name for person in services.access.people if person.person_id == person_id), "")
+    found = services.access.people.get(person_id)
+    return "" if found is None else found.name
 
 
 def _person(services: Services, row: registry.Person) -> Person:
@@ -172,7 +175,7 @@ def _person(services: Services, row: registry.Person) -> Person:
         role=row.role,
         admin=row.admin,
         active=row.active,
-        sessions=len(services.access.sessions_of(row.person_id)),
+        sessions=len(services.access.sessions.of(row.person_id)),
     )
 
 

@@ -13,7 +13,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
-from backend.auth.access import Denied
+from backend.auth.keeping import Denied
 from backend.ports import FactRefused
 from backend.reasons import Reason, carried
 from backend.reasons import request as reasons

@@ -22,6 +22,7 @@ from backend.api import (
     missions,
     people,
     planning,
+    provider,
     read_export,
     recordings,
     review,
@@ -40,6 +41,7 @@ from backend.wire.problem import Problem
 
 ROUTERS = (
     entering.router,
+    provider.router,
     people.router,
     system.router,
     missions.router,

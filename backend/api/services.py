@@ -18,6 +18,7 @@ from hardware.payload.session import PayloadHub
 from hardware.ports import DirectionFinder
 
 if TYPE_CHECKING:
+    from backend.auth.provider import Provider
     from backend.mission.room import MissionRoom
 
 
@@ -32,7 +33,7 @@ class Services:
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
-    access: who may enter.
+    access: who may enter. provider: whom the settings trust to say who somebody is.
     """
 
     missions: MissionRoom
@@ -44,6 +45,7 @@ class Services:
     finder: DirectionFinder = field(kw_only=True)
     pattern: AntennaPattern = field(kw_only=True)
     payload: PayloadHub | None = None
+    provider: Provider | None = field(default=None, kw_only=True)
     workers: Workers = field(default_factory=Workers)
     desk: Workers = field(default_factory=lambda: Workers(time_s=DESK_S, memory_bytes=DESK_BYTES))
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))

@@ -7,6 +7,7 @@ never waits: a thread writes. While the disk takes nothing entries wait, bounded
 from __future__ import annotations
 
 import asyncio
+import fcntl
 import logging
 import os
 from collections import deque
@@ -17,11 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from backend.auth.audit_chain import Head, linked, read
+from backend.auth.recovery import same_owner
 
 log = logging.getLogger("crossfix.audit")
 
-AUDIT_FILE = "audit.jsonl"
-"""In the data directory."""
 WAITING = 10_000
 RETRY_S = 2.0
 TAIL_BYTES = 64 * 2**10
@@ -100,8 +100,14 @@ class AuditLog:
     def _append(self, batch: list[dict[str, Any]]) -> None:
         assert self._path is not None
         self._path.parent.mkdir(parents=True, exist_ok=True)
+        new = not self._path.exists()
         handle = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o600)
+        if new:
+            same_owner(self._path)
         try:
+            fcntl.flock(handle, fcntl.LOCK_EX)  # `crossfix recover` writes beside a server that runs
+            if os.fstat(handle).st_size > self._end:
+                self._head = None
             head = self._head or self._found(handle)
             lines: list[bytes] = []
             for content in batch:

@@ -44,12 +44,12 @@ class Passwords:
             return await asyncio.to_thread(self._hasher.hash, password)
 
     async def fits(self, password: str, stored: str | None) -> bool:
-        """stored None: there is no such person, which takes as long to find out."""
+        """stored None or "": there is no such person, or no password of theirs, which takes as long to find out."""
         if self._nobodys is None:
             self._nobodys = await self.hashed("nobody has this password")
         async with self._turn:
             fits = await asyncio.to_thread(self._verify, password, stored or self._nobodys)
-        return fits and stored is not None
+        return fits and bool(stored)
 
     def _verify(self, password: str, stored: str) -> bool:
         try:

@@ -21,7 +21,10 @@ CODE_GROUPS, CODE_GROUP = 4, 4
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """name_key: see key_of. active False: shut out, and kept for the journal's sake."""
+    """name_key: see key_of. active False: shut out, and kept for the journal's sake. password_hash "": they have none.
+
+    issuer, subject: who they are at the sign-in provider, None of whoever never came from there.
+    """
 
     person_id: str
     name: str
@@ -31,6 +34,8 @@ class Person:
     active: bool
     password_hash: str
     made_at_us: int
+    issuer: str | None = None
+    subject: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ DATABASE, FILES, PATTERN, SPOOL = "database/", "files/", "pattern/", "spool.json
 names, and what waited for the database."""
 LONGEST_NAME = 400
 
-OF_THE_MACHINE = ("crossfix.sqlite", "journal.spool", "simulated_vehicle.json", "logs/", ".restoring-")
+OF_THE_MACHINE = ("crossfix.sqlite", "journal.spool", "simulated_vehicle.json", "recovery.json", "logs/", ".restoring-")
 """Beginnings of names at the top of the data directory that belong to one running server: never in an archive."""
 
 

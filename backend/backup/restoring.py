@@ -18,7 +18,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 from backend.backup.archive import Archive
 from backend.backup.manifest import DATABASE, FILES, PATTERN, SPOOL, BackupError, Member, of_the_machine
 from backend.backup.rows import reflected, write_lines
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.store.engine import engine_for_once, known_revisions, migrate
 from backend.store.opening import DatabaseUnusable, claimed
 from backend.store.reading import why
@@ -26,6 +26,8 @@ from backend.store.spool import Spool, SpoolForeign, SpoolFull, SpoolTaken, entr
 from planner.reason import sentence_of
 
 ANSWERS_S = 30.0
+AUDIT_BEFORE = "audit.before-restore.jsonl"
+"""The audit log of a server that has only started stays under this name, beside the one of the archive."""
 PATTERNS = "patterns"
 """The folder of the data directory that an antenna pattern comes back to."""
 
@@ -116,7 +118,7 @@ def _must_hold_no_files(settings: Settings) -> None:
         for path in sorted(settings.data_dir.rglob("*"))
         if path.is_file() and not path.name.startswith(database)
     ]
-    foreign = [name for name in found if not of_the_machine(name)]
+    foreign = [name for name in found if not of_the_machine(name) and name != AUDIT_FILE]
     if foreign:
         raise BackupError(
             f"{settings.data_dir} is not empty (it holds {foreign[0]}): restore into an empty data directory "
@@ -170,10 +172,13 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
     root = settings.data_dir
     folder = Path(tempfile.mkdtemp(prefix=".restoring-", dir=root))
     moved: list[Path] = []
+    audit, aside = root / AUDIT_FILE, root / AUDIT_BEFORE
     places = {member: _place(member) for member in archive.manifest.members if _place(member)}
 
     def keep() -> Path | None:
         pattern = None
+        if AUDIT_FILE in places.values() and audit.exists():
+            audit.rename(aside)
         for member, place in places.items():
             target = root / str(place)
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -195,6 +200,8 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
     except BaseException:
         for path in moved:
             path.unlink(missing_ok=True)
+        if aside.exists() and not audit.exists():
+            aside.rename(audit)
         raise
     finally:
         shutil.rmtree(folder, ignore_errors=True)

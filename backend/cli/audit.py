@@ -7,11 +7,10 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from backend.auth.audit import AUDIT_FILE
 from backend.auth.audit_chain import Fault, Head, Verdict
 from backend.auth.audit_chain import verify as verify_chain
 from backend.cli.edge import print_json, stop
-from backend.settings import settings_of
+from backend.settings import AUDIT_FILE, settings_of
 
 app = typer.Typer(add_completion=False, no_args_is_help=True)
 

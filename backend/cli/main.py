@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "backup": ("backend.cli.backup:backup", "Save everything that a server keeps, while it flies."),
     "restore": ("backend.cli.restore:restore", "Put a backup back onto an empty server."),
     "thin": ("backend.cli.thin:thin", "Take old raw sweeps, and keep everything else."),
+    "recover": ("backend.cli.recover:recover", "Let somebody in again who has lost their password."),
     "audit": ("backend.cli.audit:app", "Check the audit log: who did what, and whether it is whole."),
     "payload": ("backend.cli.payload:payload", "Run the companion computer's agent."),
 }

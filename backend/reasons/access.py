@@ -96,6 +96,42 @@ class WrongNameOrPassword:
 
 
 @dataclass(frozen=True, slots=True)
+class NoPasswordHere:
+    code: Literal["no_password_here"] = "no_password_here"
+    english: ClassVar[Words] = Words(
+        "This account has no password here: it signs in through the sign-in provider.", "Change the password there."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoProvider:
+    code: Literal["no_provider"] = "no_provider"
+    english: ClassVar[Words] = Words(
+        "This server has no sign-in provider.", "Sign in with a name and a password, or set CROSSFIX_OIDC_ISSUER."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ProviderRefused:
+    """What kept somebody out who came back from the sign-in provider."""
+
+    fault: Literal["return", "refused", "away", "answer", "clock", "email", "role", "shut_out"]
+    code: Literal["provider_refused"] = "provider_refused"
+    english: ClassVar[Words] = Words(
+        "{fault?return=The way back from the sign-in provider was used already, took longer than ten minutes, or began "
+        "in another browser|refused=The sign-in provider did not sign you in|away=The sign-in provider does not answer|"
+        "answer=The answer of the sign-in provider could not be accepted|clock=The sign-in provider and this server "
+        "disagree about the time|email=Your email address is not verified, or not of a domain that may enter|"
+        "role=The sign-in provider gives you no role here|shut_out=An admin has shut this account out}.",
+        "{fault?return=Begin again on this page.|refused=Try again, or ask whoever runs the provider.|"
+        "away=Try again later, or sign in with a password.|"
+        "answer=Ask whoever runs this server: its log says what was wrong.|clock=Set the clock of this server.|"
+        "email=Ask whoever runs the provider or this server.|"
+        "role=Ask whoever runs the provider for a group that this server knows.|shut_out=Ask an admin.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class TooManyTries:
     wait_s: float
     code: Literal["too_many_tries"] = "too_many_tries"
@@ -104,13 +140,13 @@ class TooManyTries:
 
 @dataclass(frozen=True, slots=True)
 class CodeUnusable:
-    """Of the first admin or of an invitation."""
+    """Of the first admin, of an invitation, or after a lost password."""
 
     fault: Literal["unknown", "used", "expired"]
     code: Literal["code_unusable"] = "code_unusable"
     english: ClassVar[Words] = Words(
         "This code {fault?unknown=is not known|used=has been used; each works once|expired=has expired}.",
-        "{fault?unknown=Look whether it was copied whole.|*=Ask an admin for a new invitation.}",
+        "{fault?unknown=Look whether it was copied whole.|*=Ask for a new one.}",
     )
 
 
@@ -210,6 +246,9 @@ AccessReason = (
     | OriginMissing
     | NotEncrypted
     | WrongNameOrPassword
+    | NoPasswordHere
+    | NoProvider
+    | ProviderRefused
     | TooManyTries
     | CodeUnusable
     | NameTaken

@@ -80,7 +80,7 @@ class BatterySilent:
 
 @dataclass(frozen=True, slots=True)
 class BatteryShort:
-    """left_percent: after what is planned before the way home; needed_percent: for the way home; reserve_percent: of the mission."""
+    """left_percent: when the way home begins; needed_percent: for the way home; reserve_percent: of the mission."""
 
     charge_percent: float
     left_percent: float

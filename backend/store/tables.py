@@ -107,8 +107,12 @@ people = Table(
     Column("active", Boolean, nullable=False),
     Column("password_hash", Text, nullable=False),
     Column("made_at_us", BigInteger, nullable=False),
+    Column("issuer", String(255)),
+    Column("subject", String(255)),
+    Index("people_provided", "issuer", "subject", unique=True),
 )
-"""name_key: the name in the form in which two are compared. password_hash: argon2id with its salt and parameters."""
+"""name_key: the name in the form in which two are compared. password_hash: argon2id with its salt and parameters, ""
+where there is none. issuer, subject: of the sign-in provider (OpenID Connect Core 5.7: only both name somebody)."""
 
 sessions = Table(
     "sessions",

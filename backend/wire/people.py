@@ -16,23 +16,26 @@ Code = Annotated[str, Field(min_length=1, max_length=100)]
 
 
 class SignedIn(Model):
-    """Whoever the page is signed in as."""
+    """Whoever the page is signed in as. has_password False: they enter through the sign-in provider only."""
 
     person_id: str
     name: str
     role: Role
     admin: bool
+    has_password: bool
 
 
 class SessionState(Model):
     """mode alone: one person before their own machine, no sign-in; waiting: for the first admin; people: sign in.
 
-    person None: nobody is signed in. encrypted False: passwords are refused here, see NotEncrypted.
+    person None: nobody is signed in. encrypted False: passwords are refused here, see NotEncrypted. provider: name of
+    the sign-in provider, None where there is none.
     """
 
     mode: Literal["alone", "waiting", "people"]
     person: SignedIn | None
     encrypted: bool
+    provider: str | None
 
 
 class SignIn(Model):
@@ -72,6 +75,13 @@ class InvitationAnswer(Model):
     password: Password
 
 
+class LostPassword(Model):
+    """code: as `crossfix recover` printed it. password: the new one."""
+
+    code: Code
+    password: Password
+
+
 class OpenSession(Model):
     """device: what its browser says of itself. own: the one that asks."""
 
@@ -90,7 +100,7 @@ class SessionList(Model):
 
 
 class NewPassword(Model):
-    """All sessions end with it."""
+    """All other sessions end with it."""
 
     old: Password
     new: Password

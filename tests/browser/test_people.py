@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +16,7 @@ from screen import OpenScreen, Screen
 from served import Server, started
 
 PASSWORD = "correct horse battery"
+NEW = "another horse battery"
 PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
 
@@ -53,6 +56,13 @@ def invited(admin: Screen, role: str) -> str:
     admin.page.get_by_label(re.compile("^(Role|Rolle)$")).select_option(role)
     admin.part("invite").click()
     return admin.part("invitation-link").input_value()
+
+
+def recovered(shared: Shared, name: str) -> str:
+    """The code that the command on the server's machine prints."""
+    command = [sys.executable, "-m", "backend.cli.main", "recover", name, "--data-dir", str(shared.server.data_dir)]
+    done = subprocess.run([*command, "--json"], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["code"]
 
 
 def opened(open_screen: OpenScreen, shared: Shared, path: str = "", **options: Any) -> Screen:
@@ -136,8 +146,26 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(phone.part("menu")).to_be_visible()
     steers(phone, "Sie")
 
+    phone.go("#/people")
+    for old, said in (("not it at all", "falsch"), (PASSWORD, "")):
+        phone.part("password-old").fill(old)
+        phone.part("password-new").fill(NEW)
+        phone.part("password-submit").click()
+        expect(phone.part("own-password").get_by_role("alert" if said else "status")).to_contain_text(said)
+    expect(phone.part("menu")).to_be_visible()
+
+    admin.go("#/health")
+    expect(admin.part("health")).to_contain_text("database")
+    admin.go("#/people")
     admin.part("sign-out-everywhere").click()
     expect(admin.part("sign-in-page")).to_be_visible()
+
+    code = recovered(shared, "Ada")
+    admin.part("entry-lost").click()
+    admin.part("entry-code").fill(code)
+    admin.part("entry-password").fill(NEW)
+    admin.part("entry-submit").click()
+    expect(admin.part("menu")).to_be_visible()
 
 
 @pytest.mark.browser

@@ -10,6 +10,7 @@ import yaml
 
 from backend.settings import Settings
 
+DEPLOY = Path(__file__).parent.parent.parent / "deploy"
 COMPOSE = yaml.safe_load((Path(__file__).parent.parent.parent / "docker-compose.yml").read_text())
 SERVICES = COMPOSE["services"]
 
@@ -61,3 +62,13 @@ def test_the_vehicle_reports_to_the_server_and_the_database_does_not_know_it():
     assert "--connect=server:14540" in SERVICES["vehicle"]["command"]
     assert unset(SERVICES["server"]["environment"]["CROSSFIX_VEHICLE_URL"]) == "udpin://0.0.0.0:14540"
     assert not set(SERVICES["vehicle"]["networks"]) & set(SERVICES["database"]["networks"])
+
+
+def test_prometheus_finds_its_token_where_it_is_written():
+    """In a volume of its own: it sees no other secret. (Not in `configs`, which some compose programs leave out.)"""
+    scrape = yaml.safe_load((DEPLOY / "prometheus.yml").read_text())["scrape_configs"][0]
+    folder, name = scrape["authorization"]["credentials_file"].rsplit("/", 1)
+    read = next(volume for volume in SERVICES["prometheus"]["volumes"] if volume.endswith(f":{folder}:ro"))
+    written = next(v for v in SERVICES["secrets"]["volumes"] if v.split(":")[0] == read.split(":")[0])
+    assert f"> {written.split(':')[1]}/{name}" in SERVICES["secrets"]["command"][-1]
+    assert not any(volume.startswith("secrets:") for volume in SERVICES["prometheus"]["volumes"])

@@ -10,7 +10,7 @@ import { entered } from "../state/session";
 type Page = ComponentType<Record<string, unknown>>;
 type Loader = () => Promise<unknown>;
 
-const loaders: Record<Route["page"] | "sheets" | "signIn", Loader> = {
+const loaders: Record<Route["page"] | "sheets", Loader> = {
   missions: () => import("../pages/MissionsPage").then((m) => m.MissionsPage),
   new: () => import("../pages/EditPage").then((m) => m.EditPage),
   edit: () => import("../pages/EditPage").then((m) => m.EditPage),
@@ -67,11 +67,12 @@ export function App() {
       </main>
     );
   }
+  const shown = current.page === "signIn" ? "missions" : current.page;
   return (
     <>
       <SafetyBar />
       <main>
-        <Lazy name={current.page} route={current} key={current.page} />
+        <Lazy name={shown} route={current} key={shown} />
       </main>
       <Sheets />
     </>

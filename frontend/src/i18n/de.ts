@@ -77,6 +77,19 @@ export const de: Record<MessageKey, string> = {
   "entry.notEncrypted":
     "Diese Verbindung ist nicht verschlüsselt, darum wird hier kein Passwort angenommen. Öffnen Sie die Seite mit https://.",
   "entry.signIn": "Anmelden",
+  "entry.provider": "Mit {name} anmelden",
+  "entry.lost": "Passwort verloren?",
+  "entry.lost.title": "Ein neues Passwort wählen",
+  "entry.lost.explain":
+    "Wer diesen Server betreut, ruft auf dessen Rechner „crossfix recover“ mit Ihrem Namen auf und gibt Ihnen den Code, der dort erscheint.",
+  "entry.lost.submit": "Passwort setzen und anmelden",
+  "entry.back": "Zurück",
+  "password.title": "Ihr Passwort",
+  "password.old": "Altes Passwort",
+  "password.new": "Neues Passwort",
+  "password.submit": "Passwort ändern",
+  "password.done": "Das Passwort ist geändert. Alle anderen Geräte sind abgemeldet.",
+  "password.none": "Sie melden sich über den Anmeldedienst an; hier gibt es kein Passwort.",
   "entry.firstAdmin": "Den ersten Verwalter anlegen",
   "entry.firstAdmin.submit": "Konto anlegen und anmelden",
   "entry.firstAdmin.explain":

@@ -895,13 +895,26 @@ export const reasonsEn: ReasonTable = {
     text: "Name or password is wrong.",
     remedy: "Try again, or ask an admin for an invitation.",
   },
+  no_password_here: {
+    text: "This account has no password here: it signs in through the sign-in provider.",
+    remedy: "Change the password there.",
+  },
+  no_provider: {
+    text: "This server has no sign-in provider.",
+    remedy: "Sign in with a name and a password, or set CROSSFIX_OIDC_ISSUER.",
+  },
+  provider_refused: {
+    text: "{fault?return=The way back from the sign-in provider was used already, took longer than ten minutes, or began in another browser|refused=The sign-in provider did not sign you in|away=The sign-in provider does not answer|answer=The answer of the sign-in provider could not be accepted|clock=The sign-in provider and this server disagree about the time|email=Your email address is not verified, or not of a domain that may enter|role=The sign-in provider gives you no role here|shut_out=An admin has shut this account out}.",
+    remedy:
+      "{fault?return=Begin again on this page.|refused=Try again, or ask whoever runs the provider.|away=Try again later, or sign in with a password.|answer=Ask whoever runs this server: its log says what was wrong.|clock=Set the clock of this server.|email=Ask whoever runs the provider or this server.|role=Ask whoever runs the provider for a group that this server knows.|shut_out=Ask an admin.}",
+  },
   too_many_tries: {
     text: "There were too many tries.",
     remedy: "Try again in {wait_s}.",
   },
   code_unusable: {
     text: "This code {fault?unknown=is not known|used=has been used; each works once|expired=has expired}.",
-    remedy: "{fault?unknown=Look whether it was copied whole.|*=Ask an admin for a new invitation.}",
+    remedy: "{fault?unknown=Look whether it was copied whole.|*=Ask for a new one.}",
   },
   name_taken: {
     text: "Somebody here is called {name} already.",

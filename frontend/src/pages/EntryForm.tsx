@@ -9,13 +9,15 @@ import type { Problem } from "../wire";
 interface Properties {
   title: string;
   submit: string;
-  /** Makes an account: the password is new, and managers of passwords shall offer one. */
+  /** The password is new, and managers of passwords shall offer one. */
   fresh: boolean;
+  /** The code says who it is. */
+  nameless?: boolean;
   children?: ComponentChildren;
   onSubmit: (name: string, password: string) => Promise<unknown>;
 }
 
-export function EntryForm({ title, submit, fresh, children, onSubmit }: Properties) {
+export function EntryForm({ title, submit, fresh, nameless = false, children, onSubmit }: Properties) {
   const [problem, setProblem] = useState<Problem | null>(null);
   const [sending, setSending] = useState(false);
   const [name, setName] = useState("");
@@ -36,17 +38,21 @@ export function EntryForm({ title, submit, fresh, children, onSubmit }: Properti
       <p class="muted entry-product">Crossfix</p>
       <h1>{title}</h1>
       {children}
-      <label for="entry-name">{t("entry.name")}</label>
-      <input
-        id="entry-name"
-        data-testid="entry-name"
-        autocomplete="username"
-        required
-        maxLength={40}
-        value={name}
-        onInput={(e) => setName(e.currentTarget.value)}
-      />
-      <label for="entry-password">{t("entry.password")}</label>
+      {!nameless && (
+        <>
+          <label for="entry-name">{t("entry.name")}</label>
+          <input
+            id="entry-name"
+            data-testid="entry-name"
+            autocomplete="username"
+            required
+            maxLength={40}
+            value={name}
+            onInput={(e) => setName(e.currentTarget.value)}
+          />
+        </>
+      )}
+      <label for="entry-password">{t(nameless ? "password.new" : "entry.password")}</label>
       <input
         id="entry-password"
         data-testid="entry-password"

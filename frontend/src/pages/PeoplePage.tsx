@@ -9,6 +9,7 @@ import { formatAge } from "../units/quantities";
 import type { Problem } from "../wire";
 import { Invitations } from "./Invitations";
 import { Machines } from "./Machines";
+import { OwnPassword } from "./OwnPassword";
 import { RolePick } from "./RolePick";
 
 const named = (words: string, names: readonly [RegExp, string][]) => names.find(([pattern]) => pattern.test(words))?.[1];
@@ -158,6 +159,7 @@ export function PeoplePage() {
         </>
       )}
       {listed && <OwnSessions list={listed.sessions} attempt={attempt} />}
+      {listed && <OwnPassword onChanged={() => void reload()} />}
     </div>
   );
 }

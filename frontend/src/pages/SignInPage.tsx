@@ -1,7 +1,10 @@
-// Before anything of the server is shown: sign in, or make the first admin.
+// Before anything of the server is shown: sign in, make the first admin, or choose a new password after one was lost.
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
-import { makeFirstAdmin, signIn } from "../sources/accessApi";
+import { ProblemBox } from "../panels/ProblemNote";
+import { makeFirstAdmin, providerAddress, recover, type SessionState, signIn } from "../sources/accessApi";
+import { type Fault, faultOf, providerProblem } from "../sources/providerProblem";
+import { go, type Route } from "../state/route";
 import { session } from "../state/session";
 import { EntryForm } from "./EntryForm";
 
@@ -10,6 +13,25 @@ function NotEncrypted() {
     <p class="refused" role="alert" data-testid="not-encrypted">
       {t("entry.notEncrypted")}
     </p>
+  );
+}
+
+function Code({ value, onInput }: { value: string; onInput: (value: string) => void }) {
+  return (
+    <>
+      <label for="entry-code">{t("entry.code")}</label>
+      <input
+        id="entry-code"
+        data-testid="entry-code"
+        autocomplete="off"
+        autocapitalize="characters"
+        spellcheck={false}
+        required
+        maxLength={100}
+        value={value}
+        onInput={(e) => onInput(e.currentTarget.value)}
+      />
+    </>
   );
 }
 
@@ -24,39 +46,70 @@ function FirstAdmin({ encrypted }: { encrypted: boolean }) {
     >
       {!encrypted && <NotEncrypted />}
       <p>{t("entry.firstAdmin.explain")}</p>
-      <label for="entry-code">{t("entry.code")}</label>
-      <input
-        id="entry-code"
-        data-testid="entry-code"
-        autocomplete="off"
-        autocapitalize="characters"
-        spellcheck={false}
-        required
-        maxLength={100}
-        value={code}
-        onInput={(e) => setCode(e.currentTarget.value)}
-      />
+      <Code value={code} onInput={setCode} />
     </EntryForm>
   );
 }
 
-export function SignInPage() {
+function LostPassword({ encrypted, onBack }: { encrypted: boolean; onBack: () => void }) {
+  const [code, setCode] = useState("");
+  return (
+    <>
+      <EntryForm
+        title={t("entry.lost.title")}
+        submit={t("entry.lost.submit")}
+        fresh
+        nameless
+        onSubmit={(_, password) => recover(code, password).then((now) => (session.value = now))}
+      >
+        {!encrypted && <NotEncrypted />}
+        <p>{t("entry.lost.explain")}</p>
+        <Code value={code} onInput={setCode} />
+      </EntryForm>
+      <button type="button" class="entry-other" onClick={onBack}>
+        {t("entry.back")}
+      </button>
+    </>
+  );
+}
+
+function SignIn({ now, fault }: { now: SessionState; fault: Fault | null }) {
+  const [lost, setLost] = useState(false);
+  if (lost) return <LostPassword encrypted={now.encrypted} onBack={() => setLost(false)} />;
+  return (
+    <>
+      <EntryForm
+        title={t("entry.signIn")}
+        submit={t("entry.signIn")}
+        fresh={false}
+        onSubmit={async (name, password) => {
+          const entered = await signIn(name, password);
+          if (fault !== null) go("#/");
+          session.value = entered;
+        }}
+      >
+        {!now.encrypted && <NotEncrypted />}
+        {fault !== null && <ProblemBox problem={providerProblem(fault)} testId="provider-problem" />}
+        {now.provider !== null && (
+          <a class="button" href={providerAddress} data-testid="entry-provider">
+            {t("entry.provider", { name: now.provider })}
+          </a>
+        )}
+      </EntryForm>
+      <button type="button" class="entry-other" data-testid="entry-lost" onClick={() => setLost(true)}>
+        {t("entry.lost")}
+      </button>
+    </>
+  );
+}
+
+export function SignInPage({ route }: { route: Route }) {
   const now = session.value;
+  const fault = route.page === "signIn" ? faultOf(route.fault) : null;
   if (now === null || now === "unreachable") return null;
   return (
     <div class="page entry-page" data-testid="sign-in-page">
-      {now.mode === "waiting" ? (
-        <FirstAdmin encrypted={now.encrypted} />
-      ) : (
-        <EntryForm
-          title={t("entry.signIn")}
-          submit={t("entry.signIn")}
-          fresh={false}
-          onSubmit={(name, password) => signIn(name, password).then((entered) => (session.value = entered))}
-        >
-          {!now.encrypted && <NotEncrypted />}
-        </EntryForm>
-      )}
+      {now.mode === "waiting" ? <FirstAdmin encrypted={now.encrypted} /> : <SignIn now={now} fault={fault} />}
     </div>
   );
 }

@@ -25,6 +25,9 @@ export const makeFirstAdmin = (code: string, name: string, password: string) =>
 export const lookAtInvitation = (code: string) => json<InvitationOffer>("/invitation/look", withBody("POST", { code }));
 export const acceptInvitation = (code: string, name: string, password: string) =>
   json<SessionState>("/invitation/accept", withBody("POST", { code, name, password }));
+export const recover = (code: string, password: string) => json<SessionState>("/recovery", withBody("POST", { code, password }));
+/** A navigation: the browser leaves for the provider, and comes back to this page. */
+export const providerAddress = "/api/provider/begin";
 
 export const ownSessions = () => json<{ sessions: OpenSession[] }>("/account/sessions");
 export const endSession = (id: string) => remove(`/account/sessions/${id}`);

@@ -10,13 +10,15 @@ export type Route =
   | { page: "maps" }
   | { page: "health" }
   | { page: "people" }
-  | { page: "join"; code: string };
+  | { page: "join"; code: string }
+  | { page: "signIn"; fault: string };
 
 export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
   if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people") return { page: parts[0] };
+  if (parts[0] === "sign-in" && id) return { page: "signIn", fault: id };
   if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {
     return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };

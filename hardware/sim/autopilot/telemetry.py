@@ -37,7 +37,8 @@ _CAPABILITIES = (
 )
 
 
-_UNUSED_CHANNEL = 65535
+_NONE = 65535
+_UNUSED_CHANNELS = (_NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE, _NONE)
 ESTIMATOR_LATE, SYS_STATUS_LATE = 5.2, 7.4
 """Seconds after the last fix at which PX4's estimator and its health say so; GPS_RAW_INT says it at once."""
 
@@ -205,8 +206,8 @@ def ekf_status_report(firmware: Firmware) -> ardupilotmega.MAVLink_message:
 
 def rc_channels(firmware: Firmware) -> Message:
     """Eight channels of a transmitter; the fifth is its mode switch."""
-    channels = [1500, 1500, 1000, 1500, firmware.mode_switch_us, 1500, 1500, 1500, *[_UNUSED_CHANNEL] * 10]
-    return mavlink.MAVLink_rc_channels_message(_boot_ms(firmware), 8, *channels, 200)
+    channels = (1500, 1500, 1000, 1500, firmware.mode_switch_us, 1500, 1500, 1500)
+    return mavlink.MAVLink_rc_channels_message(_boot_ms(firmware), 8, *channels, *_UNUSED_CHANNELS, 200)
 
 
 _COMMON: dict[int, Callable[[Firmware], Any]] = {

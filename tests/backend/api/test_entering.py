@@ -21,8 +21,9 @@ from fastapi import FastAPI
 from backend.api.application import make_application
 from backend.api.gate import PLAIN_COOKIE, SECURE_COOKIE, SIGNED_OUT
 from backend.api.services import Services
-from backend.auth.access import Access
+from backend.auth.access import Access, Visit
 from backend.auth.audit import AuditLog
+from backend.auth.invitations import Invitations
 from backend.auth.passwords import Passwords
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
@@ -104,7 +105,7 @@ async def test_from_another_machine_no_password_is_taken_over_http(
         refused = await first_admin(client, access)
         assert (refused.status_code, reason(refused)) == (403, "not_encrypted")
         assert access.mode == "waiting"
-        await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, "a", "")
+        await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, Visit("a", ""))
         assert reason(await client.post("/api/session", json=ADA)) == "not_encrypted"
 
 
@@ -151,7 +152,7 @@ async def test_a_signed_in_page_of_another_origin_changes_nothing(
             assert reply.status_code == 403, path
         assert reason(reply) in {"origin_missing", "foreign_origin"}
         assert (await client.get("/api/missions")).status_code == 200
-    assert access.invitations == []
+    assert access.invitations.waiting == []
 
 
 async def test_an_http_page_does_not_speak_for_an_https_one(shared: FastAPI, access: Access) -> None:
@@ -196,7 +197,7 @@ async def test_a_call_that_breaks_is_written_down_too(
     async def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(Access, "invite", broken)
+    monkeypatch.setattr(Invitations, "make", broken)
     async with visiting(shared) as client:
         await first_admin(client, access)
         assert (await client.post("/api/invitations", json={"role": "viewer"})).status_code == 500
@@ -223,7 +224,7 @@ async def heard_until_closed(live: websockets.ClientConnection) -> None:
 
 
 async def test_a_session_that_is_ended_elsewhere_closes_its_live_channel(shared: FastAPI, access: Access) -> None:
-    secret = await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, "a", "")
+    secret = await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, Visit("a", ""))
     async with on_a_socket(shared) as host:
         cookie = {"cookie": f"{PLAIN_COOKIE}={secret}"}
         with pytest.raises(websockets.InvalidStatus) as foreign:
@@ -233,7 +234,7 @@ async def test_a_session_that_is_ended_elsewhere_closes_its_live_channel(shared:
             f"ws://{host}/api/live", origin=websockets.Origin(f"http://{host}"), additional_headers=cookie
         ) as live:
             assert "hello" in str(await live.recv())
-            await access.end_sessions(access.people[0].person_id)
+            await access.sessions.end_all(access.people.by_name[0].person_id)
             with pytest.raises(websockets.ConnectionClosed) as closed:
                 await heard_until_closed(live)
         assert closed.value.rcvd is not None

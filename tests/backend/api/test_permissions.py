@@ -19,7 +19,7 @@ from fastapi import FastAPI, WebSocket, WebSocketDisconnect
 from backend.api.application import make_application
 from backend.api.gate import PLAIN_COOKIE, calls_of
 from backend.api.services import Services
-from backend.auth.access import Access
+from backend.auth.access import Access, Visit
 from backend.auth.audit import AuditLog
 from backend.auth.audit_chain import verify
 from backend.auth.buckets import Buckets
@@ -95,15 +95,15 @@ def shared(services: Services, access: Access, settings: Settings) -> FastAPI:
 async def everybody(access: Access) -> dict[str, dict[str, str]]:
     """Headers by caller; the address of each is its own, so that no limit of one meets another."""
     code = access.begin_first_admin() or ""
-    await access.make_first_admin(code, "first", PASSWORD, "a", "")
+    await access.make_first_admin(code, "first", PASSWORD, Visit("a", ""))
     headers: dict[str, dict[str, str]] = {NOBODY.name: dict(ORIGIN)}
     for caller in CALLERS:
         if caller.scope is not None:
-            secret, _ = await access.make_token(caller.name, caller.scope, None, "first")
+            secret, _ = await access.machines.make(caller.name, caller.scope, None, "first")
             headers[caller.name] = {"authorization": f"Bearer {secret}"}
         elif caller.role is not None:
-            link, _ = await access.invite(caller.role, caller.admin, 60.0, "first")
-            secret = await access.accept_invitation(link, caller.name, PASSWORD, caller.name, "")
+            link, _ = await access.invitations.make(caller.role, caller.admin, 60.0, "first")
+            secret = await access.accept_invitation(link, caller.name, PASSWORD, Visit(caller.name, ""))
             headers[caller.name] = {"cookie": f"{PLAIN_COOKIE}={secret}", **ORIGIN}
     return headers
 
@@ -209,7 +209,7 @@ async def test_each_call_lets_in_whom_the_table_says_and_is_written_down(
         for name in (*(one for one in HTTP if one not in ENDS_THE_SESSION), *ENDS_THE_SESSION):
             need = ENDPOINTS[name]
             if name in ENDS_THE_SESSION and caller.role is not None:
-                secret = await access.sign_in(caller.name, PASSWORD, "again", "")
+                secret = await access.sign_in(caller.name, PASSWORD, Visit("again", ""))
                 headers = {"cookie": f"{PLAIN_COOKIE}={secret}", **ORIGIN}
             method, path = filled(name)
             reply = await client.request(method, path, headers=headers)

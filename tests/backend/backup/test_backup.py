@@ -15,11 +15,11 @@ from facts import HOME, SPEC, bearing
 from backend.api.beliefs import belief_frame
 from backend.backup.making import make_backup
 from backend.backup.manifest import BackupError
-from backend.backup.restoring import restore
+from backend.backup.restoring import AUDIT_BEFORE, restore
 from backend.events import HoldOrdered, MissionDrafted, MissionStarted
 from backend.ports import TrackPoint
 from backend.search.localization import localization
-from backend.settings import Settings
+from backend.settings import AUDIT_FILE, Settings
 from backend.store.entries import EventsEntry, to_row
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
@@ -143,6 +143,22 @@ async def test_what_waited_for_the_database_is_stored_by_the_next_start(tmp_path
     async with opened(there) as journal:
         assert (await journal.read("flown"))[-1].event == hold(7)
         assert journal.report().spooled == 0
+
+
+async def test_a_server_that_has_only_started_takes_a_backup_and_keeps_its_own_audit_log(tmp_path, request):
+    here, there = (served(tmp_path, name, "sqlite", request) for name in ("here", "there"))
+    async with opened(here) as journal:
+        await write_mission(journal)
+        before = await told(journal)
+    (here.data_dir / AUDIT_FILE).write_bytes(b"here\n")
+    await asyncio.to_thread(make_backup, here, tmp_path / "b.zip")
+    async with opened(there):
+        (there.data_dir / AUDIT_FILE).write_bytes(b"there\n")
+    await asyncio.to_thread(restore, there, tmp_path / "b.zip")
+    async with opened(there) as journal:
+        assert await told(journal) == before
+    assert (there.data_dir / AUDIT_FILE).read_bytes() == b"here\n"
+    assert (there.data_dir / AUDIT_BEFORE).read_bytes() == b"there\n"
 
 
 async def test_a_target_that_holds_something_is_left_as_it_is(tmp_path, request):

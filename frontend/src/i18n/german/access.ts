@@ -39,10 +39,32 @@ export const access = {
     text: "Name oder Passwort ist falsch.",
     remedy: "Noch einmal versuchen, oder einen Verwalter um eine Einladung bitten.",
   },
+  no_password_here: {
+    text: "Dieses Konto hat hier kein Passwort: Es meldet sich über den Anmeldedienst an.",
+    remedy: "Das Passwort dort ändern.",
+  },
+  no_provider: {
+    text: "Dieser Server hat keinen Anmeldedienst.",
+    remedy: "Mit Name und Passwort anmelden, oder CROSSFIX_OIDC_ISSUER setzen.",
+  },
+  provider_refused: {
+    text:
+      "{fault?return=Dieser Rückweg vom Anmeldedienst wurde schon benutzt, hat länger als zehn Minuten gedauert oder begann in einem anderen Browser|" +
+      "refused=Der Anmeldedienst hat Sie nicht angemeldet|away=Der Anmeldedienst antwortet nicht|" +
+      "answer=Die Antwort des Anmeldedienstes war nicht annehmbar|clock=Anmeldedienst und Server sind sich über die Uhrzeit uneins|" +
+      "email=Ihre E-Mail-Adresse ist nicht bestätigt, oder ihre Domäne darf nicht herein|" +
+      "role=Der Anmeldedienst gibt Ihnen hier keine Rolle|shut_out=Ein Verwalter hat dieses Konto ausgesperrt}.",
+    remedy:
+      "{fault?return=Auf dieser Seite neu beginnen.|refused=Noch einmal versuchen, oder den Betreiber des Anmeldedienstes fragen.|" +
+      "away=Später noch einmal versuchen, oder mit einem Passwort anmelden.|" +
+      "answer=Den Betreiber dieses Servers fragen: In dessen Protokoll steht, was falsch war.|clock=Die Uhr dieses Servers stellen.|" +
+      "email=Den Betreiber des Anmeldedienstes oder dieses Servers fragen.|" +
+      "role=Den Betreiber des Anmeldedienstes um eine Gruppe bitten, die dieser Server kennt.|shut_out=Einen Verwalter fragen.}",
+  },
   too_many_tries: { text: "Das waren zu viele Versuche.", remedy: "In {wait_s} noch einmal versuchen." },
   code_unusable: {
     text: "Dieser Code {fault?unknown=ist nicht bekannt|used=wurde schon benutzt; jeder gilt nur einmal|expired=ist abgelaufen}.",
-    remedy: "{fault?unknown=Sehen Sie nach, ob er vollständig übernommen wurde.|*=Bitten Sie einen Verwalter um eine neue Einladung.}",
+    remedy: "{fault?unknown=Sehen Sie nach, ob er vollständig übernommen wurde.|*=Bitten Sie um einen neuen.}",
   },
   name_taken: { text: "Hier heißt schon jemand {name}.", remedy: "Einen anderen Namen wählen." },
   password_weak: {
