@@ -18,12 +18,12 @@ FEWEST_OUTLIERS = 0.01
 MOST_OUTLIERS = 0.6
 """Rates that a joint belief allows for, whatever is specified."""
 
-SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.12, 0.63, 0.25)
+SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.15, 0.63, 0.22)
 """Of the stated sigmas. One flight's bearings agree by luck too often to tell a sensor that is better than it says, so
 this has little weight until flights have taught it."""
-RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 2.0), (0.05, 0.15, 0.4, 0.4)
-"""Of the specified outlier probability; the mean is that. From two bearings nobody sees an outlier: a claim after two
-takes a source whose flights taught that it has hardly any."""
+RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)
+"""Of the specified outlier probability; the mean is nine tenths of that. From two bearings nobody sees an outlier: a
+claim after two takes a source whose flights taught that it has hardly any."""
 
 
 def unknown_errors(outlier_probability: float) -> ErrorPrior:
