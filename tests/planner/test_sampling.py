@@ -63,7 +63,7 @@ def test_normal_quantiles_are_those_of_scipy():
 
 def test_quasi_random_targets_share_the_mass_out_more_evenly_than_chance():
     prior = belief(GAUSSIAN)
-    targets = targets_at(prior, sobol(0, 1024, 2))
+    targets = targets_at(prior, sobol(0, 1024, 2) + 0.5 / 1024)
     assert targets.mean(axis=0) == pytest.approx([150.0, 140.0], abs=0.2)
     assert np.cov(targets.T) == pytest.approx(GAUSSIAN.covariance, rel=0.02)
     flat = targets_at(belief(), sobol(0, 256, 2))
@@ -75,10 +75,12 @@ def test_quasi_random_targets_stay_in_cells_that_hold_mass():
     half = belief()
     half.density[:, :50] = 0.0
     half.density[50:, 50:] = 0.0
-    edges = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.5, 0.5]])
+    last = 1.0 - 1e-9
+    edges = np.array([[0.0, 0.0], [0.0, last], [last, 0.0], [last, last], [0.5, 0.5]])
     targets = targets_at(half, edges)
     assert (targets >= [150.0, 0.0]).all()
     assert (targets <= [300.0, 150.0]).all()
+    assert targets[0] == pytest.approx([150.0, 0.0])
 
 
 def test_quasi_random_paths_go_on_where_they_were_left():
