@@ -88,7 +88,6 @@ def chaos(scale: float, out: Path) -> list[Step]:
             ("tests.benchmarks.takeover", "--flavour", "ardupilot", "--times", share(200, scale, 2), *to),
             ("takeover",),
         ),
-        Step("half-sent requests", ("tests.benchmarks.half_sent", *to), ("half_sent",)),
         Step(
             "odd requests and messages",
             ("pytest", "tests/fuzz", "--timeout", "86400", "-q"),

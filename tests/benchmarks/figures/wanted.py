@@ -109,7 +109,6 @@ WANTED = (
     Wanted(10, "fuzz_requests", "odd HTTP requests made", "", at_least=100_000),
     Wanted(10, "fuzz_messages", "odd websocket and payload messages sent", "", at_least=100_000),
     Wanted(10, "fuzz_failures", "server errors and crashes under fuzzing", "", at_most=0),
-    Wanted(10, "half_sent", "orders unanswered beside 1,010 half-sent requests", "", at_most=0),
     Wanted(11, "access", "role x endpoint x command pairs not decided by the table of rights", "", at_most=0),
     Wanted(20, "upload_abort", "abort answered while a file of 50 MB is read, at most", "ms", at_most=100.0),
     Wanted(20, "upload_memory", "server's memory above its usual, while a file of 50 MB is read", "MB", at_most=200.0),
