@@ -13,7 +13,7 @@ import math
 from collections.abc import AsyncGenerator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import cast
 from uuid import uuid4
 
 from backend.auth.buckets import Buckets, neighbourhood
@@ -52,10 +52,11 @@ def read_datagram(data: bytes, now_s: float) -> ReportedBearing:
     if len(data) > LARGEST_BYTES:
         raise DatagramRefused(f"it has {len(data)} bytes; {LARGEST_BYTES} are the most")
     try:
-        told = json.loads(data)
+        content: object = json.loads(data)
     except (ValueError, RecursionError):
         raise DatagramRefused("it is not JSON") from None
-    if not isinstance(told, dict) or told.get("type") != "BEARING":
+    told = cast(dict[str, object], content) if isinstance(content, dict) else {}
+    if told.get("type") != "BEARING":
         raise DatagramRefused('it is no object of type "BEARING"')
     if told.get("bearing_type") != "absolute":
         raise DatagramRefused('its bearing_type is not "absolute": send the bearing from true north, and the place')
@@ -75,7 +76,7 @@ def read_datagram(data: bytes, now_s: float) -> ReportedBearing:
     )
 
 
-def _number(told: dict[str, Any], name: str, low: float, high: float) -> float:
+def _number(told: dict[str, object], name: str, low: float, high: float) -> float:
     value = told.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise DatagramRefused(f"its {name} is no number")
@@ -110,7 +111,7 @@ class BearingFeed(asyncio.DatagramProtocol):
     _said_at_s: float = -math.inf
     _unsaid: int = 0
 
-    def datagram_received(self, data: bytes, addr: tuple[Any, ...]) -> None:
+    def datagram_received(self, data: bytes, addr: tuple[object, ...]) -> None:
         """From the loop; never raises."""
         key, now_s = neighbourhood(str(addr[0])), self.steady()
         if self._buckets.wait_s(key, now_s) > 0.0:

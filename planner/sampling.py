@@ -74,13 +74,15 @@ def targets_at(belief: GridBelief, points: FloatArray) -> FloatArray:
     i, x = _inverted(columns / columns[-1], points[:, 0])
     share = rows / np.where(rows[-1] > 0, rows[-1], 1.0)
     one_after_another = (share + np.arange(belief.nx)).T.ravel()  # column k rises from k to k + 1
-    j, y = _inverted(one_after_another, i + points[:, 1], i)  # a column without mass ends a whole below the next
+    # a column without mass ends a whole below the next
+    j, y = _inverted(one_after_another, i + points[:, 1], i.astype(np.float64))
     return np.array([belief.x0, belief.y0]) + belief.h * np.column_stack([i + x, j - i * belief.ny + y])
 
 
 def _inverted(cumulative: FloatArray, at: FloatArray, least: FloatArray | float = 0.0) -> tuple[IntArray, FloatArray]:
     """Index of the cell in which `at` falls, and how far into it; no cell begins below `least`."""
-    k = np.minimum(np.searchsorted(cumulative, at, side="right"), int(np.searchsorted(cumulative, cumulative[-1])))
+    last = int(np.searchsorted(cumulative, float(cumulative[-1])))
+    k = np.minimum(np.searchsorted(cumulative, at, side="right"), last)
     before = np.maximum(np.where(k > 0, cumulative[np.maximum(k - 1, 0)], 0.0), least)
     return k.astype(np.int64), np.clip((at - before) / (cumulative[k] - before), 0.0, 1.0)
 

@@ -81,7 +81,9 @@ def _role(claims: Mapping[str, Any], rules: Rules) -> tuple[Role | None, bool]:
         return rules.default, False
     given = {rules.roles[value] for value in _values(claims, rules.role_claim) if value in rules.roles}
     admin = "admin" in given
-    best = next((role for role in reversed(ROLES) if role in given), rules.default)
+    best = rules.default
+    for role in ROLES:  # the highest that is given
+        best = role if role in given else best
     return ("viewer" if best is None and admin else best), admin
 
 

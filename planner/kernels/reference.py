@@ -322,18 +322,27 @@ def program_action(
         candidates = np.flatnonzero(far_enough(belief, rules, rules.places))
         best = int(candidates[_first_least(costs[candidates])])
         return rules.places[best], best, float(left[best])
-    for places, left in (_beside(frame, rules, after, place), _around(frame, rules, after)):
-        inside = (places >= rules.window[:2]).all(axis=1) & (places <= rules.window[2:]).all(axis=1)
-        costs = np.array([flight_time(rules, float(d), 0.0) for d in np.hypot(*(places - place).T)]) + left
-        if len(places) <= after.size + 1:
-            best = _first_least(costs)
-            near, near_left = places[best], float(left[best])
-            if inside[best]:
-                return near, -1, near_left
-        elif inside.any():
-            best = _first_least(np.where(inside, costs, np.inf))
-            return places[best], -1, float(left[best])
+    places, left = _beside(frame, rules, after, place)
+    best = _first_least(_flights(rules, places - place) + left)
+    near, near_left = places[best], float(left[best])
+    if _in_window(rules, near):
+        return near, -1, near_left
+    places, left = _around(frame, rules, after)
+    inside = _in_window(rules, places)
+    if inside.any():
+        best = _first_least(np.where(inside, _flights(rules, places - place) + left, np.inf))
+        return places[best], -1, float(left[best])
     return np.clip(near, rules.window[:2], rules.window[2:]), -1, near_left
+
+
+def _flights(rules: Rules, ways: FloatArray) -> FloatArray:
+    """(n,) s for straight ways (n, 2), m."""
+    return np.array([flight_time(rules, float(d), 0.0) for d in np.hypot(*ways.T)])
+
+
+def _in_window(rules: Rules, places: FloatArray) -> BoolArray:
+    """(...,) which places (..., 2) lie inside the flight window."""
+    return np.all((places >= rules.window[:2]) & (places <= rules.window[2:]), axis=-1)
 
 
 def _beside(frame: Frame, rules: Rules, after: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -78,8 +78,8 @@ class _Member:
             self.paths = Paths(*(np.concatenate(arrays) for arrays in zip(self.paths, drawn, strict=True)))
         have = len(self.without)
         if have < len(self.paths.targets):
-            fresh = np.arange(have, len(self.paths.targets))
-            tasks = Tasks(np.zeros(len(fresh), dtype=np.int64), fresh)
+            added = np.arange(have, len(self.paths.targets))
+            tasks = Tasks(np.zeros(len(added), dtype=np.int64), added)
             more = self.simulation.run(self.detour, self.paths, tasks).costs
             self.without = np.concatenate([self.without, more])
 
@@ -96,8 +96,11 @@ class _Together:
     def sample(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s: the mean time of the members."""
         chosen = np.asarray(actions, dtype=np.int64)
-        found = list(self.pool.map(lambda member: member.costs(chosen, path_from, path_to), self.members))
-        costs = np.stack(found)
+
+        def of(member: _Member) -> FloatArray:
+            return member.costs(chosen, path_from, path_to)
+
+        costs = np.stack(list(self.pool.map(of, self.members)))
         self.used += costs.size
         for index, row in zip(chosen, costs.max(axis=0), strict=True):
             self.last.setdefault(int(index), []).append(row)

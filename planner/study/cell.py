@@ -109,7 +109,8 @@ class Cell:
     def _estimator(self) -> Estimator | None:
         """None: the scenario's own; planners with a table bring theirs along."""
         if self.estimator is not None:
-            return _one_of("estimator", self.estimator, ESTIMATORS)
+            own: Estimator = _one_of("estimator", self.estimator, ESTIMATORS)
+            return own
         return CROSSFIX.estimator if self.planner in TABLED else None
 
     def policy(self) -> Policy:

@@ -155,7 +155,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(phone.part("menu")).to_be_visible()
 
     admin.go("#/health")
-    expect(admin.part("health")).to_contain_text("database")
+    expect(admin.part("health")).to_contain_text("SQLite answers")
     admin.go("#/people")
     admin.part("sign-out-everywhere").click()
     expect(admin.part("sign-in-page")).to_be_visible()

@@ -5,10 +5,13 @@ See reference.sweep.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from planner.compiling import SOURCES, allocating, entry, jit
 from planner.kernels.value.model import NEAR, NODE_STEP, RATIO_STEP, SCALE_STEP, Transitions
+from planner.types import FloatArray
 
 CHI_95 = 2.4477468306808166
 """sqrt of the 95 % quantile of chi square, two degrees of freedom: semi-axes of the 95 % ellipse over deviations."""
@@ -137,4 +140,4 @@ def _clearance(u1, u2, rho):
     return np.sqrt(nearest)
 
 
-iterate = _entry_point(SOURCES)
+iterate: Callable[..., tuple[FloatArray, FloatArray, float]] = _entry_point(SOURCES)

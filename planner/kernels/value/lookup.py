@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from planner.kernels.value.model import NEAR, NODE_STEP, RATIO_STEP, SCALE_STEP, SMALLEST_SCALE
-from planner.types import FloatArray
+from planner.types import FloatArray, IntArray
 
 ROUND = 1e-9
 """A belief whose axes differ by less than this share has none: its frame is that of the map."""
@@ -70,7 +70,7 @@ def _between(at: float, count: int) -> tuple[int, float]:
     return k, at - k
 
 
-def _between_nodes(u: FloatArray, nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _between_nodes(u: FloatArray, nodes: FloatArray) -> tuple[IntArray, FloatArray]:
     at = np.log1p(np.minimum(u, nodes[-1]) / NEAR) / NODE_STEP
     k = np.minimum(at.astype(np.int64), len(nodes) - 2)
     return k, at - k

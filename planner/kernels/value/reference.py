@@ -76,7 +76,7 @@ def sweep(
     a, b = np.meshgrid(nodes, nodes, indexing="ij")
     for r, i, j in np.ndindex(value.shape[:3]):
         far = np.hypot(a - nodes[i], b - nodes[j])[..., None] * scales * unit
-        allowed = _clearance(a, b, ratios[r])[..., None] * scales * unit >= standoff
+        allowed = _clearance(a, b, float(ratios[r]))[..., None] * scales * unit >= standoff
         allowed[-1, -1] = True
         value[r, i, j] = np.where(allowed, far / speed + after[r], np.inf).min(axis=(0, 1))  # Bellman
     return after, value

@@ -5,6 +5,8 @@ See reference.posterior.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from planner.compiling import SOURCES, allocating, entry, jit
@@ -148,4 +150,4 @@ def _narrowed(low, high, slope, offset):
     return (low, high) if offset >= 0.0 else (high, low)
 
 
-transitions = _entry_point(SOURCES)
+transitions: Callable[..., None] = _entry_point(SOURCES)

@@ -22,7 +22,7 @@ def test_a_bearing_leaves_the_shape_of_the_exact_posterior(sigma_deg):
     sigma = float(np.deg2rad(sigma_deg))
     out = some_transitions(rho, places, sigma, draws)
     for r, i, j, k in np.ndindex(out.shrunk.shape):
-        wanted = reference.posterior(rho[r], np.array([places[i], places[j]]), sigma, draws[k])
+        wanted = reference.posterior(float(rho[r]), np.array([places[i], places[j]]), sigma, draws[k])
         assert [field[r, i, j, k] for field in out] == pytest.approx(wanted, rel=1e-6, abs=1e-6)
 
 
@@ -36,7 +36,7 @@ def test_value_iteration_is_the_readable_one(standoff):
         rng.uniform(0.0, 4.0, shape), rng.uniform(0.2, 1.5, shape),
     )  # fmt: skip
     after, value, _ = iterate(t, sizes, rho, places, 5.0, 10.0, False, 5.0, 0.0, 1.0, standoff, 3, 0.0)
-    ours = np.zeros_like(value)
+    ours, ours_after = np.zeros_like(value), np.zeros_like(after)
     for _ in range(3):
         ours_after, ours = reference.sweep(ours, t, sizes, rho, places, 5.0, 10.0, 5.0, standoff)
     # a ratio at the grid's end counts as a millionth of a step before it
