@@ -16,7 +16,7 @@ import json
 import logging
 import socket
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import Any, TypeVar
 
 from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
@@ -36,6 +36,8 @@ T = TypeVar("T")
 AUTOPILOT_COMPONENT = 1
 FENCE_WALL_S = 60.0
 """The longest that a fence may take one way; one polygon takes about 4 s on a link of 250 ms each way."""
+CLOSE_WALL_S = 10.0
+"""What a parameter is waited for, that nobody answers, and a little more."""
 PATIENCE_WALL_S = 1.5
 """What a fence's part or a parameter is waited for, before it is sent again."""
 STATION_SYSTEM = 255
@@ -124,6 +126,7 @@ class MavlinkLink:
         self._sender = ThreadPoolExecutor(1, "mavlink-send")
         self._blocking = ThreadPoolExecutor(2, "mavlink-param")
         self._transfers = ThreadPoolExecutor(2, "mavlink-fence")
+        self._under_way: set[Future[Any]] = set()
         self._closed = False
         self.system_id = 0
 
@@ -195,9 +198,16 @@ class MavlinkLink:
         self._direct.send_message(message)
         return True
 
+    async def _waiting(self, threads: ThreadPoolExecutor, call: Callable[..., T], *given: Any) -> T:
+        """A call that waits for the autopilot's answer; whoever gives up waiting does not end it."""
+        running = threads.submit(call, *given)
+        self._under_way.add(running)
+        running.add_done_callback(self._under_way.discard)
+        return await asyncio.wrap_future(running)
+
     async def parameter(self, name: str) -> float | None:
         """An autopilot parameter, or None when it has none of that name (or does not answer)."""
-        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._read_parameter, name)
+        return await self._waiting(self._blocking, self._read_parameter, name)
 
     def _read_parameter(self, name: str) -> float | None:
         if self._param is None:
@@ -234,7 +244,7 @@ class MavlinkLink:
         """MAVSDK sets a transfer no end of its own. What hangs keeps its thread, and nobody else's."""
         try:
             async with asyncio.timeout(FENCE_WALL_S):
-                return await asyncio.get_running_loop().run_in_executor(self._transfers, transfer, *given)
+                return await self._waiting(self._transfers, transfer, *given)
         except TimeoutError:
             raise FenceTransferFailed("timeout") from None
 
@@ -251,7 +261,7 @@ class MavlinkLink:
 
     async def set_parameter(self, name: str, value: float) -> bool:
         """True when the autopilot confirmed the new value."""
-        return await asyncio.get_running_loop().run_in_executor(self._blocking, self._write_parameter, name, value)
+        return await self._waiting(self._blocking, self._write_parameter, name, value)
 
     def _write_parameter(self, name: str, value: float) -> bool:
         """By the type it has: the bytes of a whole number, taken for a float, would be another value."""
@@ -273,12 +283,13 @@ class MavlinkLink:
         return False
 
     async def close(self) -> None:
-        """Idempotent."""
+        """Idempotent. MAVSDK never answers a call that waits while it is destroyed: what is under way ends first."""
         if self._closed:
             return
         self._closed = True
         mavsdk, self._mavsdk = self._mavsdk, None
         if mavsdk is not None:
+            await asyncio.to_thread(wait, tuple(self._under_way), CLOSE_WALL_S)
             await asyncio.get_running_loop().run_in_executor(self._blocking, mavsdk.destroy)
         self._sender.shutdown(wait=False)
         self._blocking.shutdown(wait=False)

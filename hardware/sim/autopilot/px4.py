@@ -36,6 +36,7 @@ def px4_mode(main: int, sub: int = 0) -> int:
 DEFAULTS: dict[str, tuple[float, int]] = {
     "NAV_DLL_ACT": (2, INT32),
     "NAV_RCL_ACT": (2, INT32),
+    "RC_MAP_FLTMODE": (0, INT32),
     "COM_DL_LOSS_T": (10, INT32),
     "COM_OBL_RC_ACT": (0, INT32),
     "COM_RC_OVERRIDE": (1, INT32),

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import asyncio
 from threading import Event
 from typing import Any
 
@@ -35,6 +36,40 @@ async def test_before_it_is_open_nothing_is_sent_and_closing_twice_is_harmless()
     assert await link.parameter("NAV_DLL_ACT") is None
     await link.close()
     await link.close()
+
+
+class SlowAutopilot:
+    """MAVSDK and its parameters: `done`, in order."""
+
+    def __init__(self) -> None:
+        self.asked, self.answer = Event(), Event()
+        self.done: list[str] = []
+
+    def get_param_int(self, name: str) -> int:
+        self.asked.set()
+        self.answer.wait(10.0)
+        self.done.append(name)
+        return 5
+
+    def destroy(self) -> None:
+        self.done.append("destroyed")
+
+
+async def test_what_waits_for_an_answer_ends_before_the_link_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    link, slow = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None), SlowAutopilot()
+    monkeypatch.setattr(link, "_mavsdk", slow)
+    monkeypatch.setattr(link, "_param", slow)
+    asking = asyncio.create_task(link.parameter("RC_MAP_FLTMODE"))
+    await asyncio.to_thread(slow.asked.wait, 10.0)
+    asking.cancel()
+    closing = asyncio.create_task(link.close())
+    await asyncio.sleep(0.05)
+    assert slow.done == []
+
+    slow.answer.set()
+    await closing
+
+    assert slow.done == ["RC_MAP_FLTMODE", "destroyed"]
 
 
 class HangingMission:

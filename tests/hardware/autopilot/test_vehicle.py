@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from hardware.autopilot.connect import connect_vehicle
 from hardware.autopilot.messages import TAKE_OFF
@@ -167,11 +168,12 @@ async def test_what_stops_a_take_off_is_sent_before_a_heartbeat_has_said_that_th
     await rig.clock.sleep(8.0)
     fold = Snapshot.fold
 
-    def without_heartbeat(snapshot: Snapshot, name: str, fields: Fields, heard_at_s: float) -> None:
-        if name != "HEARTBEAT":
-            fold(snapshot, name, fields, heard_at_s)
+    def never_armed(snapshot: Snapshot, name: str, fields: Fields, heard_at_s: float) -> None:
+        if name == "HEARTBEAT":
+            fields = fields | {"base_mode": int(fields["base_mode"]) & ~mavlink.MAV_MODE_FLAG_SAFETY_ARMED}
+        fold(snapshot, name, fields, heard_at_s)
 
-    monkeypatch.setattr(Snapshot, "fold", without_heartbeat)
+    monkeypatch.setattr(Snapshot, "fold", never_armed)
     take_off = asyncio.create_task(rig.vehicle.take_off(100.0))
     async with asyncio.timeout(30):
         while not [number for _, number in (await rig.sim.order("commands"))["commands"] if number == TAKE_OFF]:  # noqa: ASYNC110 (another process)
