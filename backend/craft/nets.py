@@ -18,6 +18,8 @@ from hardware.ports import Vehicle, VehicleError
 from hardware.reasons.nets import NetsToSet, ParameterToSet
 
 MARGIN_M = 5.0
+FARTHEST_M = 20.0
+"""From the fence to any point of a net that could be nearer."""
 CEILING_MARGIN_M = 3.0
 MOST_OUTLINE_CORNERS = 16
 ROUGHNESS_M = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0)
@@ -48,14 +50,20 @@ def _zones(shape: Polygon, frame: LocalFrame) -> list[FencePolygon]:
 
 
 def _outwards(outline: Polygon) -> Polygon:
-    """Contains the outline with its margin."""
-    grown = outline
+    """Contains the outline with its margin. The hull of a jagged one needs fewer corners, where it is not far off."""
+    near = outline.buffer(FARTHEST_M)
+    shapes = (outline,) if outline.interiors else (outline, outline.convex_hull)
     for roughness_m in ROUGHNESS_M:
-        wide = outline.buffer(MARGIN_M + roughness_m, join_style="mitre", mitre_limit=2.0)
-        grown = max(_polygons(wide.simplify(roughness_m) if roughness_m else wide), key=lambda part: part.area)
-        if len(grown.exterior.coords) - 1 <= MOST_OUTLINE_CORNERS:
-            break
-    return grown
+        for shape in shapes:
+            grown = _grown(shape, roughness_m)
+            if len(grown.exterior.coords) - 1 <= MOST_OUTLINE_CORNERS and near.covers(grown):
+                return grown
+    return _grown(outline, ROUGHNESS_M[-1])
+
+
+def _grown(shape: BaseGeometry, roughness_m: float) -> Polygon:
+    wide = shape.buffer(MARGIN_M + roughness_m, join_style="mitre", mitre_limit=2.0)
+    return max(_polygons(wide.simplify(roughness_m) if roughness_m else wide), key=lambda part: part.area)
 
 
 def _polygons(shape: BaseGeometry) -> list[Polygon]:
