@@ -28,7 +28,7 @@ log = logging.getLogger("crossfix.bearings")
 LARGEST_BYTES = 32 * 2**10
 """With the raw directions of a whole circle in it."""
 BURST, EVERY_S = 20.0, 0.2
-"""Datagrams of one address: so many at once, then one every 0.2 s."""
+"""Datagrams of one address: BURST of them at once, then one every EVERY_S seconds."""
 SAID_EVERY_S = 10.0
 SAME_PLACE_M = 25.0
 ANEW_S = 60.0

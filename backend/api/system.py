@@ -17,8 +17,9 @@ from backend.live.snapshot import telemetry_message
 from backend.reasons.safety import NoLink
 from backend.spec import Place
 from backend.version import VERSION
+from backend.wire.health import DatabaseHealth, Health, VehicleHealth
 from backend.wire.messages import TelemetryMessage
-from backend.wire.resources import DatabaseHealth, Defaults, Health, Payload, PayloadList, VehicleHealth
+from backend.wire.resources import Defaults, Payload, PayloadList
 
 CraftId = Annotated[str, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 router = APIRouter(prefix="/api", tags=["system"], responses=PROBLEM_RESPONSES)

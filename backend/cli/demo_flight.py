@@ -21,9 +21,9 @@ from backend.craft.reconnecting_vehicle import ReconnectingVehicle
 from backend.events import PhaseChanged, PreflightChecked, Recorded
 from backend.mission.state import MissionState, evolve
 from backend.settings import Settings
+from backend.wire.health import Health
 from backend.wire.messages import TelemetryMessage
 from backend.wire.problem import Problem
-from backend.wire.resources import Health
 from planner.reason import sentence_of, text_of
 
 LONGEST_MISSION_S = 3_600.0

@@ -30,7 +30,7 @@ def truth(
         typer.Option(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
             "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
-            "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: so many tags in the field "
+            "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: four or eight tags in the field "
             "scenario, each a claim."
         ),
     ],

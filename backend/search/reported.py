@@ -30,7 +30,7 @@ LATEST_S = 24 * 3600.0
 AHEAD_S = 120.0
 """The clock of a phone may be so far ahead."""
 NO_PLACE_NUMBER = 0
-"""Places are counted for the craft's sake, which has so many to fly to; nobody else uses them up."""
+"""Places are counted for the craft's sake, which may fly to a limited number; nobody else uses them up."""
 
 
 @dataclass(frozen=True, slots=True)

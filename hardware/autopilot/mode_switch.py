@@ -1,6 +1,6 @@
 """The pilot's mode switch itself, as the autopilot hears it from their transmitter. Pure.
 
-A switch that meets an order of ours within one turn of the autopilot's own loop is undone before its mode is reported:
+A switch that meets one of our orders within one turn of the autopilot's own loop is undone before its mode is reported:
 by the mode alone, nobody ever took over. The channel of the switch has moved all the same.
 """
 

@@ -25,7 +25,7 @@ from planner.types import FloatArray, FullMotion, LinearConstantMotion, LinearMo
 MEAN_TURN = math.pi / 2
 SWEEPS = 400
 TOLERANCE = 1e-2
-"""Value iteration ends after so many sweeps, or when none changes a value by this share of a bearing's time."""
+"""Value iteration ends after SWEEPS, or when a sweep changes no value by TOLERANCE of a bearing's time."""
 
 SIGMA_FACTOR, TIME_FACTOR = 1.5, 2.0
 """A table also serves problems whose sigma and measuring time are within these factors of its own."""

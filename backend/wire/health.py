@@ -1,0 +1,46 @@
+"""What /health answers about the server and what it needs."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from backend.reasons import Reason
+from backend.spec import Model
+
+DatabaseState = Literal["ok", "slow", "lost"]
+
+
+class DatabaseHealth(Model):
+    """`reason`: why it is slow or lost. `spooled`: events kept on disk until the database is back. `refused`: entries
+    that it will never take, kept in a file."""
+
+    state: DatabaseState
+    kind: Literal["sqlite", "postgresql"]
+    reason: Reason | None
+    spooled: int
+    refused: int
+
+
+class VehicleHealth(Model):
+    """`reason`: why there is no vehicle."""
+
+    craft_id: str
+    connected: bool
+    autopilot: Literal["px4", "ardupilot", "unknown"]
+    reason: Reason | None
+
+
+class Health(Model):
+    """ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
+    system does not say. keep_sweeps_days: of missions that are over; None for ever."""
+
+    state: Literal["ok", "degraded"]
+    version: str
+    uptime_s: float
+    database: DatabaseHealth
+    vehicles: list[VehicleHealth]
+    viewers: int
+    disk_free_bytes: int | None
+    keep_sweeps_days: float | None
+    simulated: bool
+    time_factor: float
