@@ -48,6 +48,8 @@ COMMANDS: dict[Scene, frozenset[int]] = {
 HEIGHT_M = 12.0
 SPEED_M_S = 5.0
 RATE_DEG_S = 30.0
+LOOP_S = 0.05
+"""Of an autopilot and its radio, and a little more."""
 
 
 @dataclass
@@ -74,6 +76,11 @@ class Field:
         if moment == "before":
             aim.after(0.0)
             await asyncio.sleep(self.chance.uniform(0.0, self.proxy.delay_s + REPORT_S))
+        elif moment == "crossing" and scene in ORDERS and self.pilot.believed_s:
+            # the order is to arrive when the switch is obeyed, or before the news of it can be here
+            aim.after(0.0)
+            lead_s = self.pilot.believed_s - self.proxy.delay_s
+            await asyncio.sleep(max(0.0, lead_s + self.chance.uniform(-LOOP_S, self.proxy.delay_s + LOOP_S)))
         elif moment == "crossing":
             aim.at_command(COMMANDS[scene], self.chance.randrange(4) if scene == "turn" else 0)
         doing = asyncio.create_task(self._do(scene))
@@ -110,8 +117,10 @@ class Field:
             if telemetry().in_air:
                 await self.vehicle.land()
                 await until(lambda: telemetry().armed is False, 120.0, "the landing")
+            self.pilot.on_the_ground()
             return
         if not telemetry().in_air:
+            self.pilot.on_the_ground()
             await self.vehicle.take_off(HEIGHT_M)
         match scene:
             case "hold ordered":
