@@ -102,6 +102,9 @@ class Field:
         telemetry = self.vehicle.telemetry
         self.pilot.release_sticks()
         if telemetry().authority.undone:  # it shows the waiting mode already: that gives nothing back
+            if self.pilot.believed_s:  # a switch that stays where it is selects nothing
+                self.pilot.give_back()
+                await asyncio.sleep(2.0 * self.pilot.believed_s)
             self.pilot.take_by_mode()
             await asyncio.sleep(2.0 * self.proxy.delay_s + 2.0)
         await asyncio.sleep(0.3)
