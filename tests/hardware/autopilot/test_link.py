@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from functools import cache
 from threading import Event
 from typing import Any
 
@@ -61,7 +62,7 @@ class SlowAutopilot:
 async def test_another_link_leaves_the_log_of_those_that_are_open_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     subscribed = list[object]()
     monkeypatch.setattr(link_module, "log_subscribe", subscribed.append)
-    link_module._take_log_over.cache_clear()  # pyright: ignore[reportPrivateUsage]
+    monkeypatch.setattr(link_module, "_take_log_over", cache(link_module._take_log_over.__wrapped__))  # pyright: ignore
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         for _ in range(3):
