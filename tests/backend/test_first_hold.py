@@ -120,7 +120,8 @@ def test_its_rows_are_of_the_form_that_is_written_now() -> None:
 BEFORE_THE_HOLD = """
 import sys
 import backend.cli.main, backend.cli.serve, backend.first_hold
-heavy = ("numba", "numpy", "scipy", "shapely", "sqlalchemy", "fastapi", "viser", "planner.belief")
+heavy = ("numba", "numpy", "scipy", "shapely", "sqlalchemy", "fastapi", "viser", "planner.belief",
+         "hardware.reasons.antenna", "hardware.reasons.pattern", "hardware.reasons.table")
 print(*(name for name in heavy if name in sys.modules))
 """
 
