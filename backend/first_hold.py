@@ -1,7 +1,7 @@
 """The first second of a server: the vehicle that the server before left in flight is held, before anything else loads.
 
 Reads no more of the journal than whether a craft was in flight and who flew it. Where that cannot be told so quickly
-(a database that does not answer, facts still in the spool, rows of before), the mission's own recovery does it, some
+(a database that does not answer, rows of before), the mission's own recovery does it, some
 seconds later; it follows in any case and records what happened.
 """
 
@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from backend.settings import Settings
-from backend.store.spool_layout import holds_entries
+from backend.store.spool_layout import waiting
 from hardware.authority import NOBODY, Authority
 from hardware.autopilot.opening import open_connection
 from hardware.clock import ScaledClock
@@ -53,6 +53,7 @@ class FirstHold:
 class LeftInFlight:
     """Who flew the craft, and at_s: when the mission's last fact was recorded (UTC epoch seconds)."""
 
+    mission_id: str
     authority: Authority
     at_s: float
 
@@ -117,16 +118,44 @@ async def _hold(vehicle: MavsdkVehicle) -> None:
 
 
 async def left_in_flight(settings: Settings) -> LeftInFlight | None:
-    """From the database itself, without what is needed to write to it."""
+    """From the database itself and the spool, without what is needed to write to them."""
     url = settings.async_database_url
     sqlite = url.removeprefix(SQLITE)
-    if _locked(settings.spool_path) or holds_entries(settings.spool_path):
+    if _locked(settings.spool_path):
         return None
     try:
-        return await (_in_postgresql(url) if sqlite == url else _in_sqlite(sqlite))
+        stored = await (_in_postgresql(url) if sqlite == url else _in_sqlite(sqlite))
+        return _after(stored, waiting(settings.spool_path))
     except (sqlite3.Error, OSError, ValueError, TypeError, KeyError) as error:
         log.info("what flies is not known from the first look: %s", error)
         return None
+
+
+def _after(stored: LeftInFlight | None, spooled: Sequence[bytes]) -> LeftInFlight | None:
+    """What was recorded while the database was away comes after what it holds. Raises ValueError for rows of before."""
+    left = stored
+    for entry in map(json.loads, spooled):
+        if entry["entry"] != "events":
+            continue
+        mission_id = entry["fields"]["mission_id"]
+        for row in entry["fields"]["rows"]:
+            if row.get("form") != FORM:
+                raise ValueError("the spool holds rows of before")
+            left = _after_row(left, mission_id, row)
+    return left
+
+
+def _after_row(left: LeftInFlight | None, mission_id: str, row: dict[str, Any]) -> LeftInFlight | None:
+    kind, body, at_s = row["kind"], json.loads(row["body"]), row["at_us"] / 1e6
+    ours = left is not None and left.mission_id == mission_id
+    if kind == "mission_started" or (kind == "phase_changed" and body["after"] != "ground" and not ours):
+        return LeftInFlight(mission_id, NOBODY, at_s)
+    if left is None or not ours:
+        return left
+    if kind == "phase_changed" and body["after"] == "ground":
+        return None
+    authority = _authority(body["authority"]) if kind == "authority_changed" else left.authority
+    return LeftInFlight(mission_id, authority, max(at_s, left.at_s))
 
 
 def _locked(path: Path) -> bool:
@@ -183,7 +212,7 @@ async def _in_flight(rows: Rows) -> LeftInFlight | None:
     of_authority = "mission_id = $1 AND kind = 'authority_changed' ORDER BY seq DESC LIMIT 1"
     found = await rows(f"SELECT body FROM events WHERE {of_authority}", mission_id)
     authority = _authority(json.loads(found[0][0])["authority"]) if found else NOBODY
-    return LeftInFlight(authority, at_us / 1e6)
+    return LeftInFlight(mission_id, authority, at_us / 1e6)
 
 
 def _authority(body: dict[str, Any]) -> Authority:

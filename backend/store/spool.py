@@ -11,11 +11,10 @@ from __future__ import annotations
 import fcntl
 import os
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 from backend.reasons.storage import ForeignSpool
-from backend.store.spool_layout import HEADER, MAGIC, RECORD, crc_of
+from backend.store.spool_layout import HEADER, MAGIC, RECORD, crc_of, records
 from planner.reason import ReasonedError
 
 
@@ -58,20 +57,9 @@ def entries_beside(path: Path) -> list[bytes]:
         magic, generation = HEADER.unpack(header) if len(header) == HEADER.size else (b"", 0)
         if magic != MAGIC:
             raise SpoolForeign(ForeignSpool(str(path)))
-        return list(_records(fd, generation))
+        return list(records(fd, generation))
     finally:
         os.close(fd)
-
-
-def _records(fd: int, generation: int) -> Iterator[bytes]:
-    end = HEADER.size
-    while len(head := os.pread(fd, RECORD.size, end)) == RECORD.size:
-        length, crc = RECORD.unpack(head)
-        payload = os.pread(fd, length, end + RECORD.size)
-        if length == 0 or len(payload) < length or crc != crc_of(generation, payload):
-            return
-        yield payload
-        end += RECORD.size + length
 
 
 class Spool:
@@ -105,7 +93,7 @@ class Spool:
         os.fsync(self._fd)
 
     def _scan(self) -> list[bytes]:
-        found = list(_records(self._fd, self._generation))
+        found = list(records(self._fd, self._generation))
         self._end = HEADER.size + sum(RECORD.size + len(payload) for payload in found)
         return found
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import zlib
-from contextlib import suppress
+from collections.abc import Iterator
 from pathlib import Path
 
 MAGIC = b"CFSPOOL1"
@@ -19,10 +20,27 @@ def crc_of(generation: int, payload: bytes) -> int:
     return zlib.crc32(payload, zlib.crc32(generation.to_bytes(8, "little")))
 
 
-def holds_entries(path: Path) -> bool:
-    """Something in it waits for the database. False where there is no such file."""
-    with suppress(OSError, struct.error), path.open("rb") as spool:
-        _, generation = HEADER.unpack(spool.read(HEADER.size))
-        length, crc = RECORD.unpack(spool.read(RECORD.size))
-        return length > 0 and crc == crc_of(generation, spool.read(length))
-    return False
+def records(fd: int, generation: int) -> Iterator[bytes]:
+    """Payloads, oldest first, until one that is torn or of another generation."""
+    end = HEADER.size
+    while len(head := os.pread(fd, RECORD.size, end)) == RECORD.size:
+        length, crc = RECORD.unpack(head)
+        payload = os.pread(fd, length, end + RECORD.size)
+        if length == 0 or len(payload) < length or crc != crc_of(generation, payload):
+            return
+        yield payload
+        end += RECORD.size + length
+
+
+def waiting(path: Path) -> list[bytes]:
+    """What waits for the database, oldest first; nothing where there is no such file."""
+    try:
+        fd = os.open(path, os.O_RDONLY)
+    except FileNotFoundError:
+        return []
+    try:
+        header = os.pread(fd, HEADER.size, 0)
+        magic, generation = HEADER.unpack(header) if len(header) == HEADER.size else (b"", 0)
+        return list(records(fd, generation)) if magic == MAGIC else []
+    finally:
+        os.close(fd)

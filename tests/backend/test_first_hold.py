@@ -7,6 +7,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,7 @@ from backend.events import AuthorityChanged, Event, MissionDrafted, MissionEnded
 from backend.first_hold import FORM, left_in_flight
 from backend.reasons.flight import Ordered
 from backend.settings import Settings
+from backend.store.entries import EventsEntry, to_row
 from backend.store.opening import open_journal
 from backend.store.spool import Spool
 from hardware.authority import NOBODY, Authority
@@ -92,16 +95,48 @@ async def test_rows_of_another_form_are_left_to_the_journal(sqlite: Settings, tm
     connection.close()
 
 
-async def test_facts_that_wait_in_the_spool_may_say_otherwise(settings: Settings) -> None:
+def spooled(settings: Settings, *facts: Event, mission_id: str = "m", form: int = FORM) -> None:
+    """As a server leaves them whose database was away when it was killed."""
+    at_utc = datetime.fromtimestamp(time.time(), UTC)
+    rows = tuple(replace(to_row(number, at_utc, fact), form=form) for number, fact in enumerate(facts, 10))
+    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
+    spool.append(EventsEntry(mission_id, rows).encode())
+    spool.close()
+
+
+def authority_is(authority: Authority) -> AuthorityChanged:
+    return AuthorityChanged(craft_id="craft-1", authority=authority)
+
+
+async def test_facts_that_wait_in_the_spool_come_after_those_that_are_stored(settings: Settings) -> None:
+    await stored(settings, STARTED, goes("flying"), authority_is(OURS))
+    spooled(settings, goes("measuring"), authority_is(PILOT))
+    left = await left_in_flight(settings)
+    assert left is not None
+    assert left.authority == PILOT
+
+
+@pytest.mark.parametrize(
+    ("facts", "mission_id", "found"),
+    [
+        ((goes("landing"), goes("ground")), "m", False),
+        ((goes("ground"), STARTED, goes("taking_off")), "m", True),
+        ((STARTED, goes("taking_off")), "another", True),
+        ((MissionDrafted(spec=SPEC),), "another", True),
+    ],
+)
+async def test_a_flight_may_end_and_begin_in_the_spool(
+    settings: Settings, facts: Sequence[Event], mission_id: str, found: bool
+) -> None:
     await stored(settings, STARTED, goes("flying"))
-    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
-    spool.append(b"anything")
-    spool.close()
+    spooled(settings, *facts, mission_id=mission_id)
+    assert (await left_in_flight(settings) is not None) == found
+
+
+async def test_what_a_spool_holds_and_cannot_be_read_is_left_to_the_journal(settings: Settings) -> None:
+    await stored(settings, STARTED, goes("flying"))
+    spooled(settings, goes("measuring"), form=FORM - 1)
     assert await left_in_flight(settings) is None
-    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
-    spool.clear()
-    spool.close()
-    assert await left_in_flight(settings) is not None
 
 
 async def test_the_vehicle_of_a_server_that_runs_is_left_alone(settings: Settings) -> None:

@@ -119,8 +119,9 @@ class Trial:
                     await asyncio.sleep(0.05)
         else:
             async with asyncio.timeout(20):
-                while (await self.sim.order("truth"))["mode"] != self.steered:  # noqa: ASYNC110 (another process)
+                while self.vehicle.telemetry().mode != self.steered:  # noqa: ASYNC110 (known here: not selected again)
                     await asyncio.sleep(0.02)
+            await asyncio.sleep(self.delay_s)  # a selection that was repeated until then has arrived
         await asyncio.sleep((ORDERED_BEFORE_S if order else 0.2) + self.chance.uniform(0.0, 1.2))
         self.count += 1
         sticks = self.flavour == "px4" and self.count % 2 == 0

@@ -32,6 +32,7 @@ from backend.cli.demo_flight import DemoFailed, fly
 from backend.cli.demo_grade import summary
 from backend.cli.running import running_server
 from backend.events import FIRST_CRAFT
+from backend.mission.flights import Flights
 from backend.settings import Settings
 from hardware.autopilot.status_texts import StatusTexts
 from hardware.frame import LocalFrame
@@ -159,6 +160,7 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
+                    await _nets_back(running.services.missions.flights)
                 took_s = time.monotonic() - began_s
                 home, truth = vehicle.telemetry().home, next(iter(running.receiver.truth.values()), None)
             return Flown(
@@ -183,6 +185,12 @@ async def _land(vehicle: Vehicle) -> None:
         vehicle.take_control()
         await vehicle.land()
         await until(lambda: vehicle.telemetry().armed is False, 120.0, "the landing")
+
+
+async def _nets_back(flights: Flights) -> None:
+    """The next mission has a server of its own, that knows nothing of what this one owes to the vehicle's owner."""
+    with contextlib.suppress(TimeoutError):
+        await until(lambda: not flights.nets.owed, 60.0, "the owner's fence")
 
 
 def line(flown: Flown) -> str:
