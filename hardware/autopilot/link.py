@@ -17,6 +17,7 @@ import logging
 import socket
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from functools import cache
 from typing import Any, TypeVar
 
 from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
@@ -76,9 +77,15 @@ def _wire_item(seq: int, item: FenceItem) -> MissionItem:
 
 
 def _keep_log(level: LogLevel, message: str, file: str | None, line: int) -> bool:
-    """MAVSDK prints to stdout by itself, where `--json` promises one JSON value: take its log over."""
     log.log(_LEVELS.get(level, logging.DEBUG), "mavsdk: %s", message)
     return True
+
+
+@cache
+def _take_log_over() -> None:
+    """MAVSDK prints to stdout by itself, where `--json` promises one JSON value. Once a process: a second subscription
+    frees the first one's callback while a thread of another link may be in it, and the process dies (seen)."""
+    log_subscribe(_keep_log)
 
 
 def _be_patient(mavsdk: Mavsdk) -> None:
@@ -133,7 +140,7 @@ class MavlinkLink:
     async def open(self, timeout_s: float) -> None:
         """timeout_s: of the wall. Raises VehicleUnreachable when no autopilot answers."""
         loop = asyncio.get_running_loop()
-        log_subscribe(_keep_log)
+        _take_log_over()
         _refuse_taken_port(self.url)
         configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
         configuration.system_id = STATION_SYSTEM

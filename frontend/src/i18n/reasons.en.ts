@@ -977,6 +977,10 @@ export const reasonsEn: ReasonTable = {
     text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
     remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
   },
+  return_meets_ground: {
+    text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}) and flies straight home: over the ground in between it needs {least_relative_m}.",
+    remedy: "Set {parameter} to at least {least_relative_m}, and the mission's ceiling no lower; or choose another home.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",
