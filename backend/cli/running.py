@@ -13,6 +13,7 @@ import uvicorn
 
 from backend.api.services import Services
 from backend.first_hold import FirstHold
+from backend.live.connections import allow_descriptors
 from backend.main import create_app, server_config
 from backend.mission.flights import LeftFlying
 from backend.settings import Settings
@@ -68,6 +69,7 @@ async def running_server(
 
     emitters: what transmits in the simulated world. first: the vehicle that was found in flight and held already.
     """
+    allow_descriptors()
     bound = _bind(settings.host, settings.port)
     try:
         async with open_simulation(settings, leave_flying, emitters, first) as (services, receiver):

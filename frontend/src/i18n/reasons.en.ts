@@ -1320,6 +1320,14 @@ export const reasonsEn: ReasonTable = {
     text: "A request may have at most {most_bytes}.",
     remedy: "Simplify the geometry, or split the file.",
   },
+  body_too_rich: {
+    text: "A request may have at most {most_fields} named fields and {most_items} items in its lists.",
+    remedy: "Simplify the geometry.",
+  },
+  body_too_slow: {
+    text: "Nothing of the request arrived for {wait_s}.",
+    remedy: "Look at the network, then send it again.",
+  },
   unknown_host: {
     text: "This server does not go by the name {host}.",
     remedy: "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",

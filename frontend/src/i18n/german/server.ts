@@ -27,6 +27,14 @@ export const server = {
     text: "Eine Anfrage darf höchstens {most_bytes} haben.",
     remedy: "Die Geometrie vereinfachen oder die Datei teilen.",
   },
+  body_too_rich: {
+    text: "Eine Anfrage darf höchstens {most_fields} benannte Felder und {most_items} Listeneinträge haben.",
+    remedy: "Die Geometrie vereinfachen.",
+  },
+  body_too_slow: {
+    text: "{wait_s} lang kam nichts von der Anfrage an.",
+    remedy: "Das Netz prüfen, dann noch einmal senden.",
+  },
   unknown_host: {
     text: "Dieser Server heißt nicht {host}.",
     remedy: "Ihn über seine IP-Adresse oder localhost öffnen oder den Namen in CROSSFIX_ALLOWED_HOSTS nennen.",
