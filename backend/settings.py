@@ -71,6 +71,13 @@ class Settings(BaseSettings):
     keep_sweeps_days: Annotated[float, Field(ge=0, le=36_500)] | None = None
     """Raw sweeps of missions that ended longer ago are taken; None: kept for ever."""
 
+    overlays_max: int = Field(default=200, ge=0)
+    overlays_max_bytes: int = Field(default=500 * 10**6, ge=0)
+    """Of all overlays together, as they are stored; maps and terrain may fill the disk up to disk_low_bytes."""
+    recordings_max_sweeps: int = Field(default=20_000, ge=0)
+    recordings_max_bytes: int = Field(default=2 * 10**9, ge=0)
+    """Of the raw sweeps of all imported recordings together, as they are stored."""
+
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
 

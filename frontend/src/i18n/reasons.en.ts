@@ -1560,6 +1560,11 @@ export const reasonsEn: ReasonTable = {
     text: "Only {free_bytes} are left on the disk.",
     remedy: "Free some space.",
   },
+  stock_full: {
+    text: "There is no room for it: at most {most} {what?overlays=overlays|recordings=raw sweeps of recordings} and {most_bytes} of them are kept.",
+    remedy:
+      "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
+  },
   nothing_stores: {
     text: "The database is away ({database}) and the spool cannot be written ({spool}).",
     remedy: "Free space on the disk, and bring the database back.",
