@@ -49,8 +49,8 @@ class Settings(BaseSettings):
     """Of whoever has no such value; none: they do not enter."""
     oidc_email_domains: tuple[str, ...] = ()
     """When there are any, only verified addresses in one of them enter: for providers where anybody has an account."""
-    connections_max: int = Field(default=600, ge=10, le=100_000)
-    """Of HTTP, open at the same time; live websockets are counted by live_clients_max."""
+    connections_max: int = Field(default=2000, ge=10, le=100_000)
+    """Of HTTP, open at the same time, as far as the system allows; live websockets are counted by live_clients_max."""
     connections_each: int = Field(default=100, ge=5, le=100_000)
     """Of one address, but for this machine's and the trusted proxies'."""
     header_timeout_s: float = Field(default=10.0, gt=0, le=300)

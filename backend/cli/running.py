@@ -13,7 +13,6 @@ import uvicorn
 
 from backend.api.services import Services
 from backend.first_hold import FirstHold
-from backend.live.connections import allow_descriptors
 from backend.main import create_app, server_config
 from backend.mission.flights import LeftFlying
 from backend.settings import Settings
@@ -41,6 +40,10 @@ class RunningServer:
         self.server.should_exit = True
 
 
+WAITING_TO_ENTER = 2048
+"""Connections that the system keeps until they are let in: the event loop takes those of a crowd a few at a time."""
+
+
 class _Server(uvicorn.Server):
     """Says when it answers. Leaves signals to `stop_on_signals`: uvicorn would raise them again once it has stopped,
     and end the process before the vehicle and the journal are closed."""
@@ -55,6 +58,8 @@ class _Server(uvicorn.Server):
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
+        for bound in sockets or ():
+            bound.listen(WAITING_TO_ENTER)
         self.ready.set()
 
 
@@ -69,7 +74,6 @@ async def running_server(
 
     emitters: what transmits in the simulated world. first: the vehicle that was found in flight and held already.
     """
-    allow_descriptors()
     bound = _bind(settings.host, settings.port)
     try:
         async with open_simulation(settings, leave_flying, emitters, first) as (services, receiver):

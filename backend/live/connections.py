@@ -152,7 +152,8 @@ def limited(door: Door) -> Callable[..., LimitedProtocol]:
     return connection
 
 
-def allow_descriptors() -> None:
-    """As many open files and connections as this process may ask for: 1024, the usual, are less than its limits."""
+def allow_descriptors() -> int:
+    """As many open files and connections as this process may ask for, the usual 1024 are few; how many that is."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    return hard
