@@ -1324,6 +1324,14 @@ export const reasonsEn: ReasonTable = {
     text: "A request may have at most {most_bytes}.",
     remedy: "Simplify the geometry, or split the file.",
   },
+  body_too_rich: {
+    text: "A request may have at most {most_fields} named fields and {most_items} items in its lists.",
+    remedy: "Simplify the geometry.",
+  },
+  body_too_slow: {
+    text: "Nothing of the request arrived for {wait_s}.",
+    remedy: "Look at the network, then send it again.",
+  },
   unknown_host: {
     text: "This server does not go by the name {host}.",
     remedy: "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
@@ -1555,6 +1563,11 @@ export const reasonsEn: ReasonTable = {
   disk_low: {
     text: "Only {free_bytes} are left on the disk.",
     remedy: "Free some space.",
+  },
+  stock_full: {
+    text: "There is no room for it: at most {most} {what?overlays=overlays|recordings=raw sweeps of recordings} and {most_bytes} of them are kept.",
+    remedy:
+      "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
   },
   nothing_stores: {
     text: "The database is away ({database}) and the spool cannot be written ({spool}).",
