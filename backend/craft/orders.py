@@ -203,6 +203,7 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
     in_the_way = craft.phase in AUTOMATIC and craft.took_off
     if in_the_way:
         step.do(CancelWork())
+    told = given.foretold
     number = step.search.place_number + 1 if craft.chosen is None or craft.attempt > 0 else craft.place_number
     step.record(
         PlanChosen(
@@ -211,10 +212,10 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
             place=command.place,
             source="operator",
             reason=Ordered("override", given.by),
-            expected_time_s=None,
-            time_90_s=None,
+            expected_time_s=None if told is None else told.mean_s,
+            time_90_s=None if told is None else told.p90_s,
             candidates=[],
-            rollouts=0,
+            rollouts=0 if told is None else told.rollouts,
             plan_ms=0.0,
             by=given.by,
             altitude_amsl_m=given.altitude_amsl_m,

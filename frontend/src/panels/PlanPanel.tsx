@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { cancelProposal, confirmProposal, type Proposal, proposal, propose } from "../commands/proposal";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { send } from "../commands/send";
-import { locale, personName, reasonText, t } from "../i18n";
+import { locale, reasonText, t } from "../i18n";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { source } from "../state/connection";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
@@ -95,18 +95,18 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
   );
 }
 
-function costWords(proposed: Proposal, plan: PlanChosen | undefined): string | null {
-  const time = proposed.result?.expected_time_s;
-  if (time === null || time === undefined) return proposed.result ? t("proposal.unknownCost") : null;
-  const planned = proposed.compareS ?? plan?.expected_time_s ?? null;
-  if (planned === null) return null;
-  const difference = time - planned;
-  if (Math.abs(difference) < 1) return t("proposal.same");
-  return t(difference > 0 ? "proposal.costs" : "proposal.saves", { difference: formatDuration(Math.abs(difference)) });
+function costWords({ result, withPlanner }: Proposal): string | null {
+  if (result === null) return null;
+  if (result.expected_time_s === null) return t("proposal.unknownCost");
+  if (result.compared === null) return null;
+  const { difference_s: difference, std_error_s: error, quicker } = result.compared;
+  const than = t(withPlanner ? "proposal.thanPlanner" : "proposal.thanChosen");
+  const chance = !quicker && difference < 2 * error;
+  if (chance || Math.abs(difference) < 1) return t("proposal.same", { than });
+  return t(difference > 0 ? "proposal.costs" : "proposal.saves", { difference: formatDuration(Math.abs(difference)), than });
 }
 
 function ProposalCard({ proposed }: { proposed: Proposal }) {
-  const plan = mission.value.plan?.fact;
   const { result, problem } = proposed;
   const here = vehicle.value.at;
   const card = useRef<HTMLDivElement>(null);
@@ -137,10 +137,15 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
         </p>
       )}
       {result && (
-        <p>
-          <strong>{costWords(proposed, plan)}</strong>
+        <p data-testid="proposal-compared" data-difference={result.compared?.difference_s ?? ""}>
+          <strong>{costWords(proposed)}</strong>
         </p>
       )}
+      {result?.compared?.rules.map((rule) => (
+        <p class="muted" data-testid="proposal-rule" key={rule.code}>
+          {reasonText(rule)}
+        </p>
+      ))}
       <ProblemNote desk="proposal" />
       {result?.allowed || problem ? (
         <SlideToConfirm
@@ -236,13 +241,12 @@ export function PlanPanel() {
           <p class="why" data-testid="why">
             <strong>{t("plan.why")}</strong> {reasonText(fact.reason)}{" "}
             <span class="muted">
-              {fact.source === "planner"
-                ? t("plan.effort", {
-                    rollouts: fact.rollouts.toLocaleString(locale.value),
-                    candidates: fact.candidates.length,
-                    time: formatNumber(fact.plan_ms, 0),
-                  })
-                : t("plan.byOperator", { by: personName(fact.by ?? "?") })}
+              {fact.source === "planner" &&
+                t("plan.effort", {
+                  rollouts: fact.rollouts.toLocaleString(locale.value),
+                  candidates: fact.candidates.length,
+                  time: formatNumber(fact.plan_ms, 0),
+                })}
             </span>
           </p>
           {fact.candidates.length > 0 && <CandidateTable plan={fact} />}

@@ -88,6 +88,7 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "took_off":
       return t("event.took_off", { height: formatLength(event.altitude_relative_m, units) });
     case "plan_chosen":
+      if (event.source === "operator") return t("event.plan_chosen.operator", { number: event.place_number, by: byWords(event.by) });
       return t("event.plan_chosen", { number: event.place_number, reason: reasonText(event.reason) });
     case "plan_vetoed":
       return t("event.plan_vetoed", { by: byWords(event.by) });
