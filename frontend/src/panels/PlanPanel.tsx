@@ -41,57 +41,68 @@ function roundWords(candidate: CandidateFact): string {
   return candidate.dropped_in_round === null ? t("plan.kept") : t("plan.roundNumber", { round: candidate.dropped_in_round });
 }
 
+/** Within the table alone: a pointer over the map must move no button of the panel. */
+function showRow(box: HTMLElement | null, row: HTMLElement | null): void {
+  if (!box || !row) return;
+  const [within, own] = [box.getBoundingClientRect(), row.getBoundingClientRect()];
+  if (own.top < within.top) box.scrollTop -= within.top - own.top;
+  else if (own.bottom > within.bottom) box.scrollTop += own.bottom - within.bottom;
+}
+
 function CandidateTable({ plan }: { plan: PlanChosen }) {
   const ranked = rankCandidates(plan);
   const shown = ranked.filter(({ index }, place) => place < SHOWN || index === highlighted.value);
   const lit = useRef<HTMLTableRowElement>(null);
-  useEffect(() => lit.current?.scrollIntoView({ block: "nearest" }), [highlighted.value]);
+  const box = useRef<HTMLDivElement>(null);
+  useEffect(() => showRow(box.current, lit.current), [highlighted.value]);
   const canPropose = cursor.value === null && !mission.value.ended;
   return (
-    <table class="candidates" data-testid="candidates">
-      <caption class="visually-hidden">{t("plan.candidates")}</caption>
-      <thead>
-        <tr>
-          <th scope="col">{t("plan.place")}</th>
-          <th scope="col">{t("plan.value")}</th>
-          <th scope="col">{t("plan.error")}</th>
-          <th scope="col">{t("plan.rollouts")}</th>
-          <th scope="col">{t("plan.round")}</th>
-        </tr>
-      </thead>
-      <tbody>
-        {shown.map(({ candidate, index, chosen }) => (
-          <tr
-            key={index}
-            ref={highlighted.value === index ? lit : null}
-            data-testid="candidate"
-            data-chosen={chosen}
-            class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}
-            onMouseEnter={() => (highlighted.value = index)}
-            onMouseLeave={() => (highlighted.value = null)}
-          >
-            <td>
-              <button
-                type="button"
-                class="candidate-name"
-                disabled={!canPropose || chosen}
-                title={t("plan.flyHere")}
-                onFocus={() => (highlighted.value = index)}
-                onBlur={() => (highlighted.value = null)}
-                onClick={() => propose({ lat: candidate.lat, lon: candidate.lon })}
-              >
-                <i class="swatch" style={{ background: `var(--round-${roundShade(candidate, plan, chosen)})` }} />
-                {index + 1}
-              </button>
-            </td>
-            <td>{formatDuration(candidate.value_s)}</td>
-            <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
-            <td>{candidate.rollouts}</td>
-            <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
+    <div class="candidate-box" ref={box}>
+      <table class="candidates" data-testid="candidates">
+        <caption class="visually-hidden">{t("plan.candidates")}</caption>
+        <thead>
+          <tr>
+            <th scope="col">{t("plan.place")}</th>
+            <th scope="col">{t("plan.value")}</th>
+            <th scope="col">{t("plan.error")}</th>
+            <th scope="col">{t("plan.rollouts")}</th>
+            <th scope="col">{t("plan.round")}</th>
           </tr>
-        ))}
-      </tbody>
-    </table>
+        </thead>
+        <tbody>
+          {shown.map(({ candidate, index, chosen }) => (
+            <tr
+              key={index}
+              ref={highlighted.value === index ? lit : null}
+              data-testid="candidate"
+              data-chosen={chosen}
+              class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}
+              onMouseEnter={() => (highlighted.value = index)}
+              onMouseLeave={() => (highlighted.value = null)}
+            >
+              <td>
+                <button
+                  type="button"
+                  class="candidate-name"
+                  disabled={!canPropose || chosen}
+                  title={t("plan.flyHere")}
+                  onFocus={() => (highlighted.value = index)}
+                  onBlur={() => (highlighted.value = null)}
+                  onClick={() => propose({ lat: candidate.lat, lon: candidate.lon })}
+                >
+                  <i class="swatch" style={{ background: `var(--round-${roundShade(candidate, plan, chosen)})` }} />
+                  {index + 1}
+                </button>
+              </td>
+              <td>{formatDuration(candidate.value_s)}</td>
+              <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
+              <td>{candidate.rollouts}</td>
+              <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
   );
 }
 

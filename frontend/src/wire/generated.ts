@@ -2404,7 +2404,10 @@ export interface components {
             kind: "craft";
             craft_id: string;
         };
-        /** @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same. */
+        /**
+         * @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
+         *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now.
+         */
         CraftStatusMessage: {
             craft_id: string;
             mission_id: string | null;
@@ -2416,6 +2419,7 @@ export interface components {
             receiver_age_s: number | null;
             battery_to_return_percent: number | null;
             order: components["schemas"]["OrderMessage"] | null;
+            resume_refused: components["schemas"]["Reason"] | null;
         };
         /** @description crossing_deg: the best crossing angle of two bearing lines at the estimate. */
         CrossingAngleTooSmall: {
