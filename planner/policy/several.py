@@ -141,6 +141,28 @@ def plan_several(
     return _decision(places, result, together)
 
 
+def times_together(
+    wanted: Sequence[Wanted],
+    platform: tuple[float, float],
+    places: FloatArray,
+    options: PlannerOptions,
+    paths: int,
+) -> FloatArray:
+    """(k, paths) s: the mean of the emitters' times by way of each of the places (k, 2), m, on the same sample paths.
+
+    infinite by way of a place without a way to it.
+    """
+    simulations = [simulate(w.problem, w.belief, platform, base_policy=options.base_policy) for w in wanted]
+    allowed = len(_places(wanted, simulations[0], ()))
+    chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
+    members = [
+        _member(one, simulation, places, platform, rng, 0, standoff_among(one.problem, allowed, len(wanted)))
+        for one, simulation, rng in zip(wanted, simulations, chances, strict=True)
+    ]
+    chosen = np.arange(len(places))
+    return np.stack([member.costs(chosen, 0, paths) for member in members]).mean(axis=0)
+
+
 def _member(
     wanted: Wanted,
     simulation: Simulation,
