@@ -172,8 +172,9 @@ class LearnedErrors(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-    flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+    bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+    and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+    taught; the server writes it down when a mission is drafted, edited and started.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, PlannerSpec, Polygon
+from backend.spec import MissionSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.options import CROSSFIX
@@ -24,11 +24,21 @@ PLANNER = PlannerSpec(
 
 
 def suggested_mission(home: Place) -> MissionSpec:
-    """Planned by our own planner; all other values are the specification's defaults. The home lies on the area's
-    southern edge."""
+    """Planned by our own planner, the errors of bearings estimated with the place; all other values are the
+    specification's defaults. The home lies on the area's southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(name=NAME, area=area, planner=PLANNER)
+    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"), planner=PLANNER)
+
+
+def with_errors_estimated(asked: MissionSpec) -> MissionSpec:
+    """A request that does not say how the errors of bearings hang together has them estimated with the place.
+
+    A stored specification that does not say it is from before they were, and means independent ones.
+    """
+    if "bearing_errors" in asked.sensor.model_fields_set:
+        return asked
+    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update={"bearing_errors": "joint"})})

@@ -459,7 +459,7 @@ export interface paths {
         put?: never;
         /**
          * Create Mission
-         * @description Draft a mission.
+         * @description Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise.
          */
         post: operations["create_mission"];
         delete?: never;
@@ -6409,8 +6409,9 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+         *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+         *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+         *     taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6437,8 +6438,9 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+         *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+         *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+         *     taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpecInput: {
             /** @default 7 */
