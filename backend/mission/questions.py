@@ -54,7 +54,7 @@ class Questions:
                 return craft.work.vetoes_against(where, way)
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
-        emitter = (*search.wanted, *search.emitters.values())[0]
+        emitter = search.sought[0]
         return await asyncio.to_thread(
             forecast, task.emitters[emitter.emitter_id], emitter.bearings, start, place, vetoes
         )
