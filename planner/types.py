@@ -58,6 +58,7 @@ class Bearing:
     x, y: sensor position, m ENU. angle, sigma: rad. `outlier_probability` eps mixes in a uniform likelihood,
     (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma. source: who
     took it; a joint belief (planner.belief.joint) gives the bearings of one source one bias, scale and outlier rate.
+    taken_at: s on any clock; counts for emitters that move only.
     """
 
     x: float
@@ -67,6 +68,7 @@ class Bearing:
     outlier_probability: float = 0.0
     peaks: tuple[Peak, ...] = ()
     source: str = ""
+    taken_at: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -1812,6 +1812,7 @@ export interface components {
          *     heading's and the antenna's. remarks: what makes the bearing less certain.
          *     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
          *     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
+         *     taken_at_s: UTC epoch seconds of the middle of the turn; None: nobody said (imported, or before it was kept).
          */
         BearingMeasured: {
             /**
@@ -1843,6 +1844,7 @@ export interface components {
             likelihood: string | null;
             /** @default 0 */
             samples_without_heading: number;
+            taken_at_s: number | null;
         };
         /** @description A single wedge of +-4 sigma has no point inside the area. */
         BearingMissesArea: {
@@ -2544,6 +2546,7 @@ export interface components {
             /** @default 0.03 */
             pulse_jitter_s: number;
             prior: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpec"] | components["schemas"]["RingPriorSpec"];
+            movement: components["schemas"]["MovementSpec"];
         };
         /**
          * @description What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
@@ -2568,6 +2571,7 @@ export interface components {
             /** @default 0.03 */
             pulse_jitter_s: number;
             prior?: components["schemas"]["UniformPriorSpec"] | components["schemas"]["GaussianPriorSpecInput"] | components["schemas"]["RingPriorSpec"];
+            movement?: components["schemas"]["MovementSpecInput"];
         };
         EmitterTooNear: {
             distance_m: number;
@@ -3722,6 +3726,8 @@ export interface components {
             minimum_crossing_angle_deg: number;
             /** @default 20 */
             maximum_bearings: number;
+            /** @default false */
+            follow: boolean;
         };
         /** @description When "localized" may be said (mission rule 6). */
         LocalizationSpecInput: {
@@ -3735,6 +3741,8 @@ export interface components {
             minimum_crossing_angle_deg: number;
             /** @default 20 */
             maximum_bearings: number;
+            /** @default false */
+            follow: boolean;
         };
         Localized: {
             /**
@@ -4130,6 +4138,34 @@ export interface components {
              * @enum {string}
              */
             code: "most_information";
+        };
+        /**
+         * @description How what is looked for moves. speed_m_s: root mean square over its pauses and runs; of kind "still" it does not
+         *     count. The kind says how soon the direction is forgotten: an animal that feeds turns every half minute, a person
+         *     walks on for minutes, wind and water carry for a quarter of an hour.
+         */
+        MovementSpec: {
+            /**
+             * @default still
+             * @enum {string}
+             */
+            kind: "still" | "animal" | "walking" | "drifting";
+            /** @default 0.2 */
+            speed_m_s: number;
+        };
+        /**
+         * @description How what is looked for moves. speed_m_s: root mean square over its pauses and runs; of kind "still" it does not
+         *     count. The kind says how soon the direction is forgotten: an animal that feeds turns every half minute, a person
+         *     walks on for minutes, wind and water carry for a quarter of an hour.
+         */
+        MovementSpecInput: {
+            /**
+             * @default still
+             * @enum {string}
+             */
+            kind: "still" | "animal" | "walking" | "drifting";
+            /** @default 0.2 */
+            speed_m_s: number;
         };
         /** @description GeoJSON MultiPolygon. */
         MultiPolygon: {
