@@ -17,15 +17,16 @@ from contextlib import closing, suppress
 from dataclasses import dataclass, fields
 from importlib import import_module
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from backend.settings import Settings
-from backend.simulation.hangar import Hangar
 from backend.store.spool_layout import holds_entries
 from hardware.authority import NOBODY, Authority
-from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.autopilot.opening import open_connection
 from hardware.clock import ScaledClock
-from hardware.ports import HardwareError
+
+if TYPE_CHECKING:  # loaded while the vehicle is listened for
+    from hardware.autopilot.vehicle import MavsdkVehicle
 
 log = logging.getLogger("crossfix")
 
@@ -72,13 +73,23 @@ async def _hold_what_flies(settings: Settings) -> FirstHold | None:
     left = await left_in_flight(settings)
     if left is None:
         return None
-    url = settings.vehicle_url or await Hangar(settings).address_left()
+    url = settings.vehicle_url or await _simulated(settings)
     if url is None:
         return None
+    opening = asyncio.create_task(asyncio.to_thread(open_connection, url))
+    await asyncio.to_thread(import_module, "hardware.autopilot.vehicle")
+    try:
+        opened = await opening
+    except OSError as error:
+        log.warning("no link to the vehicle that was left in flight: %s", error)
+        return None
+    from hardware.autopilot.vehicle import MavsdkVehicle
+    from hardware.ports import HardwareError
+
     clock = ScaledClock(factor=settings.time_factor)
     if left.at_s > clock.now():  # a sped-up clock must not run behind what it has recorded
         clock = ScaledClock(left.at_s, settings.time_factor)
-    vehicle = MavsdkVehicle(url, clock)
+    vehicle = MavsdkVehicle(url, clock, opened=opened)
     try:
         await vehicle.connect(ANSWERS_S)
     except HardwareError as error:
@@ -89,8 +100,16 @@ async def _hold_what_flies(settings: Settings) -> FirstHold | None:
     return FirstHold(url, vehicle, left.authority, clock, asyncio.create_task(_hold(vehicle)) if ours else None)
 
 
+async def _simulated(settings: Settings) -> str | None:
+    from backend.simulation.hangar import Hangar  # a real vehicle has no hangar here
+
+    return await Hangar(settings).address_left()
+
+
 async def _hold(vehicle: MavsdkVehicle) -> None:
     """The mission's recovery orders it again, and tells what came of it."""
+    from hardware.ports import HardwareError
+
     try:
         await vehicle.hold()
     except HardwareError as error:

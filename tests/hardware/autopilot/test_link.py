@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 
-from hardware.autopilot import link as link_module
+from hardware.autopilot import opening
 from hardware.autopilot.fence_items import FenceItem
-from hardware.autopilot.link import FenceTransferFailed, MavlinkLink, check_url
+from hardware.autopilot.link import FenceTransferFailed, MavlinkLink
+from hardware.autopilot.opening import check_url
 from hardware.ports import VehicleUnreachable
 from hardware.sim.autopilot.launch import Setting, launch_simulated
 
@@ -61,8 +62,8 @@ class SlowAutopilot:
 
 async def test_another_link_leaves_the_log_of_those_that_are_open_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     subscribed = list[object]()
-    monkeypatch.setattr(link_module, "log_subscribe", subscribed.append)
-    monkeypatch.setattr(link_module, "_take_log_over", cache(link_module._take_log_over.__wrapped__))  # pyright: ignore
+    monkeypatch.setattr(opening, "log_subscribe", subscribed.append)
+    monkeypatch.setattr(opening, "_take_log_over", cache(opening._take_log_over.__wrapped__))  # pyright: ignore
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         for _ in range(3):
