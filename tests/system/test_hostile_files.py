@@ -18,8 +18,9 @@ def speedup() -> float:
 
 
 async def upload(operator: Console, file: HostileFile) -> int:
-    kind = "application/json" if file.path == "/api/areas" else "application/octet-stream"
-    reply = await operator.client.post(file.path, content=file.content, headers={"content-type": kind}, timeout=120)
+    reply = await operator.client.post(
+        file.path, content=file.content, headers={"content-type": file.kind}, timeout=120
+    )
     if reply.status_code >= 400:
         assert reply.json()["reason"]["code"], reply.text
     return reply.status_code
