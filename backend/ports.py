@@ -185,7 +185,8 @@ class OrderStatus:
 @dataclass(frozen=True, slots=True)
 class CraftStatus:
     """What a craft does now, and the health of its parts. mission_id None: it flies for none; phase is not "ground"
-    when it is in the air all the same. order None: nothing was ordered, or something else has come of it."""
+    when it is in the air all the same. order None: nothing was ordered, or something else has come of it.
+    resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed."""
 
     craft_id: str
     mission_id: str | None
@@ -195,6 +196,7 @@ class CraftStatus:
     receiver_age_s: float | None
     battery_to_return_percent: float | None
     order: OrderStatus | None = None
+    resume_refused: Reason | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -107,6 +107,18 @@ Id = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 FIRST_EMITTER = "emitter-1"
 
 
+MovementKind = Literal["still", "animal", "walking", "drifting"]
+
+
+class MovementSpec(Model):
+    """How what is looked for moves. speed_m_s: root mean square over its pauses and runs; of kind "still" it does not
+    count. The kind says how soon the direction is forgotten: an animal that feeds turns every half minute, a person
+    walks on for minutes, wind and water carry for a quarter of an hour."""
+
+    kind: MovementKind = "still"
+    speed_m_s: float = Field(default=0.2, ge=0.01, le=5, allow_inf_nan=False)
+
+
 class EmitterSpec(Model):
     """What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
     "pulsed" only."""
@@ -120,6 +132,7 @@ class EmitterSpec(Model):
     """A 406 MHz distress beacon sends a burst of 0.44 s every 50 s, give or take 2.5."""
     pulse_jitter_s: float = Field(default=0.03, ge=0, le=5, allow_inf_nan=False)
     prior: PriorSpec = Field(default_factory=UniformPriorSpec)
+    movement: MovementSpec = Field(default_factory=MovementSpec)
 
     @model_validator(mode="after")
     def pulses_have_pauses(self) -> EmitterSpec:
@@ -172,8 +185,9 @@ class LearnedErrors(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-    flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+    bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+    and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+    taught; the server writes it down when a mission is drafted, edited and started.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -219,6 +233,8 @@ class LocalizationSpec(Model):
     minimum_place_distance_m: NonNegative = 10.0
     minimum_crossing_angle_deg: float = Field(default=20.0, ge=0, le=90)
     maximum_bearings: int = Field(default=20, ge=2, le=200)
+    follow: bool = False
+    """True: when all are localized, those that move are looked for on, until the battery rule brings the craft home."""
 
 
 class FlightSpec(Model):
