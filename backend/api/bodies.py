@@ -7,6 +7,7 @@ million wrong fields takes it a minute and a half. What is longer or richer than
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -36,6 +37,7 @@ READ_APART = ("/api/areas", "/api/recordings/read")
 
 MOST_FIELDS = 2_000
 MOST_ITEMS = 20_000
+LET_PASS_BYTES = 64 * 2**20
 STALL_S = 20.0
 """So long a body may stand still."""
 
@@ -61,6 +63,17 @@ def too_large(scope: Scope) -> Problem | None:
     if most is None or not length.isdigit() or int(length) <= most:
         return None
     return problem(413, reasons.BodyTooLarge(most))
+
+
+async def let_pass(receive: Receive) -> None:
+    """Take the rest of a refused body and keep nothing of it: whoever still sends does not hear the refusal."""
+    taken, more = 0, True
+    with suppress(TimeoutError):
+        async with asyncio.timeout(STALL_S):
+            while more and taken < LET_PASS_BYTES:
+                message = await receive()
+                taken += len(message.get("body", b""))
+                more = bool(message.get("more_body", False))
 
 
 def too_rich(text: bytes) -> bool:
@@ -90,6 +103,8 @@ class Bodies:
         try:
             body = await _whole(arriving)
         except ApiProblem as refused:
+            if refused.status_code == 413:
+                await let_pass(receive)
             await respond(refused.problem, {"connection": "close"})(scope, receive, send)
             return
         if body is None:

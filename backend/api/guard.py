@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from backend.api.bodies import too_large
+from backend.api.bodies import let_pass, too_large
 from backend.api.problems import respond
 from backend.reasons import request as reasons
 from backend.wire.problem import Problem, problem
@@ -35,8 +35,11 @@ class Guard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refusal = self._foreign(scope, headers) or too_large(scope)
+        large = None
+        refusal = self._foreign(scope, headers) or (large := too_large(scope))
         if refusal is not None:
+            if large is not None:
+                await let_pass(receive)
             await refuse(refusal, scope, receive, send)
             return
         if scope["type"] == "websocket":

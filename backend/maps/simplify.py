@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
 import shapely
 from shapely.geometry import mapping, shape
 from shapely.geometry.base import BaseGeometry
@@ -26,7 +28,7 @@ def simplified(
 
     Time grows with the number of positions; Douglas and Peucker's rule took 50 s for a zigzag of 700,000.
     """
-    shapes = [shape(feature.geometry) for feature in features]
+    shapes = [_shape(feature.geometry["type"], feature.geometry["coordinates"]) for feature in features]
     before = _positions(shapes)
     if before <= most:
         return list(features), None
@@ -40,6 +42,18 @@ def simplified(
         for feature, was, one in zip(features, shapes, thinner, strict=True)
     ]
     return changed, PositionsThinned(before, after, tolerance_deg / 2 * METRES_A_DEGREE)
+
+
+def _shape(kind: str, coordinates: Any) -> BaseGeometry:
+    """From arrays: shapely would copy a list of positions one by one, which takes as much memory again."""
+    depth = {"Point": 0, "LineString": 0, "MultiPoint": 0, "Polygon": 1, "MultiLineString": 1, "MultiPolygon": 2}[kind]
+    return shape({"type": kind, "coordinates": _arrays(coordinates, depth)})
+
+
+def _arrays(coordinates: Any, depth: int) -> Any:
+    if depth == 0:
+        return np.asarray(coordinates, dtype=np.float64)
+    return [_arrays(part, depth - 1) for part in coordinates]
 
 
 def _positions(shapes: Sequence[BaseGeometry]) -> int:

@@ -60,13 +60,13 @@ def large_overlay() -> bytes:
     return b'{"type":"FeatureCollection","features":[' + b",".join([point] * (LARGE_BYTES // (len(point) + 1))) + b"]}"
 
 
-async def uploaded(client: httpx.AsyncClient, path: str, content: bytes) -> int:
-    kind = "application/json" if path == "/api/areas" else "application/octet-stream"
-    return (await client.post(path, content=content, headers={"content-type": kind}, timeout=180)).status_code
+async def uploaded(client: httpx.AsyncClient, file: HostileFile) -> int:
+    headers = {"content-type": file.kind}
+    return (await client.post(file.path, content=file.content, headers=headers, timeout=180)).status_code
 
 
-async def measure(shown: Console, server: psutil.Process, name: str, path: str, content: bytes, usual: int) -> Taken:
-    taken = Taken(name)
+async def measure(shown: Console, server: psutil.Process, file: HostileFile, usual: int) -> Taken:
+    taken = Taken(file.name)
 
     async def remember() -> None:
         while True:
@@ -83,7 +83,7 @@ async def measure(shown: Console, server: psutil.Process, name: str, path: str, 
     beside = [asyncio.create_task(remember()), asyncio.create_task(order())]
     began = time.monotonic()
     async with httpx.AsyncClient(base_url=shown.url) as other:
-        taken.status = await uploaded(other, path, content)
+        taken.status = await uploaded(other, file)
     taken.answer_s = time.monotonic() - began
     await asyncio.sleep(2 * PAUSE_S)
     for task in beside:
@@ -105,9 +105,10 @@ async def run(folder: Path) -> list[Taken]:
         await shown.until_phase("flying", 120)
         files = [HostileFile("an overlay of 50 MB", "/api/overlays", large_overlay(), False), *hostile_files()]
         server = psutil.Process(process.pid)
-        await uploaded(shown.client, "/api/overlays", b"no overlay")  # the reading process has started
+        starts_the_reader = HostileFile("no overlay", "/api/overlays", b"none", False)
+        await uploaded(shown.client, starts_the_reader)
         usual = resident_bytes(server)
-        return [await measure(shown, server, f.name, f.path, f.content, usual) for f in files]
+        return [await measure(shown, server, file, usual) for file in files]
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Small files that cost much: each held up an abort, filled the memory or broke a list before readers were confined."""
+"""What costs much to read: each held up an abort, filled the memory or broke a list before readers were bounded."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 import math
 import zipfile
 from typing import NamedTuple
+from unittest.mock import patch
 
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
@@ -15,12 +16,17 @@ MEGABYTE = 10**6
 
 
 class HostileFile(NamedTuple):
-    """path: where it is posted to. accepted: it is harmless once it is read with care."""
+    """path: where it is posted to, as `kind` says. accepted: it is harmless once it is read with care."""
 
     name: str
     path: str
     content: bytes
     accepted: bool
+
+    @property
+    def kind(self) -> str:
+        """Of its content."""
+        return "application/octet-stream" if self.path in ("/api/overlays", "/api/maps") else "application/json"
 
 
 def kml(inside: str) -> bytes:
@@ -43,6 +49,19 @@ def long_line(positions: int) -> bytes:
     return json.dumps({"type": "LineString", "coordinates": line}).encode()
 
 
+HALF_A_PAIR = b"""{"type": "Feature", "properties": {"name": "\\ud800"},
+ "geometry": {"type": "Point", "coordinates": [7, 50]}}"""
+
+
+def wrong_positions(size: int) -> bytes:
+    body = b'{"name": "x", "area": {"type": "Polygon", "coordinates": [[' + b"0," * (size // 2)
+    return body + b"0]]}}"
+
+
+def unknown_fields(count: int) -> bytes:
+    return json.dumps({f"k{number}": 0 for number in range(count)}).encode()
+
+
 def archive(metadata: bytes) -> bytes:
     """A PMTiles archive of one tile whose metadata are these bytes."""
     stream = io.BytesIO()
@@ -54,13 +73,21 @@ def archive(metadata: bytes) -> bytes:
     return stream.getvalue()
 
 
+def deep_metadata(depth: int) -> bytes:
+    """An archive whose metadata are arrays in arrays, which no writer can be asked for."""
+    with patch("pmtiles.writer.json.dumps", return_value='{"name": ' + "[" * depth):
+        return archive(b"{}")
+
+
 def hostile_files() -> list[HostileFile]:
-    blanks = kml(point(f"7,50{' ' * 300_000}"))
+    """What is sent, and to where: files, and requests whose JSON is the burden."""
+    few_blanks, blanks = (kml(point(f"7,50{' ' * count}")) for count in (40_000, 300_000))
     polygon = kml(
         "<Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>7.2,50.62 7.21,50.62 7.21,50.63"
         f"{' ' * 300_000}7.2,50.62</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark>"
     )
     return [
+        HostileFile("blanks in a small KML", "/api/overlays", few_blanks, True),
         HostileFile("blanks in a KML", "/api/overlays", blanks, True),
         HostileFile("blanks in an area", "/api/areas", json.dumps({"text": polygon.decode()}).encode(), True),
         HostileFile("a million placemarks in a small KMZ", "/api/overlays", zipped(kml(point("7,50") * 10**6)), False),
@@ -68,4 +95,14 @@ def hostile_files() -> list[HostileFile]:
         HostileFile("arrays in arrays", "/api/overlays", b'{"type": ' + b"[" * MEGABYTE, False),
         HostileFile("elements in elements", "/api/overlays", b"<kml>" * MEGABYTE, False),
         HostileFile("half a surrogate pair", "/api/maps", archive(b'{"name": "\\ud800"}'), True),
+        HostileFile("half a surrogate pair in an overlay", "/api/overlays", HALF_A_PAIR, True),
+        HostileFile("arrays in the metadata of a map", "/api/maps", deep_metadata(100_000), False),
+        HostileFile("wrong positions in a mission", "/api/missions", wrong_positions(3 * MEGABYTE), False),
+        HostileFile("as many as a mission may have", "/api/missions", wrong_positions(90_000), False),
+        HostileFile("unknown fields", "/api/missions", unknown_fields(500_000), False),
+        HostileFile("a sign-in of unknown fields", "/api/session", unknown_fields(500_000), False),
+        HostileFile("numbers in an area", "/api/areas", b'{"text": [' + b"1," * 3 * MEGABYTE + b"1]}", False),
+        HostileFile(
+            "numbers in an exported mission", "/api/recordings/read", b"[" + b"1," * 15 * MEGABYTE + b"1]", False
+        ),
     ]
