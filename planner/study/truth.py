@@ -17,7 +17,7 @@ import numpy as np
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
-from planner.belief.learning import FlightEvidence, flight_evidence, learned
+from planner.belief.learning import flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.geometry import bounds, contains, distance_to_convex
@@ -114,12 +114,12 @@ def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -
 
     Only bearings are learned from: where the emitter was, nobody says.
     """
-    found: list[FlightEvidence] = []
+    found: list[FloatArray] = []
     prior, nowhere = unknown, joint_prior(search.problem)
     for seed in seeds:
         _, belief = _flown(search, row, seed, "joint", replace(nowhere, otherwise=prior))
         assert isinstance(belief, JointBelief)
-        found.append(flight_evidence(belief.errors[0]))
+        found.append(flight_evidence(belief, belief.errors[0].source))
         prior = learned(found, unknown)
     return prior
 
