@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, Polygon, SensorSpec
+from backend.spec import MissionSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+from planner.options import CROSSFIX
 
 WIDTH_M, HEIGHT_M = 313.0, 200.0
 """As wide as the field system's area, and deeper, so that a newcomer's search takes more than two places."""
 
 NAME = "New search"
 
+PLANNER = PlannerSpec(
+    method=CROSSFIX.method,
+    base_policy=CROSSFIX.base_policy,
+    selection=CROSSFIX.selection,
+    sampling=CROSSFIX.sampling,
+    estimator=CROSSFIX.estimator,
+    budget=CROSSFIX.budget,
+)
+"""`crossfix study run --planner crossfix` is the planner at these settings."""
+
 
 def suggested_mission(home: Place) -> MissionSpec:
-    """The errors of bearings are estimated with the place; all other values are the specification's defaults. The home
-    lies on the area's southern edge."""
+    """Planned by our own planner, the errors of bearings estimated with the place; all other values are the
+    specification's defaults. The home lies on the area's southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"))
+    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"), planner=PLANNER)
 
 
 def with_errors_estimated(asked: MissionSpec) -> MissionSpec:

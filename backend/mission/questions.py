@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from backend.craft.checklist import home_of
+from backend.craft.inputs import Foretold
 from backend.craft.safety import limits_of, standing_vetoes, staying_vetoes
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
@@ -15,7 +16,7 @@ from backend.reasons import Reason
 from backend.reasons.refusals import MissionDoesNotFly
 from backend.search.area import centre_of
 from backend.search.errors import MissionConflict
-from backend.search.forecast import Forecast, Preview, forecast, preview
+from backend.search.forecast import Comparison, Forecast, Preview, compare, forecast, preview
 from backend.search.other_area import Outlook, outlook, task_in
 from backend.search.planning import needs_program
 from backend.search.state import SearchState
@@ -41,8 +42,11 @@ class Questions:
     records: Records
     flights: Flights
 
-    async def expected_time(self, mission_id: str, place: Place) -> Forecast:
-        """The expected time to localization when a craft measured at this place next. Raises MissionNotFound."""
+    async def expected_time(
+        self, mission_id: str, place: Place, instead_of: Place | None = None
+    ) -> tuple[Forecast, Comparison | None]:
+        """The expected time to localization when a craft measured at this place next, and how it compares with another
+        place when one is named. Raises MissionNotFound."""
         runner = self.flights.running(mission_id)
         search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
         task = runner.task if runner else await self._task_on_ground(search)
@@ -54,10 +58,14 @@ class Questions:
                 return craft.work.vetoes_against(where, way)
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
-        emitter = (*search.wanted, *search.emitters.values())[0]
-        return await asyncio.to_thread(
-            forecast, task.emitters[emitter.emitter_id], emitter.bearings, start, place, vetoes
-        )
+        emitters = search.wanted or search.sought[:1]
+        wanted = [(task.emitters[one.emitter_id], one.bearings) for one in emitters]
+        found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
+        if runner is not None and found.mean_s is not None:
+            runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
+        if instead_of is None:
+            return found, None
+        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:
         """What to expect of another search area now, and what forbids to change to it.

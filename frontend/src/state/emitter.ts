@@ -24,9 +24,18 @@ export interface EmitterState {
   rejected: readonly At<SweepRejected>[];
   belief: At<BeliefUpdated> | null;
   beliefs: readonly BeliefPoint[];
+  /** The last belief that said localized: of an emitter that moves it stands for its moment. */
+  claim: At<BeliefUpdated> | null;
 }
 
-export const emptyEmitter = (emitterId: string): EmitterState => ({ emitterId, bearings: [], rejected: [], belief: null, beliefs: [] });
+export const emptyEmitter = (emitterId: string): EmitterState => ({
+  emitterId,
+  bearings: [],
+  rejected: [],
+  belief: null,
+  beliefs: [],
+  claim: null,
+});
 
 /** `event` is one that speaks of this emitter. */
 export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
@@ -38,12 +47,14 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
     case "bearing_excluded":
       return {
         ...state,
+        claim: null,
         bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
       };
     case "belief_updated":
       return {
         ...state,
         belief: { fact: event, seq, at },
+        claim: event.localized ? { fact: event, seq, at } : state.claim,
         beliefs: [...state.beliefs, { seq, at, bearings: event.bearings, expectedRmse: event.estimate?.expected_rmse_m ?? null }],
       };
     default:
