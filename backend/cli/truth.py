@@ -130,8 +130,9 @@ def sentence(found: Truth) -> str:
     """For a terminal."""
     if not found.claimed:
         return f"{found.row}: none of {found.missions} missions said localized"
+    known = "" if found.prior == UNKNOWN else f", {found.prior} known before"
     return (
-        f"{found.row}, {found.model} errors, {found.prior} known before: {found.missions} missions, "
+        f"{found.row}, {found.model} errors{known}: {found.missions} missions, "
         f"{found.claimed:.1%} localized in {found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; "
         f"truth in C95 {found.in_c95:.1%} [{found.in_c95_low:.1%}, {found.in_c95_high:.1%}], beyond three times stated "
         f"{found.beyond_3x:.1%} (error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
