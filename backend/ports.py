@@ -130,7 +130,8 @@ class Said:
 @dataclass(frozen=True, slots=True)
 class Lesson:
     """What one flight taught of the errors of its craft's bearings. bias_deg: clockwise. spread_deg: standard
-    deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers."""
+    deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers. together:
+    log evidence of every combination of these values, the rates running fastest; empty in older lessons."""
 
     mission_id: str
     bearings: int
@@ -139,6 +140,7 @@ class Lesson:
     spread_deg: tuple[Said, ...]
     scale: tuple[Said, ...]
     rate: tuple[Said, ...]
+    together: tuple[float, ...] = ()
 
 
 class Lessons(Protocol):

@@ -15,7 +15,8 @@ from hardware.readings import Place
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
-from planner.study.truth import Claim, Model, Search, Truth, learn, missions, row_named, truth_of
+from planner.study.truth import TOLD, UNKNOWN, Claim, Model, Search, Truth, learn, missions, row_named, truth_of
+from planner.study.truth import told as true_errors
 
 HOME = Place(50.6234, 7.2046)
 """Anywhere: the worlds are flat."""
@@ -47,6 +48,9 @@ def truth(
             help="joint: flights before these, of the same sensor, from whose bearings alone it learns.",
         ),
     ] = 0,
+    told: Annotated[
+        bool, typer.Option("--told", help="joint: the search is told the row's true errors, to compare with.")
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -55,7 +59,7 @@ def truth(
     Example: crossfix study truth --row bias5 --missions 200 --json
     """
     try:
-        found = study_row(row, missions_, model, seed, flights)
+        found = study_row(row, missions_, model, seed, flights, told)
     except StudyError as error:
         if json_:
             print_json({"error": str(error)})
@@ -66,21 +70,31 @@ def truth(
         typer.echo(sentence(found))
 
 
-def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0) -> Truth:
-    """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before."""
+def study_row(
+    row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0, told: bool = False
+) -> Truth:
+    """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before. told:
+    the joint model knows the row's true errors."""
     known = _model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
+    if told and (known != "joint" or flights or row in TAGS):
+        raise StudyError("--told goes with the joint model of one emitter, and without --flights")
     if row in TAGS:
         return _tags_row(row, count, known, first_seed)
     wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
-    prior = unknown_errors(mission.sensor.outlier_probability)
+    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
+    if told and wanted is None:
+        raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
+    if wanted is not None and told:
+        prior, knows = true_errors(wanted), TOLD
     if wanted is not None and flights and known == "joint":
         prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
-        remark(f"{row}: learned from {flights} flights")
+        knows = f"{flights} flights"
+        remark(f"{row}: learned from {knows}")
     claims: list[Claim] = []
     seeds = range(first_seed, first_seed + count)
     flown = (
@@ -92,7 +106,7 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, f
         claims.append(claim)
         if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
             remark(f"{row}: {len(claims)} of {count} missions")
-    return truth_of(row, known, claims)
+    return truth_of(row, known, claims, knows)
 
 
 def _tags_row(row: str, count: int, model: Model, first_seed: int) -> Truth:
@@ -116,9 +130,10 @@ def sentence(found: Truth) -> str:
     """For a terminal."""
     if not found.claimed:
         return f"{found.row}: none of {found.missions} missions said localized"
+    known = "" if found.prior == UNKNOWN else f", {found.prior} known before"
     return (
-        f"{found.row}, {found.model} errors: {found.missions} missions, {found.claimed:.1%} localized in "
-        f"{found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; truth in C95 {found.in_c95:.1%} "
-        f"[{found.in_c95_low:.1%}, {found.in_c95_high:.1%}], beyond three times stated {found.beyond_3x:.1%} "
-        f"(error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
+        f"{found.row}, {found.model} errors{known}: {found.missions} missions, "
+        f"{found.claimed:.1%} localized in {found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; "
+        f"truth in C95 {found.in_c95:.1%} [{found.in_c95_low:.1%}, {found.in_c95_high:.1%}], beyond three times stated "
+        f"{found.beyond_3x:.1%} (error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
     )

@@ -12,6 +12,7 @@ from backend.craft.checklist import checklist
 from backend.events import AntennaChecked, BeliefUpdated, MissionDrafted, PreflightChecked, Recorded
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
+from backend.mission.learning import learn_from_check
 from backend.mission.records import Records
 from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable
 from backend.search.area import centre_of
@@ -79,6 +80,7 @@ class Drafts:
             checked = await check_by_hand(self.equipment.first, state.search.mission, emitter, wait_s, by)
             async with self.records.lock(mission_id):
                 await self.records.append(mission_id, [checked])
+        await learn_from_check(self.equipment, mission_id, state.search.mission.sensor, checked)
         return checked
 
     async def import_recording(self, mission_id: str, upload: Upload, by: str) -> tuple[list[Recorded], bool]:

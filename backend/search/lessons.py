@@ -1,7 +1,8 @@
 """What a flight taught of the errors of its craft's bearings, and what the flights so far say of the next one's.
 
 A lesson is the flight's evidence for each value that bias' spread, scale and outlier rate may have
-(planner.belief.learning). It needs no truth: the bearings agree or not.
+(planner.belief.learning). It needs no truth: the bearings agree or not. An antenna check before a known emitter tells
+of the bias besides.
 """
 
 from __future__ import annotations
@@ -11,17 +12,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from backend.events import BearingMeasured, CraftSource
+from backend.events import AntennaChecked, BearingMeasured, CraftSource
 from backend.ports import Lesson, Said
 from backend.search.localization import Localization, source_name
 from backend.search.source_priors import learned_errors, unknown_errors
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import LearnedErrors, MissionSpec, SensorSpec
+from hardware.reasons.antenna import AntennaAgrees
 from planner.belief.joint import JointBelief
-from planner.belief.learning import FlightEvidence, flight_evidence, learned
-from planner.types import FloatArray
+from planner.belief.learning import evidence_at, flight_evidence, learned
+from planner.belief.source_errors import ErrorPrior
+from planner.types import Bearing, FloatArray
 
+CHECK_SIGMA_DEG = 3.0
+"""Of an antenna check's bearing, the vehicle turned by hand before a strong emitter."""
+KNOWN_M = 100.0
+"""From the vehicle to the emitter of a check; only the direction counts."""
 LESSONS_KEPT = 100
 """The newest: what a compass was like a hundred flights ago says little of today's."""
 
@@ -46,18 +53,43 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
 def _lesson(mission_id: str, task: Localization, measured: Sequence[BearingMeasured], source: str) -> Lesson | None:
     belief = task.belief(task.planner_bearings(measured))
     errors = belief.errors_of(source) if isinstance(belief, JointBelief) else None
-    if errors is None:
+    if errors is None or not isinstance(belief, JointBelief):
         return None
-    found, given = flight_evidence(errors), errors.prior
+    bias = -math.degrees(errors.bias), math.degrees(errors.bias_sd)
+    return _said_of(mission_id, errors.bearings, bias, errors.prior, flight_evidence(belief, source))
+
+
+def _said_of(mission_id: str, bearings: int, bias: tuple[float, float], prior: ErrorPrior, log: FloatArray) -> Lesson:
+    """bias: degrees clockwise, with its standard error. log: (t, k, e) evidence at the prior's values."""
+    mass = np.exp(log)
     return Lesson(
         mission_id=mission_id,
-        bearings=errors.bearings,
-        bias_deg=-math.degrees(errors.bias),
-        bias_std_error_deg=math.degrees(errors.bias_sd),
-        spread_deg=_said(np.rad2deg(given.spread), found.spread),
-        scale=_said(given.scale, found.scale),
-        rate=_said(given.rate, found.rate),
+        bearings=bearings,
+        bias_deg=bias[0],
+        bias_std_error_deg=bias[1],
+        spread_deg=_said(np.rad2deg(prior.spread), np.log(mass @ prior.rate_weight @ prior.scale_weight)),
+        scale=_said(prior.scale, np.log(np.einsum("tke,t,e->k", mass, prior.spread_weight, prior.rate_weight))),
+        rate=_said(prior.rate, np.log(np.einsum("tke,t,k->e", mass, prior.spread_weight, prior.scale_weight))),
+        together=tuple(round(float(one), 3) for one in log.ravel()),
     )
+
+
+def lesson_of_check(mission_id: str, checked: AntennaChecked, sensor: SensorSpec) -> Lesson | None:
+    """Of an antenna check that passed: one bearing of an emitter at a known place. None of any other.
+
+    It tells of the bias alone: what the sweep stated of its own error is not kept, so neither scale nor outliers can be
+    judged by it. Of a mission the last check counts, as one compass and one place disturb all of them alike.
+    """
+    agrees = checked.check.reason
+    if not checked.check.ok or not isinstance(agrees, AntennaAgrees):
+        return None
+    off_deg = (agrees.measured_deg - agrees.true_deg + 180.0) % 360.0 - 180.0
+    prior = unknown_errors(sensor.outlier_probability)
+    bearing = Bearing(0.0, 0.0, math.radians(-off_deg), math.radians(CHECK_SIGMA_DEG))
+    log = evidence_at([bearing], prior, (KNOWN_M, 0.0))
+    of_spread = np.log(np.exp(log) @ prior.rate_weight @ prior.scale_weight)
+    told = np.broadcast_to((of_spread - of_spread.max())[:, None, None], log.shape)
+    return _said_of(f"check of {mission_id}"[:64], 1, (off_deg, CHECK_SIGMA_DEG), prior, told)
 
 
 def _said(values: FloatArray, log: FloatArray) -> tuple[Said, ...]:
@@ -69,20 +101,26 @@ def errors_now(lessons: Sequence[Lesson], sensor: SensorSpec, craft_id: str, ant
     """What a mission with this sensor starts from, after these flights (oldest first) of the craft and antenna."""
     unknown = unknown_errors(sensor.outlier_probability)
     newest = lessons[-LESSONS_KEPT:]
-    evidence = [
-        FlightEvidence(
-            _at(one.spread_deg, np.rad2deg(unknown.spread)), _at(one.scale, unknown.scale), _at(one.rate, unknown.rate)
-        )
-        for one in newest
-    ]
+    evidence = [_evidence_at(one, unknown) for one in newest]
     return learned_errors(learned(evidence, unknown), len(newest), craft_id, antenna)
 
 
-def _at(said: Sequence[Said], values: FloatArray) -> FloatArray:
-    """Log evidence at these values, in between interpolated over their logarithms: other missions may have compared
-    other values."""
-    known = np.log([one.value for one in said])
-    return np.interp(np.log(values), known, np.array([one.log_evidence for one in said]))
+def _evidence_at(one: Lesson, prior: ErrorPrior) -> FloatArray:
+    """(t, k, e) at the prior's values, in between interpolated over their logarithms: other missions may have compared
+    other values. An older lesson says nothing of combinations: there the three count one by one."""
+    said = one.spread_deg, one.scale, one.rate
+    if one.together:
+        log = np.array(one.together).reshape([len(some) for some in said])
+    else:
+        of_spread, of_scale, of_rate = (np.array([value.log_evidence for value in some]) for some in said)
+        log = of_spread[:, None, None] + of_scale[:, None] + of_rate
+    for axis, (some, values) in enumerate(zip(said, (np.rad2deg(prior.spread), prior.scale, prior.rate), strict=True)):
+        log = np.apply_along_axis(_between, axis, log, np.log([value.value for value in some]), np.log(values))
+    return log
+
+
+def _between(log: FloatArray, known: FloatArray, wanted: FloatArray) -> FloatArray:
+    return np.interp(wanted, known, log)
 
 
 def knowing(spec: MissionSpec, lessons: Sequence[Lesson], craft_id: str, antenna: str) -> MissionSpec:

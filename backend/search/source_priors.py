@@ -6,6 +6,7 @@ A specification without `sensor.learned` means the first of these priors, so tha
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,28 +22,38 @@ MOST_OUTLIERS = 0.6
 SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.15, 0.63, 0.22)
 """Of the stated sigmas. One flight's bearings agree by luck too often to tell a sensor that is better than it says, so
 this has little weight until flights have taught it."""
-RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)
+RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.3, 0.2, 0.25)
 """Of the specified outlier probability; the mean is nine tenths of that. From two bearings nobody sees an outlier: a
 claim after two takes a source whose flights taught that it has hardly any."""
+
+
+RATES_BEFORE, RATE_WEIGHTS_BEFORE = (0.03, 0.2, 0.5, 2.0), (0.07, 0.18, 0.42, 0.33)
+"""Of sources of which nothing is known, in specifications whose learned errors compare as many rates: between 0.5 and 2
+flights with 8 % of outliers learned 18 %."""
 
 
 def unknown_errors(outlier_probability: float) -> ErrorPrior:
     """Of a source of which nothing is known, with values that leave room to learn."""
     rates, weights = (RATES, RATE_WEIGHTS) if outlier_probability > 0.0 else ((0.03,), (1.0,))
-    return replace(
-        UNKNOWN_SOURCE,
-        scale=np.array(SCALES),
-        scale_weight=np.array(SCALE_WEIGHTS),
-        rate=np.minimum(np.array(rates) * (outlier_probability or 0.1), MOST_OUTLIERS),
-        rate_weight=np.array(weights),
-    )
+    prior = replace(UNKNOWN_SOURCE, scale=np.array(SCALES), scale_weight=np.array(SCALE_WEIGHTS))
+    return _with_rates(prior, rates, weights, outlier_probability or 0.1)
+
+
+def _with_rates(
+    prior: ErrorPrior, rates: Sequence[float], weights: Sequence[float], outlier_probability: float
+) -> ErrorPrior:
+    rate = np.minimum(np.array(rates) * outlier_probability, MOST_OUTLIERS)
+    return replace(prior, rate=rate, rate_weight=np.array(weights))
 
 
 def priors_of(sensor: SensorSpec) -> tuple[dict[str, ErrorPrior], ErrorPrior]:
     """In a mission with this specification: of the sources that are known, by name, and of any other."""
     if sensor.learned is None:
         return {}, _first_prior(sensor.outlier_probability)
-    return {f"craft:{sensor.learned.craft_id}": prior_in(sensor.learned)}, unknown_errors(sensor.outlier_probability)
+    others = unknown_errors(sensor.outlier_probability)
+    if len(sensor.learned.rate) == len(RATES_BEFORE):
+        others = _with_rates(others, RATES_BEFORE, RATE_WEIGHTS_BEFORE, sensor.outlier_probability)
+    return {f"craft:{sensor.learned.craft_id}": prior_in(sensor.learned)}, others
 
 
 def prior_in(learned: LearnedErrors) -> ErrorPrior:

@@ -1,61 +1,92 @@
 """What flights tell about the errors of the next: a source's prior learned from flights whose truth nobody knows.
 
-The bearings of a flight agree or not, and so say something of tau, the standard deviation of the bias, of the scale
-and of the rate of outliers, although the place stays uncertain. A flight's evidence for each value is the posterior
-over the prior it was given,
+The bearings of a flight agree or not, and so say something of tau, the standard deviation of the bias, of the scale s
+and of the rate e of outliers, although the place x stays uncertain. A flight's evidence is taken for every combination
+of the three, since each excuses another: bearings that scatter have a large scale, or many are outliers.
 
-    p(bearings | tau) = sum_b p(b | tau) p(b | bearings) / p(b),    p(bearings | s) = p(s | bearings) / p(s),
+    p(bearings | tau, s, e) = sum_x p(x) sum_b p(b | tau) prod_i p(z_i | x, b, s, e)
 
-flights are independent, so their evidence multiplies, and a share of the flat prior is mixed in: nothing is ever
-excluded, since a compass may be disturbed tomorrow.
+Flights are independent, so their evidence multiplies, and a share of the flat prior is mixed in: nothing is ever
+excluded, since a compass may be disturbed tomorrow. Where the emitter was known, p(x) is that place.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from planner.belief.source_errors import ErrorPrior, SourceErrors, bias_weights
-from planner.types import FloatArray
+from planner.belief import compiled_evidence
+from planner.belief.evidence import sightings
+from planner.belief.joint import SMALLEST_SIGMA, JointBelief, by_source
+from planner.belief.source_errors import ErrorPrior, Nodes, bias_weights, nodes
+from planner.types import Bearing, FloatArray
 
 SURPRISE = 0.02
 """Share of the prior that knows nothing, whatever was learned."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FlightEvidence:
-    """Logarithms of p(bearings of a flight | value), up to a constant each: of spread (t,), scale (k,), rate (e,)."""
+def flight_evidence(belief: JointBelief, source: str) -> FloatArray:
+    """(t, k, e) log p(bearings of a flight | spread, scale, rate of this source), 0 for the best.
 
-    spread: FloatArray
-    scale: FloatArray
-    rate: FloatArray
-
-
-def flight_evidence(errors: SourceErrors) -> FlightEvidence:
-    """Of the flight in which the errors were estimated."""
-    given, grid = errors.prior, errors.nodes
-    likelihood = errors.bias_mass / grid.bias_weight
-    spread = bias_weights(grid.bias, grid.spacing, given.spread).T @ likelihood
-    return FlightEvidence(
-        np.log(spread), np.log(errors.scale_mass / grid.scale_weight), np.log(errors.rate_mass / grid.rate_weight)
-    )
+    belief: with all bearings of the flight; those of other sources tell of the place. The values are those of the
+    prior that the belief has of the source.
+    """
+    rows, columns = np.nonzero(belief.prior)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    log = np.log(belief.prior[rows, columns])
+    taken = by_source(belief.folded)
+    for other in (name for name in taken if name != source):
+        prior, seen = belief.priors.get(other, belief.otherwise), _honest(taken[other])
+        log = log + compiled_evidence.evidence(x, y, sightings(seen), _nodes(prior, seen)).log
+    return _evidence(belief.priors.get(source, belief.otherwise), taken[source], x, y, log)
 
 
-def learned(flights: Iterable[FlightEvidence], unknown: ErrorPrior) -> ErrorPrior:
-    """The prior for the next flight. unknown: what is assumed of a source that never flew, with the same values."""
-    spread, scale, rate = (np.zeros(len(v)) for v in (unknown.spread, unknown.scale, unknown.rate))
-    for one in flights:
-        spread, scale, rate = spread + one.spread, scale + one.scale, rate + one.rate
+def evidence_at(bearings: Sequence[Bearing], prior: ErrorPrior, place: tuple[float, float]) -> FloatArray:
+    """The same of one source's bearings of an emitter that is known to be at `place`, m ENU."""
+    x, y = (np.array([along]) for along in place)
+    return _evidence(prior, bearings, x, y, np.zeros(1))
+
+
+def _evidence(
+    prior: ErrorPrior, bearings: Sequence[Bearing], x: FloatArray, y: FloatArray, log: FloatArray
+) -> FloatArray:
+    """log: (c,) of the places' probability."""
+    seen = _honest(bearings)
+    grid, arrays, one = _nodes(prior, seen), sightings(seen), np.ones(1)
+    by_spread = bias_weights(grid.bias, grid.spacing, prior.spread)
+    found = np.empty((len(prior.spread), len(prior.scale), len(prior.rate)))
+    for k, scale in enumerate(prior.scale):
+        for e, rate in enumerate(prior.rate):
+            alone = replace(grid, scale=one * scale, scale_weight=one, rate=one * rate, rate_weight=one)
+            weighed = compiled_evidence.evidence(x, y, arrays, alone)
+            whole = log + weighed.log
+            top = float(whole.max())
+            # sum_x p(x) p(bearings, b | x) / p(b), of each node b
+            likelihood = (np.exp(whole - top) @ weighed.bias) / grid.bias_weight
+            found[:, k, e] = top + np.log(by_spread.T @ likelihood)
+    return found - found.max()
+
+
+def _honest(bearings: Sequence[Bearing]) -> list[Bearing]:
+    return [replace(b, sigma=max(b.sigma, SMALLEST_SIGMA)) for b in bearings]
+
+
+def _nodes(prior: ErrorPrior, bearings: Sequence[Bearing]) -> Nodes:
+    return nodes(prior, min(b.sigma for b in bearings), len(bearings))
+
+
+def learned(flights: Iterable[FloatArray], unknown: ErrorPrior) -> ErrorPrior:
+    """The prior for the next flight. flights: (t, k, e) log evidence each, at the values of `unknown`, which is assumed
+    of a source that never flew."""
+    flat = np.einsum("t,k,e->tke", unknown.spread_weight, unknown.scale_weight, unknown.rate_weight)
+    log = sum(flights, start=np.zeros(flat.shape))
+    mass = flat * np.exp(log - log.max())
+    mass = (1.0 - SURPRISE) * mass / mass.sum() + SURPRISE * flat
     return replace(
         unknown,
-        spread_weight=_posterior(unknown.spread_weight, spread),
-        scale_weight=_posterior(unknown.scale_weight, scale),
-        rate_weight=_posterior(unknown.rate_weight, rate),
+        spread_weight=mass.sum(axis=(1, 2)),
+        scale_weight=mass.sum(axis=(0, 2)),
+        rate_weight=mass.sum(axis=(0, 1)),
     )
-
-
-def _posterior(prior: FloatArray, log_evidence: FloatArray) -> FloatArray:
-    mass = prior * np.exp(log_evidence - log_evidence.max())
-    return (1.0 - SURPRISE) * mass / mass.sum() + SURPRISE * prior

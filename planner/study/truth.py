@@ -17,13 +17,14 @@ import numpy as np
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
-from planner.belief.learning import FlightEvidence, flight_evidence, learned
+from planner.belief.learning import flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.geometry import bounds, contains, distance_to_convex
 from planner.motion import flight_time
 from planner.policy.fisher import fisher
 from planner.study.error_worlds import ROWS, Row
+from planner.study.errors import StudyError
 from planner.types import Bearing, FloatArray, InconsistentBearings, LocalizationRule, Problem
 
 Model = Literal["joint", "independent"]
@@ -32,6 +33,10 @@ DOUBT = 0.1
 SOURCES = ("craft", "somebody else")
 BEYOND = 3.0
 """Times the stated error."""
+UNKNOWN, TOLD = "nothing", "the true errors"
+"""What may be known of a sensor before, besides what flights taught."""
+SMALLEST_TOLD = np.deg2rad(0.25)
+FEWEST_TOLD = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +62,7 @@ class Truth:
     """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1], the last two of those that claimed.
 
     in_c95_low, in_c95_high: Wilson's 95 % interval. mean_s: s until the claim or the last bearing. bias_inside: share
-    in which the bias was within two of its stated standard deviations.
+    in which the bias was within two of its stated standard deviations. prior: what was known of the sensor before.
     """
 
     row: str
@@ -73,6 +78,7 @@ class Truth:
     error_mean_m: float
     stated_mean_m: float
     bias_inside: float
+    prior: str = UNKNOWN
 
     def as_json(self) -> dict[str, Any]:
         """Shares and times rounded to what the missions can tell; None: no mission told."""
@@ -108,14 +114,32 @@ def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -
 
     Only bearings are learned from: where the emitter was, nobody says.
     """
-    found: list[FlightEvidence] = []
+    found: list[FloatArray] = []
     prior, nowhere = unknown, joint_prior(search.problem)
     for seed in seeds:
         _, belief = _flown(search, row, seed, "joint", replace(nowhere, otherwise=prior))
         assert isinstance(belief, JointBelief)
-        found.append(flight_evidence(belief.errors[0]))
+        found.append(flight_evidence(belief, belief.errors[0].source))
         prior = learned(found, unknown)
     return prior
+
+
+def told(row: Row) -> ErrorPrior:
+    """The errors that the row's sensors are drawn from, for comparison with what was learned of them.
+
+    StudyError for a row whose errors are not made of a bias, a scale and outliers alone.
+    """
+    if row.walls or row.antenna != "measured" or row.placing != "right":
+        raise StudyError(f"the errors of {row.name} are no bias, scale and outliers that could be told")
+    one = np.ones(1)
+    return ErrorPrior(
+        spread=np.array([max(row.bias_sd, SMALLEST_TOLD)]),
+        spread_weight=one,
+        scale=np.array([row.own_sd / row.stated_sd]),
+        scale_weight=one,
+        rate=np.array([max(row.outliers, FEWEST_TOLD)]),
+        rate_weight=one,
+    )
 
 
 def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelief) -> tuple[Claim, GridBelief]:
@@ -155,7 +179,7 @@ ROWS_SEED = 14
 """Keeps these missions' chance apart from that of other studies with the same seeds."""
 
 
-def truth_of(row: str, model: Model, claims: Sequence[Claim]) -> Truth:
+def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNOWN) -> Truth:
     """Sums up the missions of a row; shares of claims are NaN when there is none."""
     claimed = [c for c in claims if c.claimed]
     nothing = float("nan")
@@ -176,6 +200,7 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim]) -> Truth:
         error_mean_m=float(np.mean([c.error_m for c in claimed])) if claimed else nothing,
         stated_mean_m=float(np.mean([c.stated_m for c in claimed])) if claimed else nothing,
         bias_inside=float(np.mean([abs(c.bias_off_deg) <= 2.0 * c.bias_sd_deg for c in known])) if known else nothing,
+        prior=prior,
     )
 
 

@@ -8,12 +8,15 @@ Every row is `crossfix study truth --row ROW`; the independent model flies the s
 from __future__ import annotations
 
 import argparse
+import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
 
 from backend.cli.truth import study_row
 from planner.study.error_worlds import ROWS
-from planner.study.truth import Truth
+from planner.study.truth import TOLD, UNKNOWN, Truth
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
@@ -21,10 +24,13 @@ from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 
 JUDGED = ("independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20", "walls", "walls_bias5")
 """The rows of which something is wanted; a compass that is right may be better than its prior."""
+LEARNED = ("right", "bias5", "bias5_outliers8")
+"""The rows that are flown again after flights have taught, and told the true errors."""
 
 COLUMNS = (
     Column(name="row"),
     Column(name="errors believed"),
+    Column(name="known before"),
     Column(name="missions"),
     Column(name="claimed, %", decimals=1),
     Column(name="truth in C95, %", decimals=1),
@@ -46,6 +52,7 @@ def row(found: Truth) -> tuple[Cell, ...]:
     return (
         found.row,
         found.model,
+        found.prior,
         found.missions,
         100.0 * found.claimed,
         inside,
@@ -59,10 +66,10 @@ def row(found: Truth) -> tuple[Cell, ...]:
 
 
 def figures(found: Sequence[Truth]) -> list[Figure]:
-    """Of the joint model; something is wanted of the rows in `JUDGED`."""
+    """Of the joint model; something is wanted of the rows in `JUDGED`, and of the time that flights have taught."""
     made: list[Figure] = []
     for one in found:
-        if one.model != "joint" or not one.claimed:
+        if one.model != "joint" or one.prior != UNKNOWN or not one.claimed:
             continue
         note, half = f"{one.missions} missions", round(50.0 * (one.in_c95_high - one.in_c95_low), 1)
         inside, beyond = round(100.0 * one.in_c95, 1), round(100.0 * one.beyond_3x, 2)
@@ -73,22 +80,50 @@ def figures(found: Sequence[Truth]) -> list[Figure]:
         else:
             made.append(plain(f"truth in C95, {one.row}", inside, "%", ci95=half, note=note))
         made.append(plain(f"time until the claim, {one.row}", round(one.mean_s), "s", note=note))
-    return made
+    return [*made, *_lessons(found)]
+
+
+def _lessons(found: Sequence[Truth]) -> Iterator[Figure]:
+    """What learning from flights costs against a search that was told the true errors; the demo's compass is right."""
+    told = {one.row: one for one in found if one.prior == TOLD}
+    for one in found:
+        if not one.prior.endswith("flights") or one.row not in told:
+            continue
+        known, note = told[one.row], f"{one.missions} and {told[one.row].missions} missions"
+        slower = round(100.0 * (one.mean_s / known.mean_s - 1.0), 1)
+        yield wanted("truth_learned", slower, of=f"{one.row}, {one.prior}", note=note)
+        if one.row == "right":
+            yield wanted("truth_right", round(one.mean_s), of=one.prior, note=note)
+
+
+def _piece(kept: Path | None, name: str, model: str, flights: int, told: bool, missions: int) -> Truth:
+    """The row, or what was kept of it: a thousand missions of each take hours."""
+    path = None if kept is None else kept / f"{name}-{model}-{'told' if told else flights}-{missions}.json"
+    if path is not None and path.exists():
+        return Truth(**json.loads(path.read_text()))
+    print(path.name if path is not None else name, file=sys.stderr, flush=True)
+    found = study_row(name, missions, model, flights=flights, told=told)
+    if path is not None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(asdict(found)))
+    return found
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Count what the claims of simulated searches are worth.")
     parser.add_argument("--missions", type=int, default=1000)
-    parser.add_argument("--only", default="", help="rows whose name contains this")
+    parser.add_argument("--only", default="", help="rows whose name contains one of these parts")
     parser.add_argument("--models", default="joint,independent", help="what is believed of the errors")
+    parser.add_argument("--flights", type=int, default=30, help="that teach the rows of LEARNED; 0: no such rows")
+    parser.add_argument("--pieces", type=Path, help="folder that keeps each row as soon as it was flown, to go on from")
     add_out(parser)
     arguments = parser.parse_args()
-    begun = begin(__file__)
-    found: list[Truth] = []
-    for name in (name for name in ROWS.by_name if arguments.only in name):
-        for model in arguments.models.split(","):
-            print(name, model, file=sys.stderr, flush=True)
-            found.append(study_row(name, arguments.missions, model))
+    begun, models = begin(__file__), arguments.models.split(",")
+    names = [name for name in ROWS.by_name if any(part in name for part in arguments.only.split(","))]
+    found = [_piece(arguments.pieces, name, model, 0, False, arguments.missions) for name in names for model in models]
+    for name in (name for name in LEARNED if name in names and arguments.flights):
+        found.append(_piece(arguments.pieces, name, "joint", arguments.flights, False, arguments.missions))
+        found.append(_piece(arguments.pieces, name, "joint", 0, True, arguments.missions))
     table = Table(name="truth", columns=COLUMNS, rows=tuple(row(one) for one in found))
     print(markdown(table))
     write(arguments.out, "truth", "Truth at the claim", begun, figures(found), tables=[table], page="truth.md")

@@ -40,9 +40,18 @@ def test_earlier_flights_are_learned_from() -> None:
     assert Truth(**json.loads(out)).claimed == 1.0
 
 
+def test_a_search_that_is_told_the_true_errors_says_so() -> None:
+    code, out, _ = run("--row", "right", "--missions", "1", "--told")
+    assert code == 0
+    assert "joint errors, the true errors known before: 1 missions" in out
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
+        (("--row", "bias5", "--told", "--flights", "3"), "--told goes with the joint model"),
+        (("--row", "bias5", "--told", "--model", "independent"), "--told goes with the joint model"),
+        (("--row", "walls", "--told"), "the errors of walls"),
         (("--row", "bias6"), "there is no row 'bias6'"),
         (("--row", "bias5", "--missions", "0"), "--missions must be 1 or more"),
         (("--row", "bias5", "--model", "some"), "there is no model 'some'"),

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import pytest
 from ground import AREA, HOME, towards
 
-from backend.events import FIRST_CRAFT, BearingMeasured, PersonSource
+from backend.events import FIRST_CRAFT, AntennaChecked, BearingMeasured, CheckFact, PersonSource
 from backend.ports import Lesson
-from backend.search.lessons import errors_now, knowing, lesson, mean_bias
+from backend.search.lessons import errors_now, knowing, lesson, lesson_of_check, mean_bias
 from backend.search.localization import localization
 from backend.search.planning import foreseen
-from backend.search.source_priors import prior_in
+from backend.search.source_priors import prior_in, priors_of
 from backend.search.state import EmitterState, SearchState
 from backend.search.task import search_task
 from backend.spec import FIRST_EMITTER, LearnedErrors, MissionSpec, SensorSpec
+from hardware.reasons.antenna import AntennaAgrees
 
 TARGET = (120.0, 60.0)
 AROUND = ((60.0, -40.0), (180.0, -40.0), (200.0, 100.0), (40.0, 110.0), (120.0, 160.0), (10.0, 20.0))
@@ -122,6 +124,42 @@ def test_independent_errors_learn_nothing_and_are_told_nothing() -> None:
     assert taught("m1", bearings(0.0), plain) is None
 
 
+def check(measured: float, ok: bool = True) -> AntennaChecked:
+    agrees = AntennaAgrees(measured_deg=measured, true_deg=2.0, quality=0.98)
+    return AntennaChecked(check=CheckFact(name="antenna", ok=ok, reason=agrees, blocking=True), emitter=HOME, by="ann")
+
+
+def test_antenna_checks_before_a_known_emitter_narrow_the_bias_and_nothing_else() -> None:
+    one = lesson_of_check("m1", check(358.0), JOINT)
+    assert one is not None
+    assert (one.bias_deg, one.bearings) == (pytest.approx(-4.0), 1)
+    right = lesson_of_check("m1", check(2.5), JOINT)
+    assert right is not None
+    unknown, known, worse = (prior_in(now(some)) for some in ([], [right] * 8, [one] * 8))
+    assert known.bias_sd < worse.bias_sd < unknown.bias_sd
+    assert known.scale_weight == pytest.approx(unknown.scale_weight, abs=1e-3)
+    assert known.rate_weight == pytest.approx(unknown.rate_weight, abs=1e-3)
+
+
+def test_a_check_that_failed_teaches_nothing() -> None:
+    assert lesson_of_check("m1", check(2.5, ok=False), JOINT) is None
+
+
+def test_lessons_of_before_count_their_three_values_one_by_one() -> None:
+    old = [replace(one, together=()) for one in lessons(0.0, 10)]
+    known = prior_in(now(old))
+    assert known.bias_sd < prior_in(now([])).bias_sd
+    assert known.scale_weight[0] > 0.3
+
+
+def test_other_sources_are_assumed_to_be_what_they_were_when_the_mission_was_written() -> None:
+    learned = now([])
+    before = learned.model_copy(update={"rate": [0.003, 0.02, 0.05, 0.2], "rate_weight": [0.07, 0.18, 0.42, 0.33]})
+    rates = [priors_of(JOINT.model_copy(update={"learned": one}))[1].rate.tolist() for one in (before, learned)]
+    assert rates[0] == pytest.approx([0.003, 0.02, 0.05, 0.2])
+    assert rates[1] == pytest.approx([0.003, 0.02, 0.05, 0.1, 0.2])
+
+
 def test_a_flight_without_a_bearing_teaches_nothing() -> None:
     assert taught("m1", ()) is None
     assert mean_bias([]) is None
@@ -148,8 +186,8 @@ def test_the_mean_of_the_flights_weighs_what_each_knew_and_says_how_they_differ(
     ("change", "said"),
     [
         ({"scale": [1.0]}, "scale: 1 values, 3 weights"),
-        ({"rate_weight": [0.0, 0.0, 0.0, 0.0]}, "rate_weight: all are zero"),
-        ({"rate": [0.0, 0.1, 0.2, 0.3]}, "greater than 0"),
+        ({"rate_weight": [0.0, 0.0, 0.0, 0.0, 0.0]}, "rate_weight: all are zero"),
+        ({"rate": [0.0, 0.1, 0.2, 0.3, 0.4]}, "greater than 0"),
     ],
 )
 def test_knowledge_that_makes_no_sense_is_refused(change: dict[str, list[float]], said: str) -> None:

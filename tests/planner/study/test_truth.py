@@ -7,7 +7,7 @@ import pytest
 
 from planner.study.error_worlds import ROWS, Row, Sensor, Wall
 from planner.study.errors import StudyError
-from planner.study.truth import Claim, Search, fly, missions, row_named, truth_of, wilson
+from planner.study.truth import Claim, Search, fly, missions, row_named, told, truth_of, wilson
 from planner.types import LinearConstantMotion, LocalizationRule, Problem
 
 AREA = np.array([[-156.0, 0.0], [156.0, 0.0], [156.0, 200.0], [-156.0, 200.0]])
@@ -122,6 +122,17 @@ def test_a_mission_that_never_claims_is_counted_as_such_and_ends():
     found = truth_of("bias5", "joint", [fly(hopeless, row_named("bias5"), 1)])
     assert (found.claimed, found.bearings_mean) == (0.0, 3.0)
     assert found.as_json()["in_c95"] is None
+
+
+def test_what_a_search_is_told_is_what_the_row_draws_from():
+    prior = told(row_named("bias5_outliers20"))
+    assert np.rad2deg(prior.bias_sd) == pytest.approx(5.3)
+    assert (prior.scale.tolist(), prior.rate.tolist()) == ([1.0], [0.2])
+    right = told(row_named("right"))
+    assert right.scale[0] == pytest.approx(1.2 / 2.5)
+    assert (0.0 < right.bias_sd < np.deg2rad(0.5), 0.0 < right.rate[0] < 0.01) == (True, True)
+    with pytest.raises(StudyError, match="walls"):
+        told(row_named("walls"))
 
 
 def test_shares_are_of_the_claims():
