@@ -3,8 +3,8 @@
 V(b, p) = min_a t(p, a) + G(b, a),   G(b, a) = t_m + E_z V(b', a) where b' is not yet localized (Bellman's equation of
 4.5 and 4.11 for a belief that is a Gaussian after every bearing). Lengths are in units of the threshold inside.
 
-A table takes a minute or more of one processor (planner.study.value_cache keeps it on disk); that of the suggested
-mission comes with the package (SHIPPED). Plans use it and those that are kept in memory (`keep`); while none fits,
+A table takes a minute or more of one processor (planner.study.value_cache keeps it on disk); those of the suggested
+mission come with the package (SHIPPED). Plans use it and those that are kept in memory (`keep`); while none fits,
 `program_for` answers None and another base policy stands in.
 """
 
@@ -31,13 +31,15 @@ SWEEPS = 400
 TOLERANCE = 1e-2
 """Value iteration ends after SWEEPS, or when a sweep changes no value by TOLERANCE of a bearing's time."""
 
-SIGMA_FACTOR, TIME_FACTOR = 2.0, 2.0
+SIGMA_FACTOR, TIME_FACTOR = 2.0, 3.0
 """A table also serves problems whose sigma and measuring time are within these factors of its own: what a mission finds
 of its sensor, a joint belief's uncertain bias included, moves sigma as far."""
 
 SHIPPED = Path(__file__).with_name("shipped_table.npz")
 STEP = 1.0 / 32.0
-"""s, what the shipped table is rounded to; 16 bits of it reach 34 minutes."""
+"""s, what the shipped tables are rounded to; 16 bits of it reach 34 minutes."""
+SHIPPED_SIGMAS_DEG = (3, 7, 12)
+"""What a mission starts with, and what a sensor turns out to be: a compass that is known to be right, or not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,12 +95,17 @@ SHIPPED_KEY = ProgramKey(
 """The suggested mission: the numbers of the fielded system (Tables 6.1-6.3) and its fitted movement (6.4.3)."""
 
 
+def shipped_key(sigma_deg: float) -> ProgramKey:
+    """Of the suggested mission with another sensor."""
+    return replace(SHIPPED_KEY, sigma=math.radians(sigma_deg))
+
+
 @cache
-def shipped() -> ProgramTable:
-    """The table that is part of the package, so that the first plan of the usual mission waits for nothing."""
+def shipped() -> dict[ProgramKey, ProgramTable]:
+    """The tables that are part of the package, so that no plan of the usual mission waits for one."""
     with np.load(SHIPPED, allow_pickle=False) as stored:
-        steps = stored["steps"]
-    return ProgramTable(SHIPPED_KEY, STEP * steps.astype(np.float64))
+        steps = {shipped_key(degrees): stored[str(degrees)] for degrees in SHIPPED_SIGMAS_DEG}
+    return {key: ProgramTable(key, STEP * values.astype(np.float64)) for key, values in steps.items()}
 
 
 def rounded(table: ProgramTable) -> NDArray[np.uint16]:
@@ -120,10 +127,10 @@ def keep(table: ProgramTable) -> None:
 def program_for(problem: Problem) -> ProgramTable | None:
     """The table at hand that is made for this problem, else the nearest that serves it, else None."""
     wanted = key_of(problem)
-    exact = shipped() if wanted == SHIPPED_KEY else _kept.get(wanted)
+    at_hand = {**_kept, **shipped()}
+    exact = at_hand.get(wanted)
     if exact is not None:
         return exact
-    at_hand = {**_kept, SHIPPED_KEY: shipped()}
     serving = [table for key, table in at_hand.items() if _apart(key, wanted) <= 1.0]
     return min(serving, key=lambda table: _apart(table.key, wanted), default=None)
 
@@ -178,4 +185,5 @@ def motion_numbers(motion: Motion) -> tuple[bool, float, float, float]:
 
 
 if __name__ == "__main__":
-    np.savez_compressed(SHIPPED, steps=rounded(compute(SHIPPED_KEY)))
+    tables = {str(degrees): rounded(compute(shipped_key(degrees))) for degrees in SHIPPED_SIGMAS_DEG}
+    np.savez_compressed(SHIPPED, **tables)  # type: ignore[arg-type]  # numpy takes any names

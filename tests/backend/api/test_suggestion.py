@@ -1,5 +1,10 @@
 """The mission that is suggested to everybody: flown by our own planner, whose table nobody has to wait for."""
 
+import math
+from dataclasses import replace
+
+import pytest
+
 from backend.api.suggestion import suggested_mission
 from backend.search.forecast import preview
 from backend.search.localization import localization
@@ -25,8 +30,16 @@ def test_a_specification_that_names_no_planner_means_the_one_it_was_flown_with()
 def test_its_table_comes_with_the_package_so_that_no_first_plan_is_made_meanwhile():
     task = localization(suggested_mission(HOME), HOME)
     assert key_of(task.problem) == SHIPPED_KEY
-    assert program_for(task.problem) is shipped()
+    assert program_for(task.problem) is shipped()[SHIPPED_KEY]
     assert not isinstance(preview(task, HOME, threads=1).reason, PlannedMeanwhile)
+
+
+@pytest.mark.parametrize("sigma_deg", [1.6, 2.5, 5.0, 9.0, 15.0, 23.0])
+@pytest.mark.parametrize("measurement_time", [12.0, 30.0, 80.0])
+def test_what_a_flight_finds_of_its_sensor_needs_no_other_table(sigma_deg, measurement_time):
+    problem = localization(suggested_mission(HOME), HOME).problem
+    found = replace(problem, sigma=math.radians(sigma_deg), measurement_time=measurement_time)
+    assert program_for(found) in shipped().values()
 
 
 def test_several_emitters_are_planned_for_with_it():

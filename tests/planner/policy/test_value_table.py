@@ -48,7 +48,7 @@ def test_a_near_table_serves_and_a_far_one_does_not():
     keep(table(replace(PROBLEM, sigma=PROBLEM.sigma * 1.4)))
     assert program_for(PROBLEM) is near
     assert program_for(replace(PROBLEM, sigma=PROBLEM.sigma * 3.0)) is None
-    assert program_for(replace(PROBLEM, measurement_time=60.0)) is None
+    assert program_for(replace(PROBLEM, measurement_time=90.0)) is None
 
 
 @pytest.mark.parametrize(
