@@ -117,9 +117,10 @@ def plan_several(
 ) -> Decision:
     """The next place to measure from (m ENU), for all the wanted emitters at once.
 
-    options: every one of the sample paths (`paths_among`) is a rollout of each emitter; independent paths (`pmc`) are drawn as
-    common ones. without: places that the operator refused. times: until the last one is localized if each is flown for
-    by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or reachable.
+    options: every one of the sample paths (`paths_among`) is a rollout of each emitter; independent paths (`pmc`) are
+    drawn as common ones. without: places that the operator refused. times: until the last one is localized if each is
+    flown for by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or
+    reachable.
     """
     simulations = [simulate(w.problem, w.belief, platform, base_policy=options.base_policy) for w in wanted]
     places = _places(wanted, simulations[0], without)
