@@ -117,6 +117,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const { missionId } = route;
   const { spec, bearings, ended } = mission.value;
   const [reporter, setReporter] = useState(readReporter);
+  const [unnamed] = useState(reporter.name === "");
   const [here, setHere] = useState<LonLat | null>(null);
   const [bearing, setBearing] = useState<number | null>(null);
   const [mode, setMode] = useState<"here" | "direction">("here");
@@ -270,7 +271,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           </select>
         </label>
       )}
-      <details class="report-who" open={!named}>
+      <details class="report-who" open={unnamed && signedIn === null}>
         <summary>{signedIn ?? (reporter.name || t("report.who"))}</summary>
         {signedIn === null && (
           <label>
