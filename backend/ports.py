@@ -18,6 +18,14 @@ ReceiverState = Literal["ok", "silent", "off", "lost"]
 
 
 @dataclass(frozen=True, slots=True)
+class Kept:
+    """How many there are of something that is stored, and what they take."""
+
+    number: int
+    size_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
 class TrackPoint:
     """One thinned point of the flown track (2 Hz)."""
 
@@ -177,7 +185,8 @@ class OrderStatus:
 @dataclass(frozen=True, slots=True)
 class CraftStatus:
     """What a craft does now, and the health of its parts. mission_id None: it flies for none; phase is not "ground"
-    when it is in the air all the same. order None: nothing was ordered, or something else has come of it."""
+    when it is in the air all the same. order None: nothing was ordered, or something else has come of it.
+    resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed."""
 
     craft_id: str
     mission_id: str | None
@@ -187,6 +196,7 @@ class CraftStatus:
     receiver_age_s: float | None
     battery_to_return_percent: float | None
     order: OrderStatus | None = None
+    resume_refused: Reason | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ Defaults: the field system of spec section 8.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, FailFast, Field, model_validator
 
 from hardware.readings import Latitude, Longitude, Place
 from planner.options import FIELD, BasePolicy, DiscreteSelection, Estimator, Method, PlannerOptions, Sampling
@@ -20,7 +20,11 @@ class Model(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", json_schema_serialization_defaults_required=True)
 
 
+T = TypeVar("T")
+
 LonLat = tuple[Longitude, Latitude]
+Listed = Annotated[list[T], FailFast()]
+"""Of thousands of wrong positions the first is named."""
 Positive = Annotated[float, Field(gt=0, le=1e12, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, le=1e12, allow_inf_nan=False)]
 
@@ -29,14 +33,14 @@ class Polygon(Model):
     """GeoJSON Polygon: linear rings, the first the outline, the others holes."""
 
     type: Literal["Polygon"] = "Polygon"
-    coordinates: list[list[LonLat]]
+    coordinates: Listed[Listed[LonLat]]
 
 
 class MultiPolygon(Model):
     """GeoJSON MultiPolygon."""
 
     type: Literal["MultiPolygon"] = "MultiPolygon"
-    coordinates: list[list[list[LonLat]]]
+    coordinates: Listed[Listed[Listed[LonLat]]]
 
 
 Area = Annotated[Polygon | MultiPolygon, Field(discriminator="type")]
@@ -181,8 +185,9 @@ class LearnedErrors(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-    flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+    bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+    and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+    taught; the server writes it down when a mission is drafted, edited and started.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.options import FIELD, Estimator
+from planner.options import FIELD, CellLikelihood, Estimator
 from planner.reason import ReasonedError
 from planner.reasons import ChoiceReason, NotYetReason, RefusalReason
 
@@ -134,7 +134,8 @@ class Problem:
     enter or cross. sigma: rad, the bearing noise the planner assumes. threshold: mu, m. measurement_time: t_m, s.
     standoff: r_min, m: actions nearer than this to C95 are removed (0: unconstrained).
     action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
-    the flight area instead (the field system: 15 m).
+    the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
+    rollouts.
     """
 
     area: Region
@@ -148,6 +149,7 @@ class Problem:
     action_grid: tuple[int, int] = (20, 20)
     action_spacing: float | None = None
     estimator: Estimator = FIELD.estimator
+    likelihood: CellLikelihood = "centre"
     prior: Prior = field(default_factory=UniformPrior)
 
 

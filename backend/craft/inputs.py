@@ -29,10 +29,19 @@ class StartFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class Foretold:
+    """What the operator was told of a place before choosing it: seconds until localized by way of it."""
+
+    mean_s: float
+    p90_s: float | None
+    rollouts: int
+
+
+@dataclass(frozen=True, slots=True)
 class CraftOrdered:
     """An operator's command. objections: vetoes found beforehand (safety of an override, a pilot who has not given
     control back when it is to be resumed, another mission flying). on_ground: the vehicle says that it stands
-    there. altitude_amsl_m: at which an override would be flown to."""
+    there. altitude_amsl_m: at which an override would be flown to; foretold: what was said of its place before."""
 
     by: str
     command: ForCraft
@@ -40,6 +49,7 @@ class CraftOrdered:
     start: StartFacts | None = None
     on_ground: bool = False
     altitude_amsl_m: float | None = None
+    foretold: Foretold | None = None
 
 
 @dataclass(frozen=True, slots=True)

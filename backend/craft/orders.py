@@ -20,7 +20,7 @@ from backend.commands import (
 from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, TakeControl
 from backend.craft.inputs import CraftOrdered
 from backend.craft.low_battery import keep_holding
-from backend.craft.state import AUTOMATIC, HOMEWARD
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
 from backend.craft.step import (
     CraftStep,
     cancel_timers,
@@ -44,10 +44,11 @@ from backend.events import (
     ResumeOrdered,
     ReturnOrdered,
 )
-from backend.reasons import PreflightFailed, refusals
+from backend.reasons import PreflightFailed, Reason, refusals
 from backend.reasons.flight import Ordered
 from backend.reasons.refused import Refused
 from backend.reasons.safety import NoLink, PilotControls
+from backend.search.state import SearchState
 from hardware.authority import OperatorTookControl, authority_after
 
 
@@ -126,13 +127,9 @@ def _hold(step: CraftStep, given: CraftOrdered) -> None:
 
 def _resume(step: CraftStep, given: CraftOrdered) -> None:
     craft, search = step.craft, step.search
-    _refuse_not_started(step)
-    if search.stage == "ended" and craft.phase != "manual":
-        raise Refused(refusals.MissionOver())
-    if craft.phase not in ("hold", "manual"):
-        raise Refused(refusals.NotHeld())
-    if "vehicle" in craft.links_down:
-        raise Refused(NoLink())
+    refused = resume_refusal(craft, search)
+    if refused is not None:
+        raise Refused(refused)
     _refuse_objections(step, given)
     step.record(ResumeOrdered(craft_id=craft.craft_id, by=given.by))
     _take_control(step, given.by)
@@ -203,6 +200,7 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
     in_the_way = craft.phase in AUTOMATIC and craft.took_off
     if in_the_way:
         step.do(CancelWork())
+    told = given.foretold
     number = step.search.place_number + 1 if craft.chosen is None or craft.attempt > 0 else craft.place_number
     step.record(
         PlanChosen(
@@ -211,10 +209,10 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
             place=command.place,
             source="operator",
             reason=Ordered("override", given.by),
-            expected_time_s=None,
-            time_90_s=None,
+            expected_time_s=None if told is None else told.mean_s,
+            time_90_s=None if told is None else told.p90_s,
             candidates=[],
-            rollouts=0,
+            rollouts=0 if told is None else told.rollouts,
             plan_ms=0.0,
             by=given.by,
             altitude_amsl_m=given.altitude_amsl_m,
@@ -260,9 +258,24 @@ def _take_control(step: CraftStep, by: str) -> None:
     step.do(TakeControl())
 
 
+def resume_refusal(craft: CraftState, search: SearchState) -> Reason | None:
+    """Why resuming is refused whatever safety says, None when it is not."""
+    if not craft.engaged:
+        return _not_started(search)
+    if search.stage == "ended" and craft.phase != "manual":
+        return refusals.MissionOver()
+    if craft.phase not in ("hold", "manual"):
+        return refusals.NotHeld()
+    return NoLink() if "vehicle" in craft.links_down else None
+
+
+def _not_started(search: SearchState) -> Reason:
+    return refusals.NotStarted() if search.stage in ("draft", "ready") else refusals.MissionOver()
+
+
 def _refuse_not_started(step: CraftStep) -> None:
     if not step.craft.engaged:
-        raise Refused(refusals.NotStarted() if step.search.stage in ("draft", "ready") else refusals.MissionOver())
+        raise Refused(_not_started(step.search))
 
 
 def _refuse_out_of_reach(step: CraftStep) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 from dataclasses import dataclass
 
+from backend.commands import Resume
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import channels_of
+from backend.craft.orders import resume_refusal
 from backend.craft.safety import battery_to_return_percent
 from backend.craft.state import CraftState
 from backend.mission.equipment import MissionEquipment
@@ -72,10 +74,15 @@ class Display:
             needed = battery_to_return_percent(
                 runner.limits, position, situation.endurance, situation.telemetry.altitude_relative_m
             )
+        own = active.state.crafts[craft.craft_id]
+        refused = None
+        if own.phase in ("hold", "manual"):
+            refused = resume_refusal(own, active.state.search) or next(iter(runner.objections(Resume())), None)
         return CraftStatus(
             craft_id=craft.craft_id,
             mission_id=active.mission_id,
-            phase=active.state.crafts[craft.craft_id].phase,
+            phase=own.phase,
+            resume_refused=refused,
             order=_order(state),
             receiver=runner.listening.state,
             receiver_power_db=None if last is None else last.power_db,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from backend.commands import Author, Command
-from backend.craft.inputs import CraftInput, StartFacts
+from backend.craft.inputs import CraftInput, Foretold, StartFacts
 from backend.reasons import Reason
 from backend.search.inputs import SearchInput
 
@@ -27,6 +27,7 @@ class Context:
     start: StartFacts | None = None
     on_ground: bool = False
     altitude_amsl_m: float | None = None
+    foretold: Foretold | None = None
 
 
 @dataclass(frozen=True, slots=True)

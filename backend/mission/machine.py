@@ -199,7 +199,13 @@ def _order(now: _Transition, given: Commanded, command: ForCraft) -> Reason | No
     for craft_id in wanted:
         context = given.contexts.get(craft_id, Context())
         ordered = CraftOrdered(
-            given.author.name, command, context.objections, context.start, context.on_ground, context.altitude_amsl_m
+            given.author.name,
+            command,
+            context.objections,
+            context.start,
+            context.on_ground,
+            context.altitude_amsl_m,
+            context.foretold,
         )
         refused.append(now.to_craft(craft_id, ordered))
     return None if None in refused else refused[0]

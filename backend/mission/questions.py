@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from backend.craft.checklist import home_of
+from backend.craft.inputs import Foretold
 from backend.craft.safety import limits_of, standing_vetoes, staying_vetoes
 from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
@@ -17,7 +18,7 @@ from backend.reasons.search import AskedFromTooFar
 from backend.search.advice import FARTHEST_M, Advice, advise, from_area_m
 from backend.search.area import centre_of, corner_of
 from backend.search.errors import MissionConflict, MissionInputError
-from backend.search.forecast import Forecast, Preview, forecast, preview
+from backend.search.forecast import Comparison, Forecast, Preview, compare, forecast, preview
 from backend.search.localization import localization
 from backend.search.other_area import Outlook, outlook, task_in
 from backend.search.planning import needs_program
@@ -44,8 +45,11 @@ class Questions:
     records: Records
     flights: Flights
 
-    async def expected_time(self, mission_id: str, place: Place) -> Forecast:
-        """The expected time to localization when a craft measured at this place next. Raises MissionNotFound."""
+    async def expected_time(
+        self, mission_id: str, place: Place, instead_of: Place | None = None
+    ) -> tuple[Forecast, Comparison | None]:
+        """The expected time to localization when a craft measured at this place next, and how it compares with another
+        place when one is named. Raises MissionNotFound."""
         runner = self.flights.running(mission_id)
         search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
         task = runner.task if runner else await self._task_on_ground(search)
@@ -57,10 +61,14 @@ class Questions:
                 return craft.work.vetoes_against(where, way)
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
-        emitter = search.sought[0]
-        return await asyncio.to_thread(
-            forecast, task.emitters[emitter.emitter_id], emitter.bearings, start, place, vetoes
-        )
+        emitters = search.wanted or search.sought[:1]
+        wanted = [(task.emitters[one.emitter_id], one.bearings) for one in emitters]
+        found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
+        if runner is not None and found.mean_s is not None:
+            runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
+        if instead_of is None:
+            return found, None
+        return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
 
     async def advise(
         self, mission_id: str, here: Place, speed_m_s: float, emitter_id: str | None

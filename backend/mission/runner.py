@@ -11,7 +11,7 @@ import logging
 from collections.abc import Sequence
 from functools import partial
 
-from backend.commands import Author, CommandRequest, ForCraft
+from backend.commands import Author, CommandRequest, ForCraft, Override
 from backend.craft import inputs as craft_inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.measuring import Measured
@@ -27,6 +27,7 @@ from backend.mission.inputs import Commanded, Context, Input, ToCraft
 from backend.mission.machine import transition
 from backend.mission.outbox import Outbox
 from backend.mission.state import MissionState
+from backend.mission.told_forecasts import ToldForecasts
 from backend.ports import TrackPoint
 from backend.reasons import Reason
 from backend.search.effects import Record, SearchElsewhere, UpdateBelief
@@ -58,6 +59,7 @@ class MissionRunner:
         self._beliefs = Beliefs(task, self.give)
         self.crafts: dict[str, CraftRunner] = {}
         self.finished = asyncio.Event()
+        self.told = ToldForecasts()
 
     @property
     def state(self) -> MissionState:
@@ -127,6 +129,7 @@ class MissionRunner:
                     craft.objections(command),
                     on_ground=craft.equipment.vehicle.telemetry().in_air is False,
                     altitude_amsl_m=craft.altitude_of(command),
+                    foretold=self.told.of(self._state.search, command.place) if isinstance(command, Override) else None,
                 )
                 for craft_id, craft in self.crafts.items()
             }

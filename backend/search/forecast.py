@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from backend.events import BearingMeasured, CandidateFact
 from backend.reasons import Reason, carried
 from backend.search.localization import Localization
-from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of_ten, way_to
+from backend.search.planning import candidate_facts, cost_of, decide, foreseen, in_nine_of_ten, way_to
 from backend.spec import Place
+from planner.comparison import difference_between, difference_together, rules_against
+from planner.policy.several import Wanted
 from planner.types import PlannerError
 
 Vetoes = Callable[[Place, Sequence[tuple[float, float]]], tuple[Reason, ...]]
@@ -31,6 +34,23 @@ class Forecast:
     std_error_s: float | None
     p90_s: float | None
     rollouts: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """difference_s: by which a place takes longer than another, on the same sample paths; negative: it is quicker.
+
+    rules: why the planner may not choose the quicker place; empty for one that is not quicker.
+    """
+
+    difference_s: float
+    std_error_s: float
+    rules: tuple[Reason, ...] = ()
+
+    @property
+    def quicker(self) -> bool:
+        """By more than chance."""
+        return self.difference_s < -2.0 * self.std_error_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +77,37 @@ def forecast(
     against = vetoes(place, _way(task, start, end))
     reason = against[0] if against else cost.reason
     return Forecast(place, reason, cost.mean_s, cost.std_error_s, cost.p90_s, cost.rollouts)
+
+
+def compare(
+    wanted: Sequence[tuple[Localization, Sequence[BearingMeasured]]], platform: Place, place: Place, other: Place
+) -> Comparison | None:
+    """A place beside another by the measure of the mission's planner; None when one of them cannot be reached.
+
+    wanted: the emitters that are looked for, each with its counted bearings.
+    """
+    (task, measured), *more = wanted
+    start, here, there = (task.frame.to_enu(p) for p in (platform, place, other))
+    options = task.mission.planner.options
+    folded = [(one, facts, one.planning_belief(one.planner_bearings(facts))) for one, facts in wanted]
+    problems = [(foreseen(one.problem, facts, belief), belief) for one, facts, belief in folded]
+    together = bool(more) and options.method == "rollout"
+    try:
+        if together:
+            found = difference_together([Wanted(p, b) for p, b in problems], start, here, there, options)
+        else:
+            problem, belief = problems[0]
+            bearings = task.planner_bearings(measured)
+            found = difference_between(problem, belief, bearings, start, here, there, options)
+    except PlannerError:
+        return None
+    if not math.isfinite(found.mean):
+        return None
+    compared = Comparison(found.mean, found.std_error)
+    if not compared.quicker:
+        return compared
+    rules = () if together else rules_against(*problems[0], here)
+    return replace(compared, rules=tuple(carried(rule) for rule in rules))
 
 
 def _way(task: Localization, start: tuple[float, float], end: tuple[float, float]) -> list[tuple[float, float]]:

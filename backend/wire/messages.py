@@ -90,7 +90,8 @@ class OrderMessage(Model):
 
 
 class CraftStatusMessage(Model):
-    """mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same."""
+    """mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
+    resume_refused: while it holds or a pilot flies it, why resuming would be refused now."""
 
     craft_id: str
     mission_id: str | None
@@ -100,6 +101,7 @@ class CraftStatusMessage(Model):
     receiver_age_s: float | None
     battery_to_return_percent: float | None
     order: OrderMessage | None = None
+    resume_refused: Reason | None = None
 
 
 class StatusMessage(Model):

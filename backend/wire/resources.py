@@ -192,9 +192,23 @@ class ExportedMission(Model):
 
 
 class ExpectedTimeRequest(Model):
-    """What if the vehicle measured here next?"""
+    """What if the vehicle measured here next? instead_of: a place to compare it with, usually the planner's."""
 
     place: Place
+    instead_of: Place | None = None
+
+
+class PlacesCompared(Model):
+    """The place beside another, on the same simulated flights by the planner's own measure.
+
+    difference_s: by which it takes longer, negative when it is quicker. quicker: by more than chance. rules: then why
+    the planner may not choose it all the same.
+    """
+
+    difference_s: float
+    std_error_s: float
+    quicker: bool
+    rules: list[Reason]
 
 
 class ExpectedTime(Model):
@@ -210,6 +224,7 @@ class ExpectedTime(Model):
     std_error_s: float | None
     time_90_s: float | None
     rollouts: int
+    compared: PlacesCompared | None = None
 
 
 class Preview(Model):

@@ -20,8 +20,9 @@ import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
-from planner.options import PlannerOptions
+from planner.options import BasePolicy, PlannerOptions
 from planner.policy.actions import action_space
+from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import fisher
 from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, SELECTIONS
 from planner.policy.simulation import Simulation, simulate
@@ -122,7 +123,7 @@ def plan_several(
     flown for by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or
     reachable.
     """
-    simulations = [simulate(w.problem, w.belief, platform, base_policy=options.base_policy) for w in wanted]
+    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
     places = _places(wanted, simulations[0], without)
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
     budget, count = paths_among(options.budget, len(wanted)), 0
@@ -140,6 +141,34 @@ def plan_several(
         least = members[0].actions.costs
         result = _selection(options, budget, least)(together.sample, len(places), budget, chances[0])
     return _decision(places, result, together)
+
+
+def times_together(
+    wanted: Sequence[Wanted],
+    platform: tuple[float, float],
+    places: FloatArray,
+    options: PlannerOptions,
+    paths: int,
+) -> FloatArray:
+    """(k, paths) s: the mean of the emitters' times by way of each of the places (k, 2), m, on the same sample paths.
+
+    infinite by way of a place without a way to it.
+    """
+    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
+    allowed = len(_places(wanted, simulations[0], ()))
+    chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
+    members = [
+        _member(one, simulation, places, platform, rng, 0, standoff_among(one.problem, allowed, len(wanted)))
+        for one, simulation, rng in zip(wanted, simulations, chances, strict=True)
+    ]
+    chosen = np.arange(len(places))
+    return np.stack([member.costs(chosen, 0, paths) for member in members]).mean(axis=0)
+
+
+def _simulation(wanted: Wanted, platform: tuple[float, float], base_policy: BasePolicy) -> Simulation:
+    """Rollouts to the end: how long the last of them takes is not known from a program's mean values."""
+    followed, program = stands_on(wanted.problem, base_policy)
+    return simulate(wanted.problem, wanted.belief, platform, base_policy=followed, program=program)
 
 
 def _member(

@@ -51,8 +51,9 @@ from planner.reasons.refusal import (
     UnusableNumber,
     UnusableRing,
 )
+from planner.reasons.rule import BetweenPlaces, NearerThanStandoff, RuleReason, TellsLittleOfBias
 
-PlannerReason = ChoiceReason | NotYetReason | RefusalReason
+PlannerReason = ChoiceReason | NotYetReason | RefusalReason | RuleReason
 
 __all__ = [
     "AreaCrossesItself",
@@ -60,6 +61,7 @@ __all__ = [
     "BearingsDisagree",
     "BeliefOutOfStep",
     "BesideEllipse",
+    "BetweenPlaces",
     "BudgetTooSmall",
     "ChoiceReason",
     "CrossingAngleTooSmall",
@@ -73,6 +75,7 @@ __all__ = [
     "LongestLead",
     "MeanAtSensor",
     "MostInformation",
+    "NearerThanStandoff",
     "NoBearingYet",
     "NoPlaceInReach",
     "NoPlaceSeesBelief",
@@ -87,7 +90,9 @@ __all__ = [
     "QuickestPlaceFound",
     "RefusalReason",
     "RoutePlanner",
+    "RuleReason",
     "SoonestTogether",
+    "TellsLittleOfBias",
     "TooFewPlaces",
     "TooFewPlacesAgree",
     "TooManyPlaces",

@@ -165,8 +165,10 @@ def test_the_next_place_is_dragged_and_its_cost_seen_before_it_is_confirmed(flig
     expect(screen.part("proposal")).to_have_attribute("data-allowed", "true")
     expect(screen.part("proposal-cost")).to_contain_text("Localized in about")
     expect(screen.part("proposal")).to_contain_text(
-        re.compile("(longer than|shorter than|as long as) the planner's place")
+        re.compile("(longer than|quicker than|as quick as) the planner's place")
     )
+    compared = screen.part("proposal-compared").inner_text()
+    assert ("quicker than" in compared) == (screen.part("proposal-rule").count() > 0), "a quicker place says why not"
     assert flight.kinds().count("plan_chosen") == before, "what is dragged is flown to only after the slide"
     screen.page.keyboard.press("Escape")
     expect(screen.part("proposal")).to_have_count(0)

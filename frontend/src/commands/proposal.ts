@@ -9,8 +9,8 @@ export interface Proposal {
   place: Place;
   result: ExpectedTime | null;
   problem: Problem | null;
-  /** Expected time of the planner's place, asked at the same moment, s. */
-  compareS: number | null;
+  /** It was compared with the planner's own choice, not with what an operator chose before. */
+  withPlanner: boolean;
 }
 
 export const proposal = signal<Proposal | null>(null);
@@ -25,18 +25,15 @@ export function propose(place: Place): void {
   asking = new AbortController();
   const { signal: aborted } = asking;
   report("proposal", null);
-  proposal.value = { place, result: null, problem: null, compareS: null };
-  const planned = liveMission.peek().plan?.fact.place;
-  const mine = from.expectedTime(id, place, aborted);
-  const theirs = planned ? from.expectedTime(id, planned, aborted).catch(() => null) : Promise.resolve(null);
-  void Promise.all([mine, theirs]).then(
-    ([result, compare]) => {
-      if (!aborted.aborted) {
-        proposal.value = { place, result, problem: null, compareS: compare?.expected_time_s ?? null };
-      }
+  const planned = liveMission.peek().plan?.fact;
+  const withPlanner = planned?.source !== "operator";
+  proposal.value = { place, result: null, problem: null, withPlanner };
+  void from.expectedTime(id, place, aborted, planned?.place).then(
+    (result) => {
+      if (!aborted.aborted) proposal.value = { place, result, problem: null, withPlanner };
     },
     (error: unknown) => {
-      if (!aborted.aborted) proposal.value = { place, result: null, problem: asProblem(error), compareS: null };
+      if (!aborted.aborted) proposal.value = { place, result: null, problem: asProblem(error), withPlanner };
     },
   );
 }

@@ -11,7 +11,7 @@ import { formatArea } from "../units/quantities";
 import type { Area } from "../wire";
 import { coverage } from "./coverage";
 import { change, draft } from "./draft";
-import { add, remove, tool, type What, what } from "./drawing";
+import { add, remove, replaces, tool, type What, what } from "./drawing";
 import { firstEmitter, PRIOR } from "./emitter";
 import { FormField, Message, PlaceField } from "./FormField";
 import type { NumberField } from "./fields";
@@ -160,6 +160,17 @@ function DrawTools({ onTold }: { onTold: (lines: string[]) => void }) {
           ))}
         </select>
       </label>
+      {what.value === "area" && draft.value?.hasArea && !draft.value.suggested && (
+        <label class="check">
+          <input
+            type="checkbox"
+            data-testid="draw-replaces"
+            checked={replaces.value}
+            onChange={(e) => (replaces.value = e.currentTarget.checked)}
+          />
+          {t("edit.area.replaces")}
+        </label>
+      )}
       <button type="button" data-testid="draw-polygon" aria-pressed={tool.value === "polygon"} onClick={() => flip("polygon")}>
         {t("edit.area.draw")}
       </button>

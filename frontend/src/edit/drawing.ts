@@ -1,5 +1,6 @@
 // What the pointer draws on the map now: search area, fence or no-fly area, as polygon or rectangle, or corners moved.
 import { signal } from "@preact/signals";
+import * as api from "../sources/api";
 import { areaOf, polygonsOf, type Rings } from "../state/areas";
 import type { Area } from "../wire";
 import { type Draft, draft, update } from "./draft";
@@ -15,14 +16,27 @@ const zone = (rings: Rings): Area => ({ type: "Polygon", coordinates: rings });
 
 const keepOff = (now: Draft, zones: Area[]): void => update({ ...now, spec: set(now.spec, "flight.no_fly", zones) });
 
-/** Puts polygons into the draft: they replace the suggested area, else they are added. */
+/** What is drawn or imported takes the place of the area that is there, instead of joining it. */
+export const replaces = signal(false);
+
+/** Parts that overlap become one: their ground is searched, and counted, once. The server knows how. */
+async function unite(): Promise<void> {
+  const before = draft.peek();
+  if (!before || polygonsOf(before.spec.area).length < 2) return;
+  const united = await api.importArea(JSON.stringify(before.spec.area), "drawn.geojson").catch(() => null);
+  const now = draft.peek();
+  if (united && now?.spec.area === before.spec.area) update({ ...now, spec: { ...now.spec, area: united.area } });
+}
+
+/** Puts polygons into the draft: they replace the suggested area, or any when they are to, else they are added. */
 export function add(kind: What, polygons: readonly Rings[]): void {
   const now = draft.peek();
   if (!now || polygons.length === 0) return;
   const { area, flight } = now.spec;
   if (kind === "area") {
-    const joined = areaOf(now.hasArea && !now.suggested ? [...polygonsOf(area), ...polygons] : polygons)!;
+    const joined = areaOf(now.hasArea && !now.suggested && !replaces.peek() ? [...polygonsOf(area), ...polygons] : polygons)!;
     update({ ...now, hasArea: true, suggested: false, spec: { ...now.spec, area: joined } });
+    void unite();
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {

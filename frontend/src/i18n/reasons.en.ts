@@ -150,6 +150,18 @@ export const reasonsEn: ReasonTable = {
     text: "{quantity?sigma=The bearing noise sigma|threshold=The threshold of the expected error|measurement_time=The measurement time|speed=The speed of the movement model|turn_rate=The turn rate of the movement model|acceleration=The acceleration of the movement model|movement_constant=The constant of the movement model|action_spacing=The spacing of the action lattice|action_grid=The number of cells of the action grid|platform_position=The position of the platform|actions=The number of actions|budget=The budget in rollouts|horizon=The horizon in bearings|threads=The number of threads|levels=The number of levels|paths=The number of sample paths} must be {wanted?positive=positive and finite|not_negative=finite and not negative|at_least_one=at least one|finite=finite|power_of_two=a power of two}, not {given}.",
     remedy: "",
   },
+  nearer_than_standoff: {
+    text: "The planner keeps {standoff_m} from the 95 % region; from here it is {clearance_m}. Any nearer, the emitter may be right below, where no bearing fits the antenna's pattern; the forecast does not know that.",
+    remedy: "The distance is a setting of the mission.",
+  },
+  tells_little_of_bias: {
+    text: "The planner compares only places that also show how far the compass is off; this one tells {share_percent} of what the best does, and {wanted_percent} are asked for. The forecast leaves the compass out.",
+    remedy: "From another side the bearing would tell both.",
+  },
+  between_places: {
+    text: "No rule forbids it: the planner compares places {spacing_m} apart with a limited number of simulated flights, and yours is better than what it found.",
+    remedy: "",
+  },
   receiver_misnamed: {
     text: 'The receiver "{device}" {fault?form=is not understood|host=names no host|port=names a port that is not a number from 1 to 65535|driver=names no driver|server=names no server}.',
     remedy:
@@ -977,6 +989,10 @@ export const reasonsEn: ReasonTable = {
     text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
     remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
   },
+  return_meets_ground: {
+    text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}) and flies straight home: over the ground in between it needs {least_relative_m}.",
+    remedy: "Set {parameter} to at least {least_relative_m}, and the mission's ceiling no lower; or choose another home.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",
@@ -1320,6 +1336,14 @@ export const reasonsEn: ReasonTable = {
     text: "A request may have at most {most_bytes}.",
     remedy: "Simplify the geometry, or split the file.",
   },
+  body_too_rich: {
+    text: "A request may have at most {most_fields} named fields and {most_items} items in its lists.",
+    remedy: "Simplify the geometry.",
+  },
+  body_too_slow: {
+    text: "Nothing of the request arrived for {wait_s}.",
+    remedy: "Look at the network, then send it again.",
+  },
   unknown_host: {
     text: "This server does not go by the name {host}.",
     remedy: "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
@@ -1563,6 +1587,11 @@ export const reasonsEn: ReasonTable = {
   disk_low: {
     text: "Only {free_bytes} are left on the disk.",
     remedy: "Free some space.",
+  },
+  stock_full: {
+    text: "There is no room for it: at most {most} {what?overlays=overlays|recordings=raw sweeps of recordings} and {most_bytes} of them are kept.",
+    remedy:
+      "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
   },
   nothing_stores: {
     text: "The database is away ({database}) and the spool cannot be written ({spool}).",

@@ -182,6 +182,12 @@ function frameAll(map: GlMap, animate: boolean): void {
   if (box) fit(map, box, animate, bannerPx.peek());
 }
 
+/** Its middle on the screen and its size, px. */
+function placeOf(element: HTMLElement) {
+  const { left, top, width, height } = element.getBoundingClientRect();
+  return { x: left + width / 2, y: top + height / 2, width, height };
+}
+
 function MapTools({ map }: { map: { current: GlMap | null } }) {
   const flip = (which: Switch) => {
     const next = new Set(hidden.value);
@@ -231,7 +237,8 @@ function Readout() {
 function Legend() {
   const colours = palettes[settings.value.theme].rounds;
   return (
-    <div class="map-legend" aria-hidden="true">
+    <details class="map-legend" data-testid="legend">
+      <summary>{t("map.legend")}</summary>
       <span>
         <i class="legend-belief" /> {t("map.legend.belief")}
       </span>
@@ -241,7 +248,7 @@ function Legend() {
         ))}{" "}
         {t("map.legend.rounds")}
       </span>
-    </div>
+    </details>
   );
 }
 
@@ -289,8 +296,13 @@ export function FlyMap() {
     created.on("movestart", (event) => {
       if ("originalEvent" in event && event.originalEvent) framing = false;
     });
+    let size = placeOf(box.current!);
     created.on("resize", () => {
-      if (framing) frameAll(created, false);
+      const before = size;
+      size = placeOf(box.current!);
+      const grown = Math.abs(size.height - before.height) > 0.25 * before.height;
+      if (framing && (grown || size.width !== before.width)) frameAll(created, false);
+      else created.panBy([size.x - before.x, size.y - before.y], { duration: 0 }); // the ground stays where it is on the screen
     });
     const stopBanner = bannerPx.subscribe(() => {
       if (framing && framed.what !== null) frameAll(created, false);

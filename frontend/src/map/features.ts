@@ -105,6 +105,7 @@ function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
     const ring = fact.binned_db.flatMap((db, bin) =>
       db === null ? [] : [destination(lonLat(fact.place), (bin + 0.5) * width, size * radius(db, scale))],
     );
+    if (ring.length < 3) return [];
     return [polygon([...ring, ring[0]!], { what: "rose", age: bearings.length - 1 - i, excluded })];
   });
 }

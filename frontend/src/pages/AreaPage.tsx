@@ -5,6 +5,7 @@ import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
+import { replaces } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
@@ -31,6 +32,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
     );
   };
   useEffect(() => {
+    replaces.value = true;
     const kept = storedDraft(key);
     if (kept) update(kept);
     else load();

@@ -179,7 +179,7 @@ export function EstimatePanel() {
       )}
       {estimate && (
         <>
-          <Coordinates lat={estimate.lat} lon={estimate.lon} />
+          {fact.bearings > 0 && <Coordinates lat={estimate.lat} lon={estimate.lon} />}
           <dl class="figures">
             <div>
               <dt>{t("estimate.rmse")}</dt>

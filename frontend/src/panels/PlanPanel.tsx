@@ -3,7 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { cancelProposal, confirmProposal, type Proposal, proposal, propose } from "../commands/proposal";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { send } from "../commands/send";
-import { locale, personName, reasonText, t } from "../i18n";
+import { locale, reasonText, t } from "../i18n";
 import { rankCandidates, roundShade } from "../state/candidates";
 import { source } from "../state/connection";
 import { bearingDeg, distanceM, lonLat } from "../state/geometry";
@@ -41,72 +41,83 @@ function roundWords(candidate: CandidateFact): string {
   return candidate.dropped_in_round === null ? t("plan.kept") : t("plan.roundNumber", { round: candidate.dropped_in_round });
 }
 
+/** Within the table alone: a pointer over the map must move no button of the panel. */
+function showRow(box: HTMLElement | null, row: HTMLElement | null): void {
+  if (!box || !row) return;
+  const [within, own] = [box.getBoundingClientRect(), row.getBoundingClientRect()];
+  if (own.top < within.top) box.scrollTop -= within.top - own.top;
+  else if (own.bottom > within.bottom) box.scrollTop += own.bottom - within.bottom;
+}
+
 function CandidateTable({ plan }: { plan: PlanChosen }) {
   const ranked = rankCandidates(plan);
   const shown = ranked.filter(({ index }, place) => place < SHOWN || index === highlighted.value);
   const lit = useRef<HTMLTableRowElement>(null);
-  useEffect(() => lit.current?.scrollIntoView({ block: "nearest" }), [highlighted.value]);
+  const box = useRef<HTMLDivElement>(null);
+  useEffect(() => showRow(box.current, lit.current), [highlighted.value]);
   const canPropose = cursor.value === null && !mission.value.ended;
   return (
-    <table class="candidates" data-testid="candidates">
-      <caption class="visually-hidden">{t("plan.candidates")}</caption>
-      <thead>
-        <tr>
-          <th scope="col">{t("plan.place")}</th>
-          <th scope="col">{t("plan.value")}</th>
-          <th scope="col">{t("plan.error")}</th>
-          <th scope="col">{t("plan.rollouts")}</th>
-          <th scope="col">{t("plan.round")}</th>
-        </tr>
-      </thead>
-      <tbody>
-        {shown.map(({ candidate, index, chosen }) => (
-          <tr
-            key={index}
-            ref={highlighted.value === index ? lit : null}
-            data-testid="candidate"
-            data-chosen={chosen}
-            class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}
-            onMouseEnter={() => (highlighted.value = index)}
-            onMouseLeave={() => (highlighted.value = null)}
-          >
-            <td>
-              <button
-                type="button"
-                class="candidate-name"
-                disabled={!canPropose || chosen}
-                title={t("plan.flyHere")}
-                onFocus={() => (highlighted.value = index)}
-                onBlur={() => (highlighted.value = null)}
-                onClick={() => propose({ lat: candidate.lat, lon: candidate.lon })}
-              >
-                <i class="swatch" style={{ background: `var(--round-${roundShade(candidate, plan, chosen)})` }} />
-                {index + 1}
-              </button>
-            </td>
-            <td>{formatDuration(candidate.value_s)}</td>
-            <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
-            <td>{candidate.rollouts}</td>
-            <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
+    <div class="candidate-box" ref={box}>
+      <table class="candidates" data-testid="candidates">
+        <caption class="visually-hidden">{t("plan.candidates")}</caption>
+        <thead>
+          <tr>
+            <th scope="col">{t("plan.place")}</th>
+            <th scope="col">{t("plan.value")}</th>
+            <th scope="col">{t("plan.error")}</th>
+            <th scope="col">{t("plan.rollouts")}</th>
+            <th scope="col">{t("plan.round")}</th>
           </tr>
-        ))}
-      </tbody>
-    </table>
+        </thead>
+        <tbody>
+          {shown.map(({ candidate, index, chosen }) => (
+            <tr
+              key={index}
+              ref={highlighted.value === index ? lit : null}
+              data-testid="candidate"
+              data-chosen={chosen}
+              class={`${chosen ? "chosen" : ""} ${highlighted.value === index ? "lit" : ""}`}
+              onMouseEnter={() => (highlighted.value = index)}
+              onMouseLeave={() => (highlighted.value = null)}
+            >
+              <td>
+                <button
+                  type="button"
+                  class="candidate-name"
+                  disabled={!canPropose || chosen}
+                  title={t("plan.flyHere")}
+                  onFocus={() => (highlighted.value = index)}
+                  onBlur={() => (highlighted.value = null)}
+                  onClick={() => propose({ lat: candidate.lat, lon: candidate.lon })}
+                >
+                  <i class="swatch" style={{ background: `var(--round-${roundShade(candidate, plan, chosen)})` }} />
+                  {index + 1}
+                </button>
+              </td>
+              <td>{formatDuration(candidate.value_s)}</td>
+              <td>{candidate.std_error_s === null ? "–" : formatNumber(candidate.std_error_s, 1)}</td>
+              <td>{candidate.rollouts}</td>
+              <td>{chosen ? t("plan.survived") : roundWords(candidate)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
   );
 }
 
-function costWords(proposed: Proposal, plan: PlanChosen | undefined): string | null {
-  const time = proposed.result?.expected_time_s;
-  if (time === null || time === undefined) return proposed.result ? t("proposal.unknownCost") : null;
-  const planned = proposed.compareS ?? plan?.expected_time_s ?? null;
-  if (planned === null) return null;
-  const difference = time - planned;
-  if (Math.abs(difference) < 1) return t("proposal.same");
-  return t(difference > 0 ? "proposal.costs" : "proposal.saves", { difference: formatDuration(Math.abs(difference)) });
+function costWords({ result, withPlanner }: Proposal): string | null {
+  if (result === null) return null;
+  if (result.expected_time_s === null) return t("proposal.unknownCost");
+  if (result.compared === null) return null;
+  const { difference_s: difference, std_error_s: error, quicker } = result.compared;
+  const than = t(withPlanner ? "proposal.thanPlanner" : "proposal.thanChosen");
+  const chance = !quicker && difference < 2 * error;
+  if (chance || Math.abs(difference) < 1) return t("proposal.same", { than });
+  return t(difference > 0 ? "proposal.costs" : "proposal.saves", { difference: formatDuration(Math.abs(difference)), than });
 }
 
 function ProposalCard({ proposed }: { proposed: Proposal }) {
-  const plan = mission.value.plan?.fact;
   const { result, problem } = proposed;
   const here = vehicle.value.at;
   const card = useRef<HTMLDivElement>(null);
@@ -137,10 +148,15 @@ function ProposalCard({ proposed }: { proposed: Proposal }) {
         </p>
       )}
       {result && (
-        <p>
-          <strong>{costWords(proposed, plan)}</strong>
+        <p data-testid="proposal-compared" data-difference={result.compared?.difference_s ?? ""}>
+          <strong>{costWords(proposed)}</strong>
         </p>
       )}
+      {result?.compared?.rules.map((rule) => (
+        <p class="muted" data-testid="proposal-rule" key={rule.code}>
+          {reasonText(rule)}
+        </p>
+      ))}
       <ProblemNote desk="proposal" />
       {result?.allowed || problem ? (
         <SlideToConfirm
@@ -236,13 +252,12 @@ export function PlanPanel() {
           <p class="why" data-testid="why">
             <strong>{t("plan.why")}</strong> {reasonText(fact.reason)}{" "}
             <span class="muted">
-              {fact.source === "planner"
-                ? t("plan.effort", {
-                    rollouts: fact.rollouts.toLocaleString(locale.value),
-                    candidates: fact.candidates.length,
-                    time: formatNumber(fact.plan_ms, 0),
-                  })
-                : t("plan.byOperator", { by: personName(fact.by ?? "?") })}
+              {fact.source === "planner" &&
+                t("plan.effort", {
+                  rollouts: fact.rollouts.toLocaleString(locale.value),
+                  candidates: fact.candidates.length,
+                  time: formatNumber(fact.plan_ms, 0),
+                })}
             </span>
           </p>
           {fact.candidates.length > 0 && <CandidateTable plan={fact} />}

@@ -6,6 +6,7 @@ import { watchKeys } from "../app/keys";
 import { landingArmed } from "../commands/landing";
 import { HOLD_MS } from "../commands/SlideToConfirm";
 import { urgent } from "../commands/urgent";
+import { t } from "../i18n";
 import { FakeSource } from "../sources/fakeSource";
 import type { SourceMessage } from "../sources/source";
 import { moveClock, nowMs } from "../state/clock";
@@ -38,6 +39,7 @@ const craftStatus = (changes: Partial<CraftStatus>) =>
         receiver_age_s: 0,
         battery_to_return_percent: 10,
         order: null,
+        resume_refused: null,
         ...changes,
       },
     ],
@@ -178,6 +180,31 @@ it("resumes only what holds or the pilot flies, and only after a slide", () => {
   act(() => void part("resume-slider")!.dispatchEvent(new KeyboardEvent("keydown", { key: " ", bubbles: true })));
   act(() => void vi.advanceTimersByTime(2 * HOLD_MS));
   expect(source.sent).toMatchObject([{ missionId: "m", kind: "resume", craftId: CRAFT }]);
+});
+
+it("offers to resume only when the server would accept it, and says who has control by authority", () => {
+  const taken = { ...NOBODY, who: "pilot", taken_by: "mode", mode: "POSCTL" } as const;
+  const flies = (authority: Authority): MissionEvent => ({ kind: "authority_changed", craft_id: CRAFT, authority, by: null });
+  const refused = { code: "not_given_back", mode: "POSCTL" } as const;
+  const status = (reason: CraftStatus["resume_refused"]) =>
+    craftStatus({ mission_id: "m", phase: "manual", craft_id: CRAFT, resume_refused: reason });
+  const words = () => part("control")!.textContent;
+
+  show(new FakeSource(), ...happens(drafted, flies(taken), phase("manual")), someTelemetry({ who: "pilot" }), status(refused));
+  expect(part("resume")!.disabled).toBe(true);
+  expect(part("resume")!.title).toContain("POSCTL");
+  expect(part("hold")!.className).toContain("refused-now");
+  expect(words()).toBe(t("control.pilot", { mode: "POSCTL" }));
+
+  const given = flies({ ...taken, given_back: true });
+  show(new FakeSource(), ...happens(drafted, flies(taken), phase("manual"), given), someTelemetry({ who: "pilot" }), status(null));
+  expect(part("resume")!.disabled).toBe(false);
+  expect(words()).toBe(t("control.givenBack"));
+
+  const failsafe = flies({ ...taken, who: "failsafe", mode: "RTL" });
+  const heard = someTelemetry({ who: "failsafe", mode: "RTL" });
+  show(new FakeSource(), ...happens(drafted, flies(taken), phase("hold"), failsafe), heard, status(null));
+  expect(words()).toBe(t("control.failsafe", { mode: "RTL" }));
 });
 
 /** The page's clock started with the page, before this test's time. */

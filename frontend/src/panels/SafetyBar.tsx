@@ -1,5 +1,5 @@
 // Always there, loads first, needs no WebGL: abort, hold, return, state in words, links, alerts.
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { landingArmed } from "../commands/landing";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, report, send } from "../commands/send";
@@ -9,16 +9,18 @@ import { refusal } from "../sources/problem";
 import { ageS, type Freshness, freshness, OLD_AFTER_S } from "../state/age";
 import { nowMs } from "../state/clock";
 import { live, serverNowMs, source } from "../state/connection";
+import { NOBODY, pilotHas } from "../state/craft";
 import { type Flown, flying } from "../state/flying";
 import { distanceM, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { cursor, events } from "../state/moment";
 import { toggle } from "../state/overlay";
+import { resumeRefused } from "../state/resume";
 import { missionAddress } from "../state/route";
 import { mission, shownTimeMs } from "../state/shown";
 import { toneOfPhase } from "../state/tone";
 import { vehicle } from "../state/vehicle";
-import { reviewWords, stateWords, waitsWords, whoFlies } from "../state/words";
+import { authorityWords, reviewWords, stateWords, waitsWords } from "../state/words";
 import { formatAge, formatDuration } from "../units/quantities";
 import { AlertsButton } from "./AlertsButton";
 import { ControlAsked, ControlButton } from "./ControlButton";
@@ -28,13 +30,14 @@ import { ProblemNote } from "./ProblemNote";
 function UrgentButton({ kind }: { kind: Urgent }) {
   const target = flying.value;
   const able = target !== null && (kind !== "abort" || target.id !== null);
+  const pilots = able && target.phase === "manual" && kind !== "abort";
   return (
     <button
       type="button"
-      class={`urgent urgent-${kind}`}
+      class={`urgent urgent-${kind} ${pilots ? "refused-now" : ""}`}
       data-testid={kind}
       disabled={!able}
-      title={t(able ? (`bar.${kind}.hint` satisfies MessageKey) : target ? "bar.noMission" : "bar.nothingFlies")}
+      title={t(pilots ? "bar.pilotHas" : able ? (`bar.${kind}.hint` satisfies MessageKey) : target ? "bar.noMission" : "bar.nothingFlies")}
       onClick={() => target && void sendUrgent(target, kind)}
     >
       {t(`bar.${kind}` satisfies MessageKey)}
@@ -85,9 +88,17 @@ function Resume() {
   const target = flying.value;
   const canResume = (target?.phase === "hold" && target.id !== null) || target?.phase === "manual";
   if (!target || !canResume) return null;
-  if (!armed) {
+  const refused = resumeRefused.value;
+  if (!armed || refused) {
     return (
-      <button type="button" class="resume" data-testid="resume" onClick={() => setArmed(true)}>
+      <button
+        type="button"
+        class="resume"
+        data-testid="resume"
+        disabled={refused !== null}
+        title={refused ? reasonText(refused) : t("bar.resume")}
+        onClick={() => setArmed(true)}
+      >
         {t("bar.resume")}
       </button>
     );
@@ -190,7 +201,9 @@ function Indicators() {
         more={
           needed === null || battery === null
             ? ""
-            : t("bar.battery.toReturn", { percent: Math.ceil(needed), left: Math.floor(battery - needed) })
+            : battery < needed
+              ? t("bar.battery.tooLittle", { percent: Math.ceil(needed) })
+              : t("bar.battery.toReturn", { percent: Math.ceil(needed), left: Math.floor(battery - needed) })
         }
       />
       <Indicator
@@ -206,14 +219,20 @@ function Indicators() {
   );
 }
 
-/** Who flies: in the review by the mission's own word, else as the server says it now. */
+/**
+ * Who flies, by the authority that the mission's facts fold to: a pilot has control until they give it back or a failsafe
+ * shows, whatever was heard last. Where the facts name no pilot, as the vehicle tells it now.
+ */
 function controlWords(): string {
-  const { authority, craftId, pilot } = mission.value;
+  const { authority, craftId, phase } = mission.value;
   const heard = telemetry.value?.value;
-  const who = pilot ? "pilot" : cursor.value !== null && craftId !== null ? authority.who : (heard?.who ?? null);
+  const past = cursor.value !== null && craftId !== null;
+  const failsafe = !past && heard?.who === "failsafe";
+  const pilots = pilotHas(authority) && !failsafe && (phase === "manual" || !authority.given_back);
+  const who = pilots ? "pilot" : past ? authority.who : (heard?.who ?? null);
   if (who === null) return t("control.unknown");
-  if (who === "pilot" && authority.undone) return t("control.undone");
-  return whoFlies(who, pilot?.mode ?? heard?.mode ?? "?", authority.perhaps_failsafe);
+  const known = pilots || past ? authority : NOBODY;
+  return authorityWords({ ...known, who }, known.mode ?? heard?.mode ?? t("control.sticks"));
 }
 
 /** Seconds until the place that is flown to is reached, as the crow flies. */
@@ -237,7 +256,7 @@ function Words() {
   const lost = cursor.value === null && (link.state === "closed" || silence > 2 * OLD_AFTER_S) && hello !== null;
 
   const startedMs = shown.startedAt ? Date.parse(shown.startedAt) : null;
-  const waits = waitsWords(shown);
+  const waits = waitsWords(shown, cursor.value === null ? resumeRefused.value : null);
   return (
     <div class="words">
       <div
@@ -325,6 +344,15 @@ function Countdown() {
 }
 
 export function SafetyBar() {
+  const notes = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const measured = new ResizeObserver(([entry]) => {
+      const height = Math.ceil(entry!.borderBoxSize[0]!.blockSize);
+      document.documentElement.style.setProperty("--note", `${height === 0 ? 0 : height + 6}px`);
+    });
+    measured.observe(notes.current!);
+    return () => measured.disconnect();
+  }, []);
   return (
     <header class="safety" data-tour="1">
       <div class="safety-row">
@@ -342,7 +370,7 @@ export function SafetyBar() {
         <AlertsButton />
         <Menu />
       </div>
-      <div class="bar-notes">
+      <div class="bar-notes" ref={notes}>
         <ControlAsked />
         <Countdown />
         <UrgentNote />

@@ -3,7 +3,7 @@ import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { showScene } from "../sources/sceneApi";
-import { cursor } from "../state/moment";
+import { momentSeq } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import type { Problem } from "../wire";
@@ -19,7 +19,7 @@ export function Scene() {
   const [shown, setShown] = useState<string | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const id = mission.value.missionId;
-  const seq = cursor.value;
+  const seq = momentSeq.value;
   const theme = settings.value.theme === "indoor" ? "dark" : "light";
   useEffect(() => {
     const timer = setTimeout(() => {

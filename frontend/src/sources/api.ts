@@ -128,8 +128,9 @@ export const orderCraft = (craftId: string, command: CraftCommand, commandId = n
 export const areaOutlook = (id: string, search: SearchArea, signal?: AbortSignal) =>
   json<AreaOutlook>(`${missionPath(id)}/area-outlook`, withBody("POST", search, signal));
 
-export const expectedTime = (id: string, place: Place, signal?: AbortSignal) =>
-  json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place }, signal));
+/** insteadOf: a place to compare it with. */
+export const expectedTime = (id: string, place: Place, signal?: AbortSignal, insteadOf: Place | null = null) =>
+  json<ExpectedTime>(`${missionPath(id)}/expected-time`, withBody("POST", { place, instead_of: insteadOf }, signal));
 
 /** The vehicle is turned by hand meanwhile: longer than other requests. */
 export const checkAntenna = (id: string, emitter: { place: Place } | { bearing_deg: number }) =>

@@ -39,6 +39,6 @@ export interface Source {
   belief(missionId: string, emitterId: string, seq: number): Promise<BeliefFrame | null>;
   track(missionId: string, craftId: string): Promise<Track>;
   preflight(missionId: string): Promise<PreflightReply>;
-  expectedTime(missionId: string, place: Place, signal?: AbortSignal): Promise<ExpectedTime>;
+  expectedTime(missionId: string, place: Place, signal?: AbortSignal, insteadOf?: Place | null): Promise<ExpectedTime>;
   importArea(text: string, filename: string): Promise<AreaImport>;
 }

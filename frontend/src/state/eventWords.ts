@@ -3,7 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
-import { checkName, phaseName, whoFlies } from "./words";
+import { authorityWords, checkName, phaseName } from "./words";
 
 /** null: the mission by itself. */
 const byWords = (by: string | null): string => (by === null ? t("by.mission") : personName(by));
@@ -41,8 +41,7 @@ function orderWords({ kind, by, reason }: EventOf<"hold_ordered" | "return_order
 
 function controlWords({ authority, by }: EventOf<"authority_changed">): string {
   if (by !== null) return t("event.control_taken_back", { by: byWords(by) });
-  if (authority.who === "pilot" && authority.undone) return t("control.undone");
-  return whoFlies(authority.who, authority.mode ?? t("control.sticks"), authority.perhaps_failsafe);
+  return authorityWords(authority, authority.mode ?? t("control.sticks"));
 }
 
 function beliefWords({ estimate, consistent, localized, contradicting, bearings, not_yet }: BeliefUpdated, units: UnitSystem): string {
@@ -88,6 +87,7 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "took_off":
       return t("event.took_off", { height: formatLength(event.altitude_relative_m, units) });
     case "plan_chosen":
+      if (event.source === "operator") return t("event.plan_chosen.operator", { number: event.place_number, by: byWords(event.by) });
       return t("event.plan_chosen", { number: event.place_number, reason: reasonText(event.reason) });
     case "plan_vetoed":
       return t("event.plan_vetoed", { by: byWords(event.by) });

@@ -1,5 +1,6 @@
 // The moment looked at: now, or an event of the past, and the mission as it stood then.
 import { computed, signal } from "@preact/signals";
+import type { EventKind, Recorded } from "../wire";
 import { live } from "./connection";
 import { missionAt } from "./mission";
 import { selectedCraft, selectedEmitter } from "./selection";
@@ -10,8 +11,29 @@ export const cursor = signal<number | null>(null);
 
 export const events = computed(() => live.value.events);
 
+/**
+ * The moment that an event stands for: a bearing that came or went with the belief that followed from it, so that estimate,
+ * map and panels are those of that event. seq: its number; all: the events in order.
+ */
+export function settledSeq(all: readonly Recorded[], seq: number): number {
+  const at = all.findIndex((e) => e.seq === seq);
+  const chosen = all[at]?.event;
+  if (chosen?.kind !== "bearing_measured" && chosen?.kind !== "bearing_excluded") return seq;
+  for (const { event, seq: later } of all.slice(at + 1)) {
+    if (event.kind === "belief_updated" && event.emitter_id === chosen.emitter_id) return later;
+    if (SETTLES.has(event.kind)) break;
+  }
+  return seq;
+}
+
+/** What begins with the next decision: a belief after it is not this bearing's. */
+const SETTLES: ReadonlySet<EventKind> = new Set(["plan_chosen", "flight_started", "sweep_started", "mission_ended"]);
+
+/** Up to where events are folded; null: all. */
+export const momentSeq = computed<number | null>(() => (cursor.value === null ? null : settledSeq(events.value, cursor.value)));
+
 const stateNow = computed(() => live.value.mission);
-const stateThen = computed(() => (cursor.value === null ? stateNow.value : missionAt(events.value, cursor.value)));
+const stateThen = computed(() => (momentSeq.value === null ? stateNow.value : missionAt(events.value, momentSeq.value)));
 
 /** All craft that fly, or flew, for the mission. */
 export const craftIds = computed<readonly string[]>(() => [...stateNow.value.crafts.keys()]);

@@ -28,4 +28,9 @@ describe("the path over the bins", () => {
   it("breaks where nothing was heard", () => {
     expect(binnedPath([0, -1, null, -3, -4], scale).match(/M/g)).toHaveLength(2);
   });
+  it("draws a bin that was heard alone, as of a pulsed tag", () => {
+    expect(binnedPath([null, 0, null, -3, null, null], scale).match(/h0/g)).toHaveLength(2);
+    expect(binnedPath([0, null, null, -3, -4, null], scale).match(/h0/g)).toHaveLength(1);
+    expect(binnedPath([0, null, null, -1], scale)).not.toContain("h0");
+  });
 });

@@ -27,7 +27,10 @@ export function polarPoint(headingDeg: number, r: number): [number, number] {
   return [r * Math.sin(a), -r * Math.cos(a)];
 }
 
-/** One path over the bins (bin i covers headings i * 360/n .. (i+1) * 360/n); bins where nothing was heard are gaps. */
+/**
+ * One path over the bins (bin i covers headings i * 360/n .. (i+1) * 360/n); bins where nothing was heard are gaps. One
+ * heard alone, as of a pulsed tag, is a line without length: a dot under round caps.
+ */
 export function binnedPath(binned: readonly (number | null)[], scale: PolarScale): string {
   const width = 360 / binned.length;
   const closed = binned.every((v) => v !== null);
@@ -39,7 +42,8 @@ export function binnedPath(binned: readonly (number | null)[], scale: PolarScale
       return;
     }
     const [x, y] = polarPoint((i + 0.5) * width, radius(db, scale));
-    out += `${drawing ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}`;
+    const alone = binned.at(i - 1) === null && binned[(i + 1) % binned.length] === null;
+    out += `${drawing ? "L" : "M"}${x.toFixed(4)} ${y.toFixed(4)}${alone ? "h0" : ""}`;
     drawing = true;
   });
   return closed && out ? `${out}Z` : out;

@@ -1,7 +1,7 @@
 // The state of the mission as sentences.
 import { type MessageKey, reasonText, t } from "../i18n";
 import { formatClock, formatDuration } from "../units/quantities";
-import type { Authority, CheckFact, LinkName, MissionPhase, ReasonCode } from "../wire";
+import type { Authority, CheckFact, LinkName, MissionPhase, Reason, ReasonCode } from "../wire";
 import { isOver } from "./mission";
 import type { MissionView } from "./view";
 
@@ -37,6 +37,13 @@ export function whoFlies(who: Authority["who"], mode: string, perhapsFailsafe: b
   }
 }
 
+/** The same with what only an authority knows: an order that undid the switch, a vehicle that was given back. */
+export function authorityWords(authority: Authority, mode: string): string {
+  if (authority.who === "pilot" && authority.undone) return t("control.undone");
+  if (authority.who === "pilot" && authority.given_back) return t("control.givenBack");
+  return whoFlies(authority.who, mode, authority.perhaps_failsafe);
+}
+
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionView, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.nextPlaceNumber;
@@ -68,15 +75,15 @@ export function stateWords(mission: MissionView, etaS: number | null): string {
   }
 }
 
-/** What the mission waits for before it goes on; null when it goes on by itself. */
-export function waitsWords(mission: MissionView): string | null {
+/** What the mission waits for before it goes on; null when it goes on by itself. refused: why it cannot be resumed now. */
+export function waitsWords(mission: MissionView, refused: Reason | null = null): string | null {
   switch (mission.phase) {
     case "waiting":
       return t("waits.waiting");
     case "hold":
       return t(mission.lost.vehicle ? "waits.vehicle" : "waits.hold");
     case "manual":
-      return t("waits.manual");
+      return t(mission.authority.given_back && !refused ? "waits.hold" : "waits.manual");
     default:
       return null;
   }

@@ -459,7 +459,7 @@ export interface paths {
         put?: never;
         /**
          * Create Mission
-         * @description Draft a mission.
+         * @description Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise.
          */
         post: operations["create_mission"];
         delete?: never;
@@ -871,7 +871,7 @@ export interface paths {
         put?: never;
         /**
          * Expected Time
-         * @description The expected time to localization when the vehicle measured at this place next.
+         * @description The expected time to localization when the vehicle measured at this place next, and beside another place.
          */
         post: operations["expected_time"];
         delete?: never;
@@ -1304,8 +1304,8 @@ export interface components {
             alert_id: string;
         };
         /**
-         * @description localized: nothing is left to be done, the rest is None. place: where to listen next, away_m and bearing_deg (from
-         *     true north) the straight way there, which may be no way that can be walked; move_s: how long it takes.
+         * @description localized: nothing is left to be done, the rest is None. place: where to listen next, away_m and bearing_deg
+         *     (from true north) the straight way there, which may be no way that can be walked; move_s: how long it takes.
          *
          *     error_now_m: expected error, error_then_m: about what one bearing from there leaves of it. expected_time_s,
          *     time_90_s: until localized if all advice is followed. bearings: how many it knows of; a later one makes it old.
@@ -2057,6 +2057,15 @@ export interface components {
              */
             code: "beside_ellipse";
         };
+        /** @description spacing_m: of the lattice of places that are compared. */
+        BetweenPlaces: {
+            spacing_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "between_places";
+        };
         BeyondWebMaps: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2071,6 +2080,24 @@ export interface components {
              * @enum {string}
              */
             code: "body_too_large";
+        };
+        BodyTooRich: {
+            most_fields: number;
+            most_items: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "body_too_rich";
+        };
+        /** @description wait_s: how long nothing arrived. */
+        BodyTooSlow: {
+            wait_s: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "body_too_slow";
         };
         /** @description rollouts: the budget. needed_rollouts: the least that the search can work with. */
         BudgetTooSmall: {
@@ -2478,7 +2505,10 @@ export interface components {
             kind: "craft";
             craft_id: string;
         };
-        /** @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same. */
+        /**
+         * @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
+         *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now.
+         */
         CraftStatusMessage: {
             craft_id: string;
             mission_id: string | null;
@@ -2490,6 +2520,7 @@ export interface components {
             receiver_age_s: number | null;
             battery_to_return_percent: number | null;
             order: components["schemas"]["OrderMessage"] | null;
+            resume_refused: components["schemas"]["Reason"] | null;
         };
         /** @description crossing_deg: the best crossing angle of two bearing lines at the estimate. */
         CrossingAngleTooSmall: {
@@ -2751,10 +2782,12 @@ export interface components {
             std_error_s: number | null;
             time_90_s: number | null;
             rollouts: number;
+            compared: components["schemas"]["PlacesCompared"] | null;
         };
-        /** @description What if the vehicle measured here next? */
+        /** @description What if the vehicle measured here next? instead_of: a place to compare it with, usually the planner's. */
         ExpectedTimeRequest: {
             place: components["schemas"]["Place"];
+            instead_of?: components["schemas"]["Place"] | null;
         };
         /** @description What was sent cannot be read as an exported mission. later: a later Crossfix exported it. */
         ExportUnreadable: {
@@ -3350,6 +3383,7 @@ export interface components {
             viewers: number;
             disk_free_bytes: number | null;
             keep_sweeps_days: number | null;
+            stocks: components["schemas"]["StockHealth"][];
             simulated: boolean;
             time_factor: number;
         };
@@ -4278,6 +4312,16 @@ export interface components {
              * @enum {string}
              */
             code: "near_no_fly";
+        };
+        /** @description clearance_m: from the place to the 95 % region, 0 inside it. standoff_m: what the planner keeps. */
+        NearerThanStandoff: {
+            clearance_m: number;
+            standoff_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nearer_than_standoff";
         };
         /** @description What an autopilot holds. parameters: those of its fence that this version has. */
         Nets: {
@@ -5600,6 +5644,18 @@ export interface components {
              */
             code: "place_unsure";
         };
+        /**
+         * @description The place beside another, on the same simulated flights by the planner's own measure.
+         *
+         *     difference_s: by which it takes longer, negative when it is quicker. quicker: by more than chance. rules: then why
+         *     the planner may not choose it all the same.
+         */
+        PlacesCompared: {
+            difference_s: number;
+            std_error_s: number;
+            quicker: boolean;
+            rules: components["schemas"]["Reason"][];
+        };
         PlacesUsedUp: {
             places: number;
             /**
@@ -5981,7 +6037,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -6271,6 +6327,17 @@ export interface components {
              */
             kind: "return";
         };
+        /** @description Relative to home. least_relative_m: as high it must climb to keep its clearance on a straight way home. */
+        ReturnMeetsGround: {
+            parameter: string;
+            altitude_relative_m: number;
+            least_relative_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "return_meets_ground";
+        };
         /** @description reason: why, when the mission ordered it by itself; None for an operator's. */
         ReturnOrdered: {
             /**
@@ -6506,8 +6573,9 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+         *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+         *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+         *     taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6534,8 +6602,9 @@ export interface components {
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
-         *     bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-         *     flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+         *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+         *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+         *     taught; the server writes it down when a mission is drafted, edited and started.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -6841,6 +6910,31 @@ export interface components {
              */
             code: "still_moving";
         };
+        /** @description What comes from outside has room of its own. most: overlays, or raw sweeps of recordings. */
+        StockFull: {
+            /** @enum {string} */
+            what: "overlays" | "recordings";
+            most: number;
+            most_bytes: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "stock_full";
+        };
+        /**
+         * @description What came from outside and is kept. number: of overlays, or of the raw sweeps of recordings. None: not counted
+         *     yet.
+         */
+        StockHealth: {
+            /** @enum {string} */
+            what: "overlays" | "recordings";
+            number: number | null;
+            most: number;
+            size_bytes: number | null;
+            most_bytes: number;
+            full: boolean;
+        };
         StrongestUsed: {
             file: string;
             frequency_hz: number;
@@ -7034,6 +7128,16 @@ export interface components {
             /** @enum {string} */
             autopilot: "px4" | "ardupilot" | "unknown";
             dropped: number;
+        };
+        /** @description share_percent: of what the best place tells of emitter and compass together; wanted_percent is asked for. */
+        TellsLittleOfBias: {
+            share_percent: number;
+            wanted_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "tells_little_of_bias";
         };
         TerrainCovers: {
             spacing_m: number;

@@ -10,6 +10,7 @@ from stage import Stage
 from backend import commands
 from backend.events import FIRST_CRAFT
 from backend.ports import CraftStatus
+from backend.reasons.safety import NotGivenBack
 
 
 async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) -> None:
@@ -29,6 +30,19 @@ async def test_the_status_says_what_the_craft_of_the_mission_does(stage: Stage) 
     assert craft.receiver_power_db == -60.0
     assert craft.battery_to_return_percent is not None
     assert craft.battery_to_return_percent > 0.0
+
+
+async def test_the_status_says_whether_resuming_would_be_accepted(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    assert stage.room.display.status().crafts[0].resume_refused is None, "nothing waits to be resumed"
+    stage.vehicle.pilot_takes_over()
+    await stage.until_phase(mission_id, "manual")
+    refused = stage.room.display.status().crafts[0].resume_refused
+    assert isinstance(refused, NotGivenBack)
+    assert (await order(stage, mission_id, commands.Resume())).reason == refused
+    stage.vehicle.pilot_gives_back()
+    assert stage.room.display.status().crafts[0].resume_refused is None
+    assert (await order(stage, mission_id, commands.Resume())).accepted
 
 
 async def test_after_an_abort_the_craft_is_shown_until_it_is_down(stage: Stage) -> None:

@@ -143,4 +143,17 @@ export const planner = {
     text: "{quantity?sigma=Der Peilfehler|threshold=Die Schwelle des erwarteten Fehlers|measurement_time=Die Messdauer|speed=Die Geschwindigkeit im Flugzeitmodell|turn_rate=Die Drehrate im Flugzeitmodell|acceleration=Die Beschleunigung im Flugzeitmodell|movement_constant=Die Konstante im Flugzeitmodell|action_spacing=Der Abstand der Kandidaten|action_grid=Die Zellenzahl des Kandidatenrasters|platform_position=Der Ort des Fluggeräts|actions=Die Anzahl der Kandidaten|budget=Die Anzahl der Proben|horizon=Der Horizont in Peilungen|threads=Die Anzahl der Threads|levels=Die Anzahl der Stufen|paths=Die Anzahl der Stichprobenpfade} muss {wanted?positive=größer als null und endlich|not_negative=mindestens null und endlich|at_least_one=mindestens eins|finite=endlich|power_of_two=eine Zweierpotenz} sein, nicht {given}.",
     remedy: "",
   },
+
+  nearer_than_standoff: {
+    text: "Der Planer hält {standoff_m} Abstand vom 95-%-Gebiet; von hier sind es {clearance_m}. Noch näher kann der Sender genau darunter liegen, wo keine Peilung zum Antennendiagramm passt; die Vorhersage weiß das nicht.",
+    remedy: "Den Abstand legt der Einsatz fest.",
+  },
+  tells_little_of_bias: {
+    text: "Der Planer vergleicht nur Orte, die auch zeigen, wie falsch der Kompass geht; dieser sagt davon {share_percent} dessen, was der beste sagt, verlangt sind {wanted_percent}. Die Vorhersage lässt den Kompass außer Acht.",
+    remedy: "Von einer anderen Seite sagt die Peilung beides.",
+  },
+  between_places: {
+    text: "Keine Regel spricht dagegen: Der Planer vergleicht Orte im Abstand von {spacing_m} mit begrenzt vielen simulierten Flügen, und deiner ist besser als das, was er fand.",
+    remedy: "",
+  },
 } satisfies Partial<ReasonTable>;

@@ -1,0 +1,98 @@
+"""Two places compared on equal rules: the same sample paths, the same budget, and what the rules have against one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.belief.estimate import confidence_region, estimate
+from planner.belief.grid import GridBelief
+from planner.belief.joint import JointBelief
+from planner.geometry import distance_to_convex
+from planner.options import PlannerOptions
+from planner.plan import expected_time_from
+from planner.policy.actions import action_space
+from planner.policy.fisher import gain_beside_bias
+from planner.policy.rollout import TELLING_SHARE
+from planner.policy.several import Wanted, times_together
+from planner.reasons import BetweenPlaces, NearerThanStandoff, RuleReason, TellsLittleOfBias
+from planner.types import Bearing, FloatArray, PlannerError, Problem
+
+COMPARED_PATHS = 400
+
+
+@dataclass(frozen=True, slots=True)
+class PairedDifference:
+    """mean: s by which the place takes longer than the other, negative when it is quicker. std_error: s, of pairs."""
+
+    mean: float
+    std_error: float
+
+
+def difference_between(
+    problem: Problem,
+    belief: GridBelief,
+    bearings: Sequence[Bearing],
+    platform: tuple[float, float],
+    place: tuple[float, float],
+    other: tuple[float, float],
+    options: PlannerOptions,
+    paths: int = COMPARED_PATHS,
+) -> PairedDifference:
+    """By way of `place` instead of `other` (m ENU), path by path. Raises PlannerError when one cannot be reached."""
+    costs = [
+        expected_time_from(problem, belief, bearings, xy, options, platform_xy=platform, rollouts=paths).times
+        for xy in (place, other)
+    ]
+    return _paired(costs[0] - costs[1])
+
+
+def difference_together(
+    wanted: Sequence[Wanted],
+    platform: tuple[float, float],
+    place: tuple[float, float],
+    other: tuple[float, float],
+    options: PlannerOptions,
+    paths: int = COMPARED_PATHS,
+) -> PairedDifference:
+    """As above by the measure in which the places for several emitters are compared: the mean of their times."""
+    here, there = times_together(wanted, platform, np.array([place, other]), options, paths)
+    if not (np.isfinite(here).all() and np.isfinite(there).all()):
+        return PairedDifference(float("nan"), float("nan"))
+    return _paired(here - there)
+
+
+def _paired(differences: FloatArray) -> PairedDifference:
+    return PairedDifference(float(differences.mean()), float(differences.std(ddof=1) / np.sqrt(len(differences))))
+
+
+def rules_against(problem: Problem, belief: GridBelief, place: tuple[float, float]) -> tuple[RuleReason, ...]:
+    """Why the rollout policy would not compare this place (m ENU); `BetweenPlaces` when nothing but the lattice does.
+
+    The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1).
+    """
+    found: list[RuleReason] = []
+    xy = np.array([place])
+    try:
+        places = action_space(problem, belief)
+    except PlannerError:
+        return ()
+    if problem.standoff > 0:
+        region = confidence_region(belief)
+        clearances = distance_to_convex(places, region)
+        kept = min(problem.standoff, float(np.sort(clearances)[-min(2, len(clearances))]))
+        clearance = float(distance_to_convex(xy, region)[0])
+        if clearance < kept:
+            found.append(NearerThanStandoff(clearance, kept))
+        places = places[clearances >= kept]
+    if isinstance(belief, JointBelief) and len(belief.errors) == 1:
+        estimated = estimate(belief, problem.estimator)
+        gains = gain_beside_bias(estimated, np.vstack([xy, places]), belief.errors[0], problem.sigma, nearest=belief.h)
+        share = float(gains[0] / gains[1:].max())
+        if share < TELLING_SHARE:
+            found.append(TellsLittleOfBias(100.0 * share, 100.0 * TELLING_SHARE))
+    if not found and problem.action_spacing is not None:
+        found.append(BetweenPlaces(problem.action_spacing))
+    return tuple(found)

@@ -1,0 +1,51 @@
+"""Why rollouts never compare a place that may be quicker: what the rule is, and what it buys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from planner.reason import Words
+
+
+@dataclass(frozen=True, slots=True)
+class NearerThanStandoff:
+    """clearance_m: from the place to the 95 % region, 0 inside it. standoff_m: what the planner keeps."""
+
+    clearance_m: float
+    standoff_m: float
+    code: Literal["nearer_than_standoff"] = "nearer_than_standoff"
+    english: ClassVar[Words] = Words(
+        "The planner keeps {standoff_m} from the 95 % region; from here it is {clearance_m}. Any nearer, the emitter "
+        "may be right below, where no bearing fits the antenna's pattern; the forecast does not know that.",
+        "The distance is a setting of the mission.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TellsLittleOfBias:
+    """share_percent: of what the best place tells of emitter and compass together; wanted_percent is asked for."""
+
+    share_percent: float
+    wanted_percent: float
+    code: Literal["tells_little_of_bias"] = "tells_little_of_bias"
+    english: ClassVar[Words] = Words(
+        "The planner compares only places that also show how far the compass is off; this one tells {share_percent} of "
+        "what the best does, and {wanted_percent} are asked for. The forecast leaves the compass out.",
+        "From another side the bearing would tell both.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BetweenPlaces:
+    """spacing_m: of the lattice of places that are compared."""
+
+    spacing_m: float
+    code: Literal["between_places"] = "between_places"
+    english: ClassVar[Words] = Words(
+        "No rule forbids it: the planner compares places {spacing_m} apart with a limited number of simulated flights, "
+        "and yours is better than what it found.",
+    )
+
+
+RuleReason = NearerThanStandoff | TellsLittleOfBias | BetweenPlaces
