@@ -17,6 +17,7 @@ from typing import cast
 from uuid import uuid4
 
 from backend.auth.buckets import Buckets, neighbourhood
+from backend.kraken import FEWEST_COLUMNS, KrakenRefused, read_kraken
 from backend.search.errors import MissionConflict, MissionInputError, MissionNotFound
 from backend.search.reported import ReportedBearing
 from hardware.frame import LocalFrame
@@ -76,6 +77,17 @@ def read_datagram(data: bytes, now_s: float) -> ReportedBearing:
     )
 
 
+def read_any(data: bytes, now_s: float) -> ReportedBearing:
+    """A datagram as above, or a record of a KrakenSDR. Raises DatagramRefused."""
+    kraken = b'"radioBearing"' in data or (data[:1].isdigit() and data.count(b",") >= FEWEST_COLUMNS - 1)
+    if not kraken:
+        return read_datagram(data, now_s)
+    try:
+        return read_kraken(data, now_s)
+    except KrakenRefused as refused:
+        raise DatagramRefused(str(refused)) from None
+
+
 def _number(told: dict[str, object], name: str, low: float, high: float) -> float:
     value = told.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -119,7 +131,7 @@ class BearingFeed(asyncio.DatagramProtocol):
             return
         self._buckets.take(key, now_s)
         try:
-            report = read_datagram(data, self.now())
+            report = read_any(data, self.now())
             self._check_fresh(report, now_s)
             self._queue.put_nowait(report)
         except DatagramRefused as refused:

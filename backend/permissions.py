@@ -101,9 +101,11 @@ ENDPOINTS: Mapping[str, Need] = {
     "POST /api/missions/{mission_id}/antenna-check": PLAN,
     "POST /api/missions/{mission_id}/recordings": PLAN,
     "POST /api/missions/{mission_id}/bearings": REPORT,
+    "POST /api/missions/{mission_id}/bearings/kraken": REPORT,
     "DELETE /api/missions/{mission_id}/bearings/{bearing_id}": REPORT,
     "POST /api/missions/{mission_id}/expected-time": ASK,
     "POST /api/missions/{mission_id}/area-outlook": ASK,
+    "POST /api/missions/{mission_id}/advice": ASK,
     "POST /api/preview": ASK,
     "POST /api/areas": ASK,
     # review

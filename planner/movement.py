@@ -21,8 +21,8 @@ PURPOSEFUL_S = 180.0
 DRIFTING_S = 900.0
 """tau of what wind or water carries."""
 
-FLIGHT_S = 15.0
-"""From one place to the next, usually."""
+FLIGHT_S = 30.0
+"""From one place to the next, usually: legs of a hundred metres and what it takes to settle."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Request, Response
 from pydantic import AwareDatetime, Field, StringConstraints
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.services import Services
 from backend.auth.principal import Principal
 from backend.events import BearingMeasured
+from backend.kraken import KrakenRefused, read_kraken
+from backend.reasons.search import KrakenUnreadable
+from backend.search.errors import MissionInputError
 from backend.search.reported import ReportedBearing
 from backend.spec import Id, Model, Place
 
@@ -64,6 +69,10 @@ async def report_bearing(
         emitter_id=report.emitter_id,
         snr_db=report.snr_db,
     )
+    return await _taken(services, mission_id, reported, response)
+
+
+async def _taken(services: Services, mission_id: str, reported: ReportedBearing, response: Response) -> BearingTaken:
     recorded, already = await services.missions.reports.add(mission_id, reported)
     if already:
         response.status_code = 200
@@ -73,6 +82,25 @@ async def report_bearing(
     return BearingTaken(
         bearing_id=fact.bearing_id, emitter_id=fact.emitter_id, by=by, already=already, seq=recorded.seq
     )
+
+
+@router.post(
+    "/bearings/kraken",
+    status_code=201,
+    responses={200: {"model": BearingTaken}},
+    openapi_extra={"requestBody": {"required": True, "content": {"text/csv": {"schema": {"type": "string"}}}}},
+)
+async def report_kraken(
+    mission_id: MissionId, request: Request, services: ServicesDep, principal: PrincipalDep, response: Response
+) -> BearingTaken:
+    """Add a bearing of a KrakenSDR: the text of its DOA_value.html (CSV), or one of its JSON records."""
+    body = await request.body()
+    try:
+        reported = read_kraken(body, services.now())
+    except KrakenRefused as error:
+        raise MissionInputError(KrakenUnreadable(str(error)), "body") from error
+    by = _who(principal, reported.by)
+    return await _taken(services, mission_id, replace(reported, by=by), response)
 
 
 @router.delete("/bearings/{bearing_id}", status_code=204)

@@ -15,6 +15,7 @@ from fastapi.routing import APIRoute
 from pydantic import JsonValue
 
 from backend.api import (
+    advice,
     compass,
     crafts,
     entering,
@@ -54,6 +55,7 @@ ROUTERS = (
     review.router,
     read_export.router,
     planning.router,
+    advice.router,
     maps.router,
     terrain.router,
     scene.router,

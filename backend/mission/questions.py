@@ -13,10 +13,13 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
 from backend.mission.records import Records
 from backend.reasons import Reason
-from backend.reasons.refusals import MissionDoesNotFly
-from backend.search.area import centre_of
-from backend.search.errors import MissionConflict
+from backend.reasons.refusals import MissionDoesNotFly, MissionOver, NoSuchEmitter
+from backend.reasons.search import AskedFromTooFar
+from backend.search.advice import FARTHEST_M, Advice, advise, from_area_m
+from backend.search.area import centre_of, corner_of
+from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.forecast import Comparison, Forecast, Preview, compare, forecast, preview
+from backend.search.localization import localization
 from backend.search.other_area import Outlook, outlook, task_in
 from backend.search.planning import needs_program
 from backend.search.state import SearchState
@@ -66,6 +69,32 @@ class Questions:
         if instead_of is None:
             return found, None
         return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
+
+    async def advise(
+        self, mission_id: str, here: Place, speed_m_s: float, emitter_id: str | None
+    ) -> tuple[str, int, Advice | None]:
+        """The emitter, the bearings that count, and where to listen for it next; None once it is localized.
+
+        Raises MissionNotFound, MissionConflict once the search has ended, MissionInputError, PlannerError.
+        """
+        runner = self.flights.running(mission_id)
+        search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
+        if search.stage == "ended":
+            raise MissionConflict(MissionOver())
+        emitter = search.sought[0] if emitter_id is None else search.emitters.get(emitter_id)
+        if emitter is None:
+            raise MissionInputError(NoSuchEmitter(emitter_id or ""), "emitter_id")
+        if emitter.localized and not search.follows:
+            return emitter.emitter_id, len(emitter.bearings), None
+        home = search.home or corner_of(search.mission.area)
+        task = await asyncio.to_thread(localization, search.mission, home, emitter.emitter_id)
+        if (off_m := from_area_m(task, here)) > FARTHEST_M:
+            raise MissionInputError(AskedFromTooFar(off_m), "place")
+        return (
+            emitter.emitter_id,
+            len(emitter.bearings),
+            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s),
+        )
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:
         """What to expect of another search area now, and what forbids to change to it.

@@ -147,6 +147,38 @@ class BearingTooFar:
 
 
 @dataclass(frozen=True, slots=True)
+class AskedFromTooFar:
+    distance_m: float
+    code: Literal["asked_from_too_far"] = "asked_from_too_far"
+    english: ClassVar[Words] = Words(
+        "You are {distance_m} from the search's area: too far to be advised where to listen.",
+        "Go nearer, or say where you will be.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class HeardElsewhere:
+    frequency_hz: float
+    code: Literal["heard_elsewhere"] = "heard_elsewhere"
+    english: ClassVar[Words] = Words(
+        "The bearing was heard at {frequency_hz}, where nothing is looked for.",
+        "Tune the station to a frequency of the search.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class KrakenUnreadable:
+    """what: in English, for whoever set the station up."""
+
+    what: str
+    code: Literal["kraken_unreadable"] = "kraken_unreadable"
+    english: ClassVar[Words] = Words(
+        "This is no bearing of a KrakenSDR: {what}.",
+        'Send the text of its DOA_value.html, written with the output format "Kraken App".',
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class BearingTimeImpossible:
     """age_s: negative of a time to come."""
 
@@ -237,6 +269,9 @@ SearchReason = (
     | RecordingTooLong
     | RecordingTooFar
     | BearingTooFar
+    | AskedFromTooFar
+    | HeardElsewhere
+    | KrakenUnreadable
     | BearingTimeImpossible
     | WhichEmitter
     | TakenEarlier

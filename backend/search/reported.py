@@ -29,6 +29,8 @@ AT_ONCE_S = 5.0
 LATEST_S = 24 * 3600.0
 AHEAD_S = 120.0
 """The clock of a phone may be so far ahead."""
+SAME_CHANNEL_HZ = 25_000.0
+"""A station that tells its frequency hears an emitter within this of it."""
 NO_PLACE_NUMBER = 0
 """Places are counted for the craft's sake, which may fly to a limited number; nobody else uses them up."""
 
@@ -38,7 +40,7 @@ class ReportedBearing:
     """bearing_id: made by whoever reports, the same when it is sent again. emitter_id None: of the search's only one.
 
     bearing_deg: from true north. sigma_deg: standard deviation of all its errors. snr_db None: not said. taken_at_s:
-    UTC epoch seconds.
+    UTC epoch seconds. frequency_hz None: not said; else it has to be that of an emitter.
     """
 
     bearing_id: str
@@ -49,6 +51,7 @@ class ReportedBearing:
     taken_at_s: float
     emitter_id: str | None = None
     snr_db: float | None = None
+    frequency_hz: float | None = None
 
 
 def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> BearingMeasured:
@@ -63,7 +66,7 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
         raise MissionInputError(reasons.BearingTimeImpossible(age_s), "taken_at_utc")
     remarks: list[Reason] = [reasons.TakenEarlier(age_s)] if age_s > AT_ONCE_S else []
     return BearingMeasured(
-        emitter_id=_emitter_id(state, report.emitter_id),
+        emitter_id=_emitter_id(state, report.emitter_id, report.frequency_hz),
         source=PersonSource(name=report.by),
         bearing_id=report.bearing_id,
         sweep_id=None,
@@ -84,8 +87,13 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
     )
 
 
-def _emitter_id(state: SearchState, wanted: str | None) -> str:
+def _emitter_id(state: SearchState, wanted: str | None, frequency_hz: float | None) -> str:
     known = [emitter.emitter_id for emitter in state.mission.emitters]
+    if wanted is None and frequency_hz is not None:
+        nearest = min(state.mission.emitters, key=lambda emitter: abs(emitter.frequency_hz - frequency_hz))
+        if abs(nearest.frequency_hz - frequency_hz) > SAME_CHANNEL_HZ:
+            raise MissionInputError(reasons.HeardElsewhere(frequency_hz), "frequency_hz")
+        return nearest.emitter_id
     if wanted is None and len(known) == 1:
         return known[0]
     if wanted is None:

@@ -16,6 +16,7 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   edit: () => import("../pages/EditPage").then((m) => m.EditPage),
   mission: () => import("../pages/FlyPage").then((m) => m.FlyPage),
   area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
+  bearings: () => import("../pages/BearingsPage").then((m) => m.BearingsPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
   health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
   people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),

@@ -14,7 +14,8 @@ export function followRoute(): () => void {
       return;
     }
     const { value } = route;
-    const wanted = value.page === "mission" || value.page === "area" ? value.missionId : null;
+    const shown = value.page === "mission" || value.page === "area" || value.page === "bearings";
+    const wanted = shown ? value.missionId : null;
     const now = source.peek();
     if (now === null || now.missionId !== wanted) open(sourceFor(wanted));
   });

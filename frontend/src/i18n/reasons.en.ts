@@ -1536,6 +1536,18 @@ export const reasonsEn: ReasonTable = {
     text: "The bearing was taken {distance_m} from the search's area.",
     remedy: "Check where you stand, or report it to the search that it belongs to.",
   },
+  asked_from_too_far: {
+    text: "You are {distance_m} from the search's area: too far to be advised where to listen.",
+    remedy: "Go nearer, or say where you will be.",
+  },
+  heard_elsewhere: {
+    text: "The bearing was heard at {frequency_hz}, where nothing is looked for.",
+    remedy: "Tune the station to a frequency of the search.",
+  },
+  kraken_unreadable: {
+    text: "This is no bearing of a KrakenSDR: {what}.",
+    remedy: 'Send the text of its DOA_value.html, written with the output format "Kraken App".',
+  },
   bearing_time_impossible: {
     text: "The bearing's time is in the future or more than a day ago.",
     remedy: "Set the clock of whatever sent it.",

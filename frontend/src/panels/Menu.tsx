@@ -2,7 +2,7 @@ import { t } from "../i18n";
 import { signOut } from "../sources/accessApi";
 import { flying } from "../state/flying";
 import { type Overlay, overlay, toggle } from "../state/overlay";
-import { route } from "../state/route";
+import { bearingsAddress, route } from "../state/route";
 import { me } from "../state/session";
 
 const show = (which: Overlay) => () => {
@@ -20,6 +20,7 @@ function showTour(): void {
 
 export function Menu() {
   const isOpen = overlay.value === "menu";
+  const here = route.value;
   return (
     <nav class="anchor" aria-label={t("bar.menu")}>
       <button
@@ -44,6 +45,13 @@ export function Menu() {
               {t("menu.new")}
             </a>
           </li>
+          {here.page === "mission" && here.missionId !== "example" && (
+            <li>
+              <a href={bearingsAddress(here.missionId)} onClick={close} data-testid="menu-report">
+                {t("menu.report")}
+              </a>
+            </li>
+          )}
           <li>
             <a href="#/maps" onClick={close} data-testid="menu-maps">
               {t("menu.maps")}

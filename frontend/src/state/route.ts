@@ -7,6 +7,7 @@ export type Route =
   | { page: "edit"; missionId: string }
   | { page: "mission"; missionId: string }
   | { page: "area"; missionId: string }
+  | { page: "bearings"; missionId: string }
   | { page: "maps" }
   | { page: "health" }
   | { page: "people" }
@@ -21,7 +22,8 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "sign-in" && id) return { page: "signIn", fault: id };
   if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {
-    return { page: parts[2] === "edit" || parts[2] === "area" ? parts[2] : "mission", missionId: id };
+    const below = parts[2];
+    return { page: below === "edit" || below === "area" || below === "bearings" ? below : "mission", missionId: id };
   }
   return { page: "missions" };
 }
@@ -32,6 +34,8 @@ addEventListener("hashchange", () => {
 });
 
 export const areaAddress = (id: string) => `${missionAddress(id)}/area`;
+/** Where somebody with an antenna in their hand reports what they hear. */
+export const bearingsAddress = (id: string) => `${missionAddress(id)}/bearings`;
 export const missionAddress = (id: string) => `#/mission/${encodeURIComponent(id)}`;
 
 export function go(hash: string): void {

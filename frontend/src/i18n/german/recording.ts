@@ -100,6 +100,18 @@ export const recording = {
   recording_unusable: { text: "Die Aufnahme {file} ist nicht verwendbar. {because}", remedy: "{because!remedy}" },
 
   recording_too_long: { text: "Die Aufnahme enthält {sweeps} Drehungen.", remedy: "Höchstens {most} auf einmal einlesen." },
+  asked_from_too_far: {
+    text: "Von hier sind es {distance_m} bis zum Suchgebiet: zu weit für einen Rat, wo zu hören ist.",
+    remedy: "Näher herangehen, oder sagen, von wo aus gesucht wird.",
+  },
+  kraken_unreadable: {
+    text: "Das ist keine Peilung eines KrakenSDR: {what}.",
+    remedy: "Den Text seiner DOA_value.html senden, mit dem Ausgabeformat „Kraken App“ geschrieben.",
+  },
+  heard_elsewhere: {
+    text: "Die Peilung wurde auf {frequency_hz} gehört, dort wird nichts gesucht.",
+    remedy: "Die Station auf eine Frequenz der Suche abstimmen.",
+  },
   bearing_too_far: {
     text: "Die Peilung wurde {distance_m} vom Suchgebiet entfernt genommen.",
     remedy: "Prüfen, wo man steht, oder sie der Suche melden, zu der sie gehört.",

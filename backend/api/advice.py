@@ -1,0 +1,74 @@
+"""Where people and cars listen next: advice that nobody has to follow. It needs no craft and disturbs none."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from backend.api.dependencies import MissionId, ServicesDep
+from backend.api.problems import PROBLEM_RESPONSES
+from backend.reasons import Reason
+from backend.spec import Id, Model, Place
+
+router = APIRouter(prefix="/api/missions/{mission_id}", tags=["planning"], responses=PROBLEM_RESPONSES)
+
+
+class AdviceRequest(Model):
+    """place: where whoever asks is. speed_m_s: how fast they get on, on foot or in a car. emitter_id None: the first
+    that is not localized."""
+
+    place: Place
+    speed_m_s: float = Field(default=1.3, ge=0.2, le=30, allow_inf_nan=False)
+    emitter_id: Id | None = None
+
+
+class AdviceAnswer(Model):
+    """localized: nothing is left to be done, the rest is None. place: where to listen next, away_m and bearing_deg
+    (from true north) the straight way there, which may be no way that can be walked; move_s: how long it takes.
+
+    error_now_m: expected error, error_then_m: about what one bearing from there leaves of it. expected_time_s,
+    time_90_s: until localized if all advice is followed. bearings: how many it knows of; a later one makes it old.
+    """
+
+    emitter_id: str
+    localized: bool
+    given_at_utc: datetime
+    bearings: int
+    place: Place | None = None
+    away_m: float | None = None
+    bearing_deg: float | None = None
+    move_s: float | None = None
+    error_now_m: float | None = None
+    error_then_m: float | None = None
+    expected_time_s: float | None = None
+    time_90_s: float | None = None
+    reason: Reason | None = None
+
+
+@router.post("/advice")
+async def ask_advice(mission_id: MissionId, request: AdviceRequest, services: ServicesDep) -> AdviceAnswer:
+    """Where to listen next with an antenna in the hand. Nothing is recorded, and no craft flies for it."""
+    async with services.planning:
+        emitter_id, bearings, found = await services.missions.questions.advise(
+            mission_id, request.place, request.speed_m_s, request.emitter_id
+        )
+    now = datetime.fromtimestamp(services.now(), UTC)
+    if found is None:
+        return AdviceAnswer(emitter_id=emitter_id, localized=True, given_at_utc=now, bearings=bearings)
+    return AdviceAnswer(
+        emitter_id=emitter_id,
+        localized=False,
+        given_at_utc=now,
+        bearings=found.bearings,
+        place=found.place,
+        away_m=found.away_m,
+        bearing_deg=found.bearing_deg,
+        move_s=found.move_s,
+        error_now_m=found.error_now_m,
+        error_then_m=found.error_then_m,
+        expected_time_s=found.mean_s,
+        time_90_s=found.p90_s,
+        reason=found.reason,
+    )

@@ -1,0 +1,130 @@
+"""Where somebody on foot or in a car listens next, and what that would bring. Synchronous and pure; call in a thread.
+
+The same planner as a craft's, with another mover: it goes as slowly as it says, turns an antenna by hand, and may stand
+outside the fence, which is the craft's; what may not be flown over is kept off all the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from shapely import MultiPoint, Point
+
+from backend.events import BearingMeasured
+from backend.reasons import Reason, carried
+from backend.search import area
+from backend.search.localization import Localization
+from backend.search.planning import in_nine_of_ten
+from backend.spec import Place
+from planner.belief.estimate import estimate
+from planner.belief.grid import GridBelief
+from planner.options import PlannerOptions
+from planner.plan import plan
+from planner.types import LinearConstantMotion, Problem
+
+HAND_SIGMA_RAD = math.radians(12.0)
+"""Of a hand-held antenna and a phone's compass: what a reported bearing has unless its reporter says otherwise."""
+HAND_TURN_S = 45.0
+"""To turn an antenna by hand and to report what was heard."""
+SET_OUT_S = 5.0
+AROUND_M = 100.0
+"""Somebody may stand this far outside the area."""
+FARTHEST_M = 20_000.0
+"""From the area: who is further away is not advised."""
+COARSEST_PLACES = 24
+"""Places along the longer side: a person is not sent to the metre."""
+OPTIONS = PlannerOptions(base_policy="fisher", budget=300)
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """place: where to listen next. away_m, bearing_deg: the straight way there. move_s: how long it takes.
+
+    error_now_m: expected error of the belief, error_then_m: about what is left of it after one bearing from there.
+    mean_s, p90_s: until localized if every advice is followed; None: not known. bearings: that the advice knows of.
+    """
+
+    place: Place
+    away_m: float
+    bearing_deg: float
+    move_s: float
+    error_now_m: float
+    error_then_m: float
+    mean_s: float | None
+    p90_s: float | None
+    reason: Reason
+    bearings: int
+
+
+def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place, speed_m_s: float) -> Advice:
+    """For one emitter. Raises PlannerError when there is nowhere to go."""
+    start = task.frame.to_enu(here)
+    bearings = task.planner_bearings(measured)
+    belief = task.planning_belief(bearings)
+    problem = _for_people(task, start, speed_m_s)
+    decision = plan(problem, belief, bearings, start, OPTIONS, threads=1)
+    east, north = decision.x - start[0], decision.y - start[1]
+    away = math.hypot(east, north)
+    now = estimate(belief, problem.estimator).expected_rmse
+    return Advice(
+        place=task.place(decision.x, decision.y),
+        away_m=away,
+        bearing_deg=math.degrees(math.atan2(east, north)) % 360.0,
+        move_s=away / speed_m_s,
+        error_now_m=now,
+        error_then_m=_error_after(problem, belief, decision.x, decision.y),
+        mean_s=float(decision.times.mean()) if len(decision.times) else None,
+        p90_s=in_nine_of_ten(decision.times),
+        reason=carried(decision.reason),
+        bearings=len(bearings),
+    )
+
+
+def from_area_m(task: Localization, here: Place) -> float:
+    """How far somebody stands from the area, m; 0 inside."""
+    ring = MultiPoint(np.concatenate(task.problem.area)).convex_hull
+    return float(ring.distance(Point(task.frame.to_enu(here))))
+
+
+def _for_people(task: Localization, start: tuple[float, float], speed_m_s: float) -> Problem:
+    problem = task.problem
+    corners = MultiPoint(np.concatenate(problem.area))
+    around = corners.convex_hull.buffer(AROUND_M, join_style="mitre").union(Point(start)).convex_hull
+    x_min, y_min, x_max, y_max = around.bounds
+    spacing = max(problem.action_spacing or 0.0, max(x_max - x_min, y_max - y_min) / COARSEST_PLACES)
+    return replace(
+        problem,
+        sigma=HAND_SIGMA_RAD,
+        measurement_time=HAND_TURN_S,
+        motion=LinearConstantMotion(speed_m_s, SET_OUT_S),
+        flight_area=area.region(around.buffer(1.0)),
+        action_spacing=spacing,
+    )
+
+
+def _error_after(problem: Problem, belief: GridBelief, x: float, y: float) -> float:
+    """Expected error after one bearing from (x, y), m: the mean over the directions that it may have.
+
+    sum_z p(z) mu(b | z), the directions in bins of about one sigma: p(z) is the mass that lies there, and what is left
+    of the belief is weighed with the bearing's likelihood.
+    """
+    cx, cy = np.meshgrid(*belief.centres())
+    rows, columns = np.nonzero(belief.density > 1e-7 * belief.density.max())
+    mass, px, py = belief.density[rows, columns], cx[rows, columns], cy[rows, columns]
+    mass = mass / mass.sum()
+    direction = np.arctan2(py - y, px - x)
+    middle = math.atan2(float(mass @ np.sin(direction)), float(mass @ np.cos(direction)))
+    off = (direction - middle + np.pi) % (2.0 * np.pi) - np.pi
+    edges = np.arange(off.min(), off.max() + problem.sigma, problem.sigma)
+    error = 0.0
+    for low in edges:
+        share = float(mass[(off >= low) & (off < low + problem.sigma)].sum())
+        if share <= 0.0:
+            continue
+        left = mass * np.exp(-0.5 * ((off - low - 0.5 * problem.sigma) / problem.sigma) ** 2)
+        left /= left.sum()
+        error += share * float(left @ np.hypot(px - left @ px, py - left @ py))
+    return error

@@ -1,0 +1,98 @@
+// The phone's bearings go to the server one after the other; without a link they wait in the browser.
+import { signal } from "@preact/signals";
+import { newCommandId } from "../sources/api";
+import { RequestFailed } from "../sources/problem";
+import { type BearingReport, reportBearing, takeBackBearing } from "../sources/reportsApi";
+import { add, answered, nextOf, type Queue, type Queued, read, takeBackLast, withdrawn } from "../state/bearingQueue";
+
+const KEY = "crossfix.bearings";
+const AGAIN_MS = 4000;
+
+function stored(): string | null {
+  try {
+    return localStorage.getItem(KEY);
+  } catch {
+    return null;
+  }
+}
+
+export const queue = signal<Queue>(read(stored()));
+/** The last attempt did not reach the server. */
+export const unreached = signal(false);
+
+function keep(next: Queue): void {
+  queue.value = next;
+  try {
+    localStorage.setItem(KEY, JSON.stringify(next));
+  } catch {
+    // a private window keeps nothing: the bearings live as long as the page
+  }
+}
+
+/** The server's own no; anything else is a link that may come back. */
+const refused = (error: unknown): string | null =>
+  error instanceof RequestFailed &&
+  error.problem.status >= 400 &&
+  error.problem.status < 500 &&
+  ![401, 408, 429].includes(error.problem.status)
+    ? error.problem.detail || error.problem.title
+    : null;
+
+async function say({ missionId, report, stage }: Queued): Promise<void> {
+  const id = report.bearing_id;
+  if (stage === "withdrawing") {
+    await takeBackBearing(missionId, id).catch((error: unknown) => {
+      if (refused(error) === null) throw error;
+    });
+    keep(withdrawn(queue.peek(), id));
+    return;
+  }
+  try {
+    await reportBearing(missionId, report);
+    keep(answered(queue.peek(), id, null));
+  } catch (error) {
+    const why = refused(error);
+    if (why === null) throw error;
+    keep(answered(queue.peek(), id, why));
+  }
+}
+
+let busy = false;
+
+export async function sendWaiting(): Promise<void> {
+  if (busy) return;
+  busy = true;
+  try {
+    for (let next = nextOf(queue.peek()); next; next = nextOf(queue.peek())) {
+      await say(next);
+      unreached.value = false;
+    }
+  } catch {
+    unreached.value = true;
+  } finally {
+    busy = false;
+  }
+}
+
+export function report(missionId: string, bearing: Omit<BearingReport, "bearing_id" | "taken_at_utc">): void {
+  const taken = { ...bearing, bearing_id: newCommandId(), taken_at_utc: new Date().toISOString() };
+  keep(add(queue.peek(), missionId, taken));
+  void sendWaiting();
+}
+
+export function backspace(missionId: string): void {
+  keep(takeBackLast(queue.peek(), missionId));
+  void sendWaiting();
+}
+
+/** As long as the page is open. */
+export function keepSending(): () => void {
+  const again = setInterval(() => void sendWaiting(), AGAIN_MS);
+  const online = () => void sendWaiting();
+  addEventListener("online", online);
+  void sendWaiting();
+  return () => {
+    clearInterval(again);
+    removeEventListener("online", online);
+  };
+}

@@ -1,0 +1,309 @@
+// For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
+import { useEffect, useState } from "preact/hooks";
+import { backspace, keepSending, queue, report, unreached } from "../commands/reportBearings";
+import { t } from "../i18n";
+import { AdviceCard } from "../panels/AdviceCard";
+import { AimMap } from "../panels/AimMap";
+import { advised } from "../state/advice";
+import { lastOf, pending, type Stage } from "../state/bearingQueue";
+import { emitterName } from "../state/emitterName";
+import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
+import { missionAddress } from "../state/route";
+import { me } from "../state/session";
+import { mission } from "../state/shown";
+import { formatBearing } from "../units/quantities";
+import type { LonLat } from "../wire/beliefFrame";
+
+/** Standard deviations of what a hand antenna tells, its compass included. */
+const SHARPNESS = { sharp: 8, usual: 12, vague: 25 } as const;
+/** dB above the noise. */
+const LOUDNESS = { faint: 4, clear: 12, loud: 25 } as const;
+type Sharpness = keyof typeof SHARPNESS;
+type Loudness = keyof typeof LOUDNESS;
+
+const KEPT = "crossfix.reporter";
+
+interface Reporter {
+  name: string;
+  /** East of north is positive. */
+  declination: number;
+}
+
+function readReporter(): Reporter {
+  try {
+    const { name = "", declination = 0 } = JSON.parse(localStorage.getItem(KEPT) ?? "{}") as Partial<Reporter>;
+    return { name: String(name), declination: Number(declination) || 0 };
+  } catch {
+    return { name: "", declination: 0 };
+  }
+}
+
+function keepReporter(reporter: Reporter): void {
+  try {
+    localStorage.setItem(KEPT, JSON.stringify(reporter));
+  } catch {
+    // a private window: it is asked again
+  }
+}
+
+const turned = (degrees: number) => ((degrees % 360) + 360) % 360;
+
+const stageWords = (stage: Stage, problem: string | null): string =>
+  stage === "refused" ? t("report.stage.refused", { problem: problem ?? "" }) : t(`report.stage.${stage}`);
+
+function useGps(onPlace: (at: LonLat) => void) {
+  const [state, setState] = useState<"off" | "asking" | "on" | "denied">("off");
+  const [accuracy, setAccuracy] = useState<number | null>(null);
+  useEffect(() => {
+    if (state !== "asking" && state !== "on") return;
+    const watch = navigator.geolocation?.watchPosition(
+      ({ coords }) => {
+        setState("on");
+        setAccuracy(coords.accuracy);
+        onPlace([coords.longitude, coords.latitude]);
+      },
+      () => setState("denied"),
+      { enableHighAccuracy: true, maximumAge: 2000 },
+    );
+    if (watch === undefined) setState("denied");
+    return () => {
+      if (watch !== undefined) navigator.geolocation.clearWatch(watch);
+    };
+  }, [state === "asking" || state === "on"]);
+  return { state, accuracy, start: () => setState("asking"), stop: () => setState("off") };
+}
+
+function Pick<T extends string>({
+  name,
+  values,
+  value,
+  label,
+  onPick,
+}: {
+  name: string;
+  values: readonly T[];
+  value: T;
+  label: (one: T) => string;
+  onPick: (one: T) => void;
+}) {
+  return (
+    <fieldset class="report-pick">
+      <legend class="visually-hidden">{name}</legend>
+      {values.map((one) => (
+        <button type="button" key={one} data-testid={`report-${one}`} aria-pressed={one === value} onClick={() => onPick(one)}>
+          {label(one)}
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+function Sent({ missionId }: { missionId: string }) {
+  const own = queue.value.filter((one) => one.missionId === missionId).toReversed();
+  if (own.length === 0) return null;
+  return (
+    <ul class="report-sent" data-testid="report-sent">
+      {own.slice(0, 6).map(({ report: one, stage, problem }) => (
+        <li key={one.bearing_id} data-stage={stage}>
+          <span>{formatBearing(one.bearing_deg)}</span> <span class="muted">{one.taken_at_utc?.slice(11, 19)}</span>{" "}
+          <span>{stageWords(stage, problem)}</span>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+export function BearingsPage({ route }: { route: { missionId: string } }) {
+  const { missionId } = route;
+  const { spec, bearings, ended } = mission.value;
+  const [reporter, setReporter] = useState(readReporter);
+  const [unnamed] = useState(reporter.name === "");
+  const [here, setHere] = useState<LonLat | null>(null);
+  const [bearing, setBearing] = useState<number | null>(null);
+  const [mode, setMode] = useState<"here" | "direction">("here");
+  const [sharpness, setSharpness] = useState<Sharpness>("usual");
+  const [loudness, setLoudness] = useState<Loudness>("clear");
+  const [emitter, setEmitter] = useState<string | null>(null);
+  const gps = useGps(setHere);
+  useEffect(() => keepSending(), []);
+  useEffect(() => stopCompass, []);
+  const emitters = spec?.emitters ?? [];
+  const heard = emitter ?? emitters[0]?.emitter_id ?? null;
+  const pointing = compassState.value === "on" && magneticDeg.value !== null ? turned(magneticDeg.value + reporter.declination) : null;
+  const direction = pointing ?? bearing;
+  const change = (changes: Partial<Reporter>) => {
+    const next = { ...reporter, ...changes };
+    setReporter(next);
+    keepReporter(next);
+  };
+  const signedIn = me.value?.name ?? null;
+  const named = signedIn !== null || reporter.name.trim() !== "";
+  const ready = here !== null && direction !== null && named && heard !== null && ended === null;
+  const missing = ended !== null ? "ended" : !named ? "name" : here === null ? "place" : direction === null ? "direction" : null;
+  const send = () => {
+    if (!ready) return;
+    report(missionId, {
+      by: signedIn === null ? reporter.name.trim() : null,
+      emitter_id: heard,
+      place: { lon: here[0], lat: here[1] },
+      bearing_deg: turned(direction),
+      sigma_deg: SHARPNESS[sharpness],
+      snr_db: LOUDNESS[loudness],
+    });
+  };
+  const waiting = pending(queue.value);
+  return (
+    <div class="report" data-testid="report-page">
+      <header class="report-head">
+        <h1>{spec?.name ?? t("app.loading")}</h1>
+        <a href={missionAddress(missionId)}>{t("report.console")}</a>
+        {waiting > 0 && (
+          <p role="status" data-testid="report-waiting">
+            {t(unreached.value ? "report.offline" : "report.sending", { count: waiting })}
+          </p>
+        )}
+      </header>
+      <AdviceCard missionId={missionId} here={here} />
+      <AimMap
+        area={spec?.area ?? null}
+        others={bearings}
+        advised={advised.value}
+        here={here}
+        bearing={direction}
+        sigma={SHARPNESS[sharpness]}
+        mode={mode}
+        onHere={(place) => {
+          gps.stop();
+          setHere([place.lon, place.lat]);
+          setMode("direction");
+        }}
+        onDirection={(degrees) => {
+          stopCompass();
+          setBearing(degrees);
+        }}
+      />
+      <div class="report-row">
+        <button type="button" data-testid="report-mode-here" aria-pressed={mode === "here"} onClick={() => setMode("here")}>
+          {t("report.tapHere")}
+        </button>
+        <button type="button" data-testid="report-mode-direction" aria-pressed={mode === "direction"} onClick={() => setMode("direction")}>
+          {t("report.tapDirection")}
+        </button>
+        <button
+          type="button"
+          data-testid="report-gps"
+          aria-pressed={gps.state === "on"}
+          onClick={gps.state === "on" ? gps.stop : gps.start}
+        >
+          {gps.state === "on" && gps.accuracy !== null ? t("report.gpsOn", { metres: Math.round(gps.accuracy) }) : t("report.gps")}
+        </button>
+        <button
+          type="button"
+          data-testid="report-compass"
+          aria-pressed={compassState.value === "on"}
+          onClick={() => (compassState.value === "on" ? stopCompass() : void startCompass())}
+        >
+          {t("report.compass")}
+        </button>
+      </div>
+      {gps.state === "denied" && <p role="alert">{t("report.gpsDenied")}</p>}
+      {(compassState.value === "none" || compassState.value === "insecure" || compassState.value === "denied") && (
+        <p role="alert" data-testid="report-compass-problem">
+          {t(`report.compass.${compassState.value}`)}
+        </p>
+      )}
+      <div class="report-direction">
+        <button
+          type="button"
+          aria-label={t("report.left")}
+          disabled={direction === null}
+          onClick={() => setBearing(turned((direction ?? 0) - 5))}
+        >
+          −5°
+        </button>
+        <label>
+          <span class="visually-hidden">{t("report.direction")}</span>
+          <input
+            inputMode="numeric"
+            data-testid="report-direction"
+            placeholder="000"
+            value={direction === null ? "" : String(Math.round(direction) % 360).padStart(3, "0")}
+            onChange={(e) => {
+              const typed = Number(e.currentTarget.value.replace(",", "."));
+              stopCompass();
+              setBearing(e.currentTarget.value.trim() === "" || !Number.isFinite(typed) ? null : turned(typed));
+            }}
+          />
+          <span>° {t("report.trueNorth")}</span>
+        </label>
+        <button
+          type="button"
+          aria-label={t("report.right")}
+          disabled={direction === null}
+          onClick={() => setBearing(turned((direction ?? 0) + 5))}
+        >
+          +5°
+        </button>
+      </div>
+      <Pick
+        name={t("report.sharpness")}
+        values={["sharp", "usual", "vague"]}
+        value={sharpness}
+        label={(one) => t(`report.sharpness.${one}`, { sigma: SHARPNESS[one] })}
+        onPick={setSharpness}
+      />
+      <Pick
+        name={t("report.loudness")}
+        values={["faint", "clear", "loud"]}
+        value={loudness}
+        label={(one) => t(`report.loudness.${one}`)}
+        onPick={setLoudness}
+      />
+      {emitters.length > 1 && (
+        <label class="report-emitter">
+          {t("report.emitter")}
+          <select data-testid="report-emitter" value={heard ?? ""} onChange={(e) => setEmitter(e.currentTarget.value)}>
+            {emitters.map(({ emitter_id: id }) => (
+              <option value={id} key={id}>
+                {emitterName(emitters, id)}
+              </option>
+            ))}
+          </select>
+        </label>
+      )}
+      <details class="report-who" open={unnamed && signedIn === null}>
+        <summary>{signedIn ?? (reporter.name || t("report.who"))}</summary>
+        {signedIn === null && (
+          <label>
+            {t("report.name")}
+            <input
+              data-testid="report-name"
+              maxLength={40}
+              value={reporter.name}
+              onInput={(e) => change({ name: e.currentTarget.value })}
+            />
+          </label>
+        )}
+        <label>
+          {t("report.declination")}
+          <input
+            inputMode="decimal"
+            value={String(reporter.declination)}
+            onChange={(e) => change({ declination: Number(e.currentTarget.value.replace(",", ".")) || 0 })}
+          />
+        </label>
+      </details>
+      <Sent missionId={missionId} />
+      <footer class="report-foot">
+        <button type="button" data-testid="report-back" disabled={!lastOf(queue.value, missionId)} onClick={() => backspace(missionId)}>
+          ⌫ {t("report.back")}
+        </button>
+        <button type="button" class="primary" data-testid="report-send" disabled={!ready} onClick={send}>
+          {missing === null && direction !== null
+            ? t("report.send", { bearing: formatBearing(direction) })
+            : t(`report.missing.${missing ?? "direction"}`)}
+        </button>
+      </footer>
+    </div>
+  );
+}

@@ -1,0 +1,79 @@
+// "Where next?" for people: asked for, followed or not; it says what it would bring and when it has grown old.
+import { useState } from "preact/hooks";
+import { asProblem } from "../commands/send";
+import { t } from "../i18n";
+import { askAdvice } from "../sources/adviceApi";
+import { advice, adviceFreshness } from "../state/advice";
+import { settings } from "../state/settings";
+import { mission, shownTimeMs } from "../state/shown";
+import { formatAge, formatBearing, formatDuration, formatLength } from "../units/quantities";
+import type { Problem } from "../wire";
+import type { LonLat } from "../wire/beliefFrame";
+import { ProblemBox } from "./ProblemNote";
+
+/** m/s */
+const SPEED = { walking: 1.3, driving: 9 } as const;
+type Going = keyof typeof SPEED;
+
+function Said() {
+  const given = advice.value;
+  const state = adviceFreshness.value;
+  if (!given || !state) return null;
+  if (given.localized) return <p data-testid="advice-done">{t("advice.localized")}</p>;
+  const units = settings.value.units;
+  const age = formatAge(Math.max(0, (shownTimeMs.value - Date.parse(given.given_at_utc)) / 1000));
+  return (
+    <div data-testid="advice-said" data-state={state} class={state === "holds" ? "" : "muted"}>
+      <p>
+        <strong>
+          {t("advice.go", {
+            length: formatLength(given.away_m ?? 0, units),
+            bearing: formatBearing(given.bearing_deg ?? 0),
+            time: formatDuration(given.move_s ?? 0),
+          })}
+        </strong>
+      </p>
+      <p>
+        {t("advice.brings", {
+          now: formatLength(given.error_now_m ?? 0, units),
+          later: formatLength(given.error_then_m ?? 0, units),
+        })}{" "}
+        {given.expected_time_s !== null && t("advice.until", { time: formatDuration(given.expected_time_s) })}
+      </p>
+      <small>{t(`advice.state.${state}`, { age })}</small>
+    </div>
+  );
+}
+
+export function AdviceCard({ missionId, here }: { missionId: string; here: LonLat | null }) {
+  const [busy, setBusy] = useState(false);
+  const [problem, setProblem] = useState<Problem | null>(null);
+  if (mission.value.ended) return null;
+  const ask = async (going: Going) => {
+    if (!here) return;
+    setBusy(true);
+    setProblem(null);
+    try {
+      advice.value = await askAdvice(missionId, { lon: here[0], lat: here[1] }, SPEED[going], null);
+    } catch (error) {
+      setProblem(asProblem(error));
+    } finally {
+      setBusy(false);
+    }
+  };
+  return (
+    <section class={`advice ${adviceFreshness.value === "holds" ? "" : "old"}`} data-testid="advice">
+      <div class="advice-ask">
+        <span>{t(here ? "advice.ask" : "advice.needsPlace")}</span>
+        <button type="button" data-testid="advice-walking" disabled={!here || busy} onClick={() => void ask("walking")}>
+          {t("advice.walking")}
+        </button>
+        <button type="button" data-testid="advice-driving" disabled={!here || busy} onClick={() => void ask("driving")}>
+          {t("advice.driving")}
+        </button>
+      </div>
+      {problem && <ProblemBox problem={problem} />}
+      <Said />
+    </section>
+  );
+}

@@ -1,0 +1,66 @@
+// Bearings on their way from a phone to the server, kept in the browser until the server has them. Pure.
+import type { components } from "../wire/generated";
+
+type Report = components["schemas"]["BearingReport"];
+
+/** waiting: the server has not answered; sent: it has it; withdrawing: to be taken back there; back: taken back; refused: by the server, and why. */
+export type Stage = "waiting" | "sent" | "withdrawing" | "back" | "refused";
+
+export interface Queued {
+  missionId: string;
+  report: Report;
+  stage: Stage;
+  /** Why the server refused it, in its words. */
+  problem: string | null;
+}
+
+export type Queue = readonly Queued[];
+
+export const KEPT = 40;
+
+export const add = (queue: Queue, missionId: string, report: Report): Queue =>
+  [...queue, { missionId, report, stage: "waiting" as const, problem: null }].slice(-KEPT);
+
+const change = (queue: Queue, bearingId: string, changes: Partial<Queued>): Queue =>
+  queue.map((one) => (one.report.bearing_id === bearingId ? { ...one, ...changes } : one));
+
+/** What the server said: null for yes, else why not. One that was meanwhile taken back stays to be withdrawn. */
+export function answered(queue: Queue, bearingId: string, problem: string | null): Queue {
+  const one = queue.find((each) => each.report.bearing_id === bearingId);
+  if (!one) return queue;
+  if (one.stage === "withdrawing") return problem === null ? queue : change(queue, bearingId, { stage: "back" });
+  return change(queue, bearingId, problem === null ? { stage: "sent" } : { stage: "refused", problem });
+}
+
+/** It is taken back at the server, or was never there. */
+export const withdrawn = (queue: Queue, bearingId: string): Queue => change(queue, bearingId, { stage: "back" });
+
+const COUNTS: readonly Stage[] = ["waiting", "sent"];
+
+/** The last own bearing that counts, or is on its way to. */
+export const lastOf = (queue: Queue, missionId: string): Queued | undefined =>
+  queue.findLast((one) => one.missionId === missionId && COUNTS.includes(one.stage));
+
+/** "Backspace". One that may have reached the server although it never answered is withdrawn there as well. */
+export function takeBackLast(queue: Queue, missionId: string): Queue {
+  const last = lastOf(queue, missionId);
+  return last ? change(queue, last.report.bearing_id, { stage: "withdrawing" }) : queue;
+}
+
+/** What is to be said to the server next, the oldest first. */
+export const nextOf = (queue: Queue): Queued | undefined => queue.find((one) => one.stage === "waiting" || one.stage === "withdrawing");
+
+export const pending = (queue: Queue): number => queue.filter((one) => one.stage === "waiting" || one.stage === "withdrawing").length;
+
+const isQueued = (one: unknown): one is Queued =>
+  typeof one === "object" && one !== null && "report" in one && "missionId" in one && "stage" in one;
+
+/** From the browser's storage; what is no queue is no bearing. */
+export function read(text: string | null): Queue {
+  try {
+    const found: unknown = JSON.parse(text ?? "[]");
+    return Array.isArray(found) ? found.filter(isQueued) : [];
+  } catch {
+    return [];
+  }
+}

@@ -1,0 +1,94 @@
+"""Bearings from a phone, into a search that flies and into one that has no craft; and advice where to listen."""
+
+from __future__ import annotations
+
+import math
+import time
+from uuid import uuid4
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+from screen import OpenScreen
+from served import Server
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
+
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True, "device_scale_factor": 2}
+LEFT, RIGHT, TOP = {"x": 70, "y": 250}, {"x": 290, "y": 250}, {"x": 180, "y": 90}
+
+
+def hear(page: Page, stand: dict[str, int], towards: dict[str, int]) -> None:
+    """Tap where one stands, then where it comes from, then send."""
+    page.get_by_test_id("report-mode-here").click()
+    page.get_by_test_id("aim-map").click(position=stand)
+    page.get_by_test_id("aim-map").click(position=towards)
+    page.get_by_test_id("report-send").click()
+
+
+def stages(page: Page) -> list[str | None]:
+    return [one.get_attribute("data-stage") for one in page.locator("[data-testid=report-sent] li").all()]
+
+
+def start(server: Server, mission: str) -> None:
+    address = f"{server.url.rstrip('/')}/api/missions/{mission}"
+    until = time.monotonic() + 90
+    while not httpx.post(f"{address}/preflight", timeout=60).json()["passed"]:
+        assert time.monotonic() < until, "preflight does not pass"
+        time.sleep(0.5)
+    order = {"command_id": str(uuid4()), "command": {"kind": "start"}}
+    assert httpx.post(f"{address}/commands", json=order, timeout=60).json()["accepted"]
+
+
+def test_a_phone_adds_two_bearings_to_a_flying_search_and_takes_one_back(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    mission = server.draft()
+    start(server, mission)
+    page = open_screen(server, f"#/mission/{mission}/bearings", **PHONE).page
+    page.get_by_test_id("report-name").type("Ada")
+    hear(page, LEFT, TOP)
+    expect(page.locator("[data-testid=report-sent] li").first).to_have_attribute("data-stage", "sent")
+
+    page.context.set_offline(True)
+    hear(page, RIGHT, TOP)
+    expect(page.get_by_test_id("report-waiting")).to_be_visible()
+    assert stages(page) == ["waiting", "sent"]
+    page.context.set_offline(False)
+    expect(page.locator("[data-testid=report-sent] li").first).to_have_attribute("data-stage", "sent")
+
+    page.get_by_test_id("report-back").click()
+    expect(page.locator("[data-testid=report-sent] li").first).to_have_attribute("data-stage", "back")
+    expect(page.get_by_test_id("report-waiting")).to_be_hidden()
+    events = server.events(mission)
+    said = [e for e in events if e["kind"] == "bearing_measured" and e["source"]["kind"] == "person"]
+    assert [one["source"]["name"] for one in said] == ["Ada", "Ada"]
+    excluded = [e["bearing_id"] for e in events if e["kind"] == "bearing_excluded"]
+    assert excluded == [said[1]["bearing_id"]]
+    assert "hold" not in [e["after"] for e in events if e["kind"] == "phase_changed"], "the craft is not disturbed"
+
+
+def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Server, open_screen: OpenScreen) -> None:
+    """The advice is asked on the phone; what is heard there is told by a script that knows where the emitter is."""
+    mission = server.draft(expected_rmse_m=20.0)
+    address = f"{server.url.rstrip('/')}/api/missions/{mission}/bearings"
+    page = open_screen(server, f"#/mission/{mission}/bearings", **PHONE).page
+    page.get_by_test_id("report-name").fill("Ada")
+    expect(page.get_by_test_id("advice-walking")).to_be_disabled()
+    page.get_by_test_id("aim-map").click(position=LEFT)
+    ring = server.get(f"/api/missions/{mission}")["spec"]["area"]["coordinates"][0]
+    lon, lat = (sum(corner[i] for corner in ring[:4]) / 4 for i in (0, 1))
+    east = math.cos(math.radians(lat))
+    for number in range(10):
+        with page.expect_response("**/advice") as answered:
+            page.get_by_test_id("advice-walking").click()
+        told = answered.value.json()
+        if told["localized"]:
+            break
+        expect(page.get_by_test_id("advice-said")).to_have_attribute("data-state", "holds")
+        at = told["place"]
+        bearing = math.degrees(math.atan2((lon - at["lon"]) * east, lat - at["lat"])) % 360.0
+        report = {"bearing_id": f"phone-{number:04d}", "by": "Ada", "place": at, "bearing_deg": bearing, "sigma_deg": 4}
+        assert httpx.post(address, json=report, timeout=20).status_code == 201
+        expect(page.get_by_test_id("advice-said")).to_have_attribute("data-state", "outrun")
+    expect(page.get_by_test_id("advice-done")).to_be_visible()
