@@ -18,6 +18,8 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   area: () => import("../pages/AreaPage").then((m) => m.AreaPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
   health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
+  calibration: () => import("../pages/CalibrationPage").then((m) => m.CalibrationPage),
+  report: () => import("../pages/ReportPage").then((m) => m.ReportPage),
   people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
   join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
   signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),

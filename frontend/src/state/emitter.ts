@@ -1,5 +1,5 @@
 // What is known of one emitter: a fold of the mission's events.
-import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
+import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected, TruthNoted } from "../wire";
 
 export interface At<T> {
   fact: T;
@@ -24,9 +24,18 @@ export interface EmitterState {
   rejected: readonly At<SweepRejected>[];
   belief: At<BeliefUpdated> | null;
   beliefs: readonly BeliefPoint[];
+  /** What was told of its place after the flight, the last word. */
+  truth: At<TruthNoted> | null;
 }
 
-export const emptyEmitter = (emitterId: string): EmitterState => ({ emitterId, bearings: [], rejected: [], belief: null, beliefs: [] });
+export const emptyEmitter = (emitterId: string): EmitterState => ({
+  emitterId,
+  bearings: [],
+  rejected: [],
+  belief: null,
+  beliefs: [],
+  truth: null,
+});
 
 /** `event` is one that speaks of this emitter. */
 export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
@@ -40,6 +49,8 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
         ...state,
         bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
       };
+    case "truth_noted":
+      return { ...state, truth: { fact: event, seq, at } };
     case "belief_updated":
       return {
         ...state,
