@@ -931,6 +931,7 @@ export const en = {
   "calibration.map": "Where bearings were taken; wrong ones are crossed ({outliers} of {bearings})",
   "edit.profile.back": "As before {date}",
   "timeline.pace": "Speed",
+  "timeline.jump": "Jump to …",
   "timeline.jump.decision": "Decision",
   "timeline.jump.bearing": "Bearing",
   "timeline.jump.alert": "Alert",

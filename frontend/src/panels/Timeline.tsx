@@ -230,18 +230,24 @@ export function Timeline() {
             </option>
           ))}
         </select>
-        {JUMPS.map((tone) => (
-          <button
-            type="button"
-            class="jump"
-            data-testid={`jump-${tone}`}
-            disabled={!all.some((e) => toneOf(e.event) === tone)}
-            onClick={() => jumpTo(tone)}
-            key={tone}
-          >
-            {t(`timeline.jump.${tone}`)}
-          </button>
-        ))}
+        <select
+          class="jump"
+          data-testid="jump"
+          aria-label={t("timeline.jump")}
+          value=""
+          disabled={all.length === 0}
+          onChange={(e) => {
+            jumpTo(e.currentTarget.value as EventTone);
+            e.currentTarget.value = "";
+          }}
+        >
+          <option value="">{t("timeline.jump")}</option>
+          {JUMPS.filter((tone) => all.some((e) => toneOf(e.event) === tone)).map((tone) => (
+            <option value={tone} key={tone}>
+              {t(`timeline.jump.${tone}`)}
+            </option>
+          ))}
+        </select>
         <label class="check">
           <input type="checkbox" checked={showAll.value} onChange={(e) => (showAll.value = e.currentTarget.checked)} />
           {t("timeline.filter.all")}
