@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
@@ -17,9 +18,14 @@ from backend.events import CheckFact
 from backend.logs import about
 from backend.search.errors import MissionNotFound
 from backend.spec import MissionSpec
-from backend.store.digest import MissionDigest
-from backend.store.reading import PlaceInList
+from backend.store.digest import MissionDigest, to_us
+from backend.store.reading import PlaceInList, Wanted
+from backend.wire.library import ResultName
 from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
+
+_NUMBER = r"-?[0-9]{1,3}(\.[0-9]{1,12})?"
+BOX = rf"^{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}$"
+Said = Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")]
 
 router = APIRouter(prefix="/api/missions", tags=["missions"], responses=PROBLEM_RESPONSES)
 
@@ -42,13 +48,41 @@ async def list_missions(
     services: ServicesDep,
     limit: Annotated[int, Query(ge=1, le=500)] = 100,
     after: Annotated[str | None, Query(pattern=r"^[0-9]{1,18}\.[A-Za-z0-9_-]{1,64}$")] = None,
-    named: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
+    named: Said = "",
+    emitter: Said = "",
+    vehicle: Said = "",
+    outcome: ResultName = "",
+    box: Annotated[str | None, Query(pattern=BOX, max_length=120)] = None,
+    since: Annotated[datetime | None, Query()] = None,
+    until: Annotated[datetime | None, Query()] = None,
+    deleted: bool = False,
 ) -> MissionList:
-    """Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name."""
-    digests = await services.journal.page(limit + 1, None if after is None else _place(after), named)
+    """Missions, newest first, a page at a time. after: `next` of the page before. named: a part of name, tags or notes.
+    emitter: of an emitter's name, id or frequency in MHz. box: west,south,east,north that the area meets, degrees.
+    since, until: drafted, UTC. deleted: those that wait to be gone."""
+    wanted = Wanted(
+        named=named,
+        emitter=emitter,
+        vehicle=vehicle,
+        outcome=outcome,
+        box=None if box is None else _box(box),
+        since_us=None if since is None else to_us(_utc(since)),
+        until_us=None if until is None else to_us(_utc(until)),
+        deleted=deleted,
+    )
+    digests = await services.journal.page(limit + 1, None if after is None else _place(after), wanted)
     shown, more = digests[:limit], len(digests) > limit
     follow = f"{shown[-1].drafted_at_us}.{shown[-1].mission_id}" if more else None
     return MissionList(missions=[summary.mission_summary(digest) for digest in shown], next=follow)
+
+
+def _box(text: str) -> tuple[float, float, float, float]:
+    west, south, east, north = (float(part) for part in text.split(","))
+    return west, south, east, north
+
+
+def _utc(at: datetime) -> datetime:
+    return at if at.tzinfo is not None else at.replace(tzinfo=UTC)
 
 
 def _place(after: str) -> PlaceInList:

@@ -50,6 +50,10 @@ def _summary(digest: MissionDigest) -> dict[str, object]:
         "bearings": digest.bearings,
         "rejected_sweeps": digest.rejected_sweeps,
         "last_seq": digest.last_seq,
+        "tags": digest.entry.tags.splitlines(),
+        "notes": digest.entry.notes,
+        "deleted_at_utc": _utc(digest.entry.deleted_at_us),
+        "sketch": digest.entry.sketch,
     }
 
 

@@ -78,6 +78,7 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
+from backend.events.review import MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
 from backend.spec import Model
 
 __all__ = [
@@ -121,10 +122,13 @@ __all__ = [
     "Link",
     "LinkLost",
     "LinkRestored",
+    "MissionDeleted",
     "MissionDrafted",
     "MissionEdited",
     "MissionEnded",
+    "MissionLabelled",
     "MissionPhase",
+    "MissionRestored",
     "MissionStarted",
     "NetsNoted",
     "NetsPutBack",
@@ -145,6 +149,7 @@ __all__ = [
     "RecordingImported",
     "ResumeOrdered",
     "ReturnOrdered",
+    "ReviewFact",
     "SafetyVetoed",
     "ServerRestarted",
     "SourceErrorsFact",
@@ -152,10 +157,13 @@ __all__ = [
     "SweepStarted",
     "TookOff",
     "Topic",
+    "TruthNoted",
 ]
 
 FORM = 2
 """Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
+
+ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored
 
 Event = Annotated[
     MissionDrafted
@@ -203,7 +211,11 @@ Event = Annotated[
     | AlertAcknowledged
     | AlertCleared
     | ServerRestarted
-    | MissionEnded,
+    | MissionEnded
+    | TruthNoted
+    | MissionLabelled
+    | MissionDeleted
+    | MissionRestored,
     Field(discriminator="kind"),
 ]
 

@@ -14,6 +14,7 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.questions import Questions
 from backend.mission.records import Records
 from backend.mission.reports import Reports
+from backend.mission.review import Review
 from hardware.ports import VehicleUnreachable
 
 log = logging.getLogger("crossfix.mission")
@@ -31,6 +32,7 @@ class MissionRoom:
     drafts: Drafts
     questions: Questions
     reports: Reports
+    review: Review
     display: Display
     _showing: asyncio.Task[None] | None = field(default=None)
 
@@ -65,5 +67,6 @@ def mission_room(equipment: MissionEquipment) -> MissionRoom:
         drafts=Drafts(equipment, records, flights),
         questions=Questions(equipment, records, flights),
         reports=Reports(records, flights, equipment.clock),
+        review=Review(records, flights),
         display=Display(equipment, flights),
     )

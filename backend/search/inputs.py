@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from backend.commands import ForSearch
-from backend.events import BeliefUpdated, CheckFact, Event, Outcome
+from backend.events import BeliefUpdated, CheckFact, Event, Outcome, ReviewFact
 from backend.reasons import Reason
 from backend.spec import MissionSpec
 
@@ -65,4 +65,11 @@ class SearchOver:
     outcome: Outcome | None = None
 
 
-SearchInput = Edited | PreflightDone | BearingsArrived | BeliefReady | SearchOrdered | NotStored | SearchOver
+@dataclass(frozen=True, slots=True)
+class Reviewed:
+    """Somebody told the truth of an emitter, labelled the mission, deleted or restored it."""
+
+    fact: ReviewFact
+
+
+SearchInput = Edited | PreflightDone | BearingsArrived | BeliefReady | SearchOrdered | NotStored | SearchOver | Reviewed

@@ -18,11 +18,14 @@ from backend.events import (
     BearingMeasured,
     BeliefUpdated,
     Event,
+    MissionDeleted,
     MissionEdited,
     MissionEnded,
     PreflightChecked,
+    ReviewFact,
     SourceErrorsFact,
     Topic,
+    TruthNoted,
 )
 from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals, search
 from backend.reasons.refused import Refused
@@ -33,6 +36,7 @@ from backend.search.inputs import (
     Edited,
     NotStored,
     PreflightDone,
+    Reviewed,
     SearchInput,
     SearchOrdered,
     SearchOver,
@@ -95,6 +99,8 @@ def _take(step: SearchStep, given: SearchInput) -> None:
         case SearchOver():
             if state.stage == "open":
                 _over(step, given)
+        case Reviewed(fact=fact):
+            _reviewed(step, fact)
         case _:
             assert_never(given)
 
@@ -114,6 +120,15 @@ def _arrived(step: SearchStep, facts: tuple[Event, ...]) -> None:
     for fact in facts:
         step.record(fact)
     update_stale_beliefs(step, only_with_bearings=True)
+
+
+def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
+    """What is in the air is in the list; what is told of an emitter changes no belief."""
+    if isinstance(fact, TruthNoted) and fact.emitter_id not in step.state.emitters:
+        raise Refused(refusals.NoSuchEmitter(fact.emitter_id))
+    if isinstance(fact, MissionDeleted) and step.state.stage == "open":
+        raise Refused(refusals.MissionFlies())
+    step.record(fact)
 
 
 def _belief(step: SearchStep, given: BeliefReady) -> None:

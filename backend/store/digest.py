@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import UTC, datetime
+from typing import Any
 
 from backend.events import (
     BearingExcluded,
@@ -12,6 +13,7 @@ from backend.events import (
     MissionDrafted,
     MissionEdited,
     MissionEnded,
+    MissionLabelled,
     MissionPhase,
     MissionStarted,
     Outcome,
@@ -22,6 +24,7 @@ from backend.events import (
     SweepRejected,
 )
 from backend.mission.state import phase_of
+from backend.store.library import LibraryEntry, advance
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
@@ -54,6 +57,7 @@ class MissionDigest:
     bearings: int
     rejected_sweeps: int
     last_seq: int
+    entry: LibraryEntry = field(default_factory=LibraryEntry)
 
     @property
     def unfinished(self) -> bool:
@@ -61,11 +65,28 @@ class MissionDigest:
         return self.started_at_us is not None and (self.ended_at_us is None or self.flying)
 
 
+def to_columns(digest: MissionDigest) -> dict[str, Any]:
+    """As the missions table keeps it."""
+    columns = asdict(digest)
+    entry = columns.pop("entry")
+    return columns | entry
+
+
+def from_columns(columns: Mapping[str, Any]) -> MissionDigest:
+    """The other way round."""
+    own = {name: value for name, value in columns.items() if name not in _ENTRY}
+    return MissionDigest(**own, entry=LibraryEntry(**{name: columns[name] for name in _ENTRY}))
+
+
+_ENTRY = tuple(one.name for one in fields(LibraryEntry))
+
+
 def fold(before: MissionDigest | None, recorded: Sequence[Recorded]) -> MissionDigest:
     """The digest after these events. The first event of a mission is its draft; ValueError otherwise."""
     digest = before
     for record in recorded:
         digest = _advance(digest, record)
+        digest = replace(digest, entry=advance(digest.entry, record.event, to_us(record.at_utc)))
     if digest is None:
         raise ValueError("no events: there is nothing to fold")
     return digest
@@ -96,6 +117,8 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return _in_phase(replace(digest, name=spec.name, emitters=len(spec.emitters)), passed=False)
+        case MissionLabelled(name=name):
+            return replace(digest, name=name)
         case PreflightChecked(passed=passed):
             return _in_phase(digest, passed)
         case MissionStarted(craft_id=craft_id):

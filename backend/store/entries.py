@@ -22,7 +22,7 @@ from backend.events import FIRST_CRAFT, FORM, Event, Recorded
 from backend.ports import FactRefused, TrackPoint
 from backend.reasons.storage import WrittenElsewhere
 from backend.spec import FIRST_EMITTER
-from backend.store.digest import EPOCH, MissionDigest, fold, to_us
+from backend.store.digest import EPOCH, MissionDigest, fold, from_columns, to_columns, to_us
 from backend.store.tables import events, missions, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, Imports, craft_of_sweep, imports_of, upgraded
 from hardware.readings import Place, Sweep
@@ -107,7 +107,7 @@ class EventsEntry:
         before = await read_digest(connection, self.mission_id)
         if new[0].seq != (before.last_seq if before else 0) + 1:
             raise JournalConflict(WrittenElsewhere(self.mission_id, new[0].seq))
-        after = asdict(fold(before, to_records(self.mission_id, new)))
+        after = to_columns(fold(before, to_records(self.mission_id, new)))
         after["name"] = after["name"].replace("\x00", "")
         if before is None:
             await connection.execute(missions.insert().values(after))
@@ -120,7 +120,7 @@ async def read_digest(connection: AsyncConnection, mission_id: str) -> MissionDi
     """None: no fact of it is stored."""
     rows = await connection.execute(select(missions).where(missions.c.mission_id == mission_id))
     found = rows.mappings().one_or_none()
-    return None if found is None else MissionDigest(**found)
+    return None if found is None else from_columns(found)
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ from backend.store.entries import (
     to_records,
     to_row,
 )
-from backend.store.reading import PlaceInList, StoredFacts
+from backend.store.reading import ANY, PlaceInList, StoredFacts, Wanted
 from backend.store.spool import Spool
 from hardware.readings import Sweep
 
@@ -238,9 +238,9 @@ class SqlJournal:
         """All missions, newest first."""
         return await self._stored.missions()
 
-    async def page(self, most: int, before: PlaceInList | None = None, named: str = "") -> list[MissionDigest]:
+    async def page(self, most: int, before: PlaceInList | None = None, wanted: Wanted = ANY) -> list[MissionDigest]:
         """A part of them, for a list that may hold thousands; see StoredFacts.page."""
-        return await self._stored.page(most, before, named)
+        return await self._stored.page(most, before, wanted)
 
     async def of_nets(self) -> list[Recorded]:
         """Of the newest missions, oldest first: who flies a hundred missions puts the nets of the first back before."""

@@ -88,8 +88,7 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
     try:
         await journal.start_up()
         beside.append(asyncio.create_task(journal.run()))
-        if settings.keep_sweeps_days is not None:
-            beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days)))
+        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days)))
         yield journal
     finally:
         for task in beside:

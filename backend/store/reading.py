@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Executable, exc, func, select
+from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, Recorded
 from backend.ports import JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent
-from backend.store.digest import MissionDigest
+from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
 from backend.store.patience import patience
 from backend.store.tables import events, missions, sweeps, tracks
@@ -25,6 +25,48 @@ class PlaceInList:
 
     drafted_at_us: int
     mission_id: str
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which missions. named: a part of name, tags or notes; emitter: of an emitter's name, id or frequency (MHz); box:
+    west, south, east, north, degrees: the area meets it; since, until: drafted, UTC us, until excluded. deleted: those
+    that wait to be gone, instead of all others. checked: somebody told where an emitter was. "" and None: any."""
+
+    named: str = ""
+    emitter: str = ""
+    vehicle: str = ""
+    outcome: str = ""
+    box: tuple[float, float, float, float] | None = None
+    since_us: int | None = None
+    until_us: int | None = None
+    deleted: bool = False
+    checked: bool = False
+
+
+ANY = Wanted()
+
+
+def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
+    columns = missions.c
+    yield columns.deleted_at_us.is_not(None) if wanted.deleted else columns.deleted_at_us.is_(None)
+    if wanted.named:
+        yield or_(*(c.icontains(wanted.named, autoescape=True) for c in (columns.name, columns.tags, columns.notes)))
+    if wanted.emitter:
+        yield columns.sought.contains(wanted.emitter.lower(), autoescape=True)
+    if wanted.vehicle:
+        yield columns.vehicles.contains(wanted.vehicle.lower(), autoescape=True)
+    if wanted.outcome:
+        yield columns.outcome == wanted.outcome
+    if wanted.box is not None:
+        west, south, east, north = wanted.box
+        yield (columns.west <= east) & (columns.east >= west) & (columns.south <= north) & (columns.north >= south)
+    if wanted.since_us is not None:
+        yield columns.drafted_at_us >= wanted.since_us
+    if wanted.until_us is not None:
+        yield columns.drafted_at_us < wanted.until_us
+    if wanted.checked:
+        yield columns.truths > 0
 
 
 class StoredFacts:
@@ -54,29 +96,31 @@ class StoredFacts:
     async def mission(self, mission_id: str) -> MissionDigest | None:
         """None for an unknown mission."""
         rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
-        return MissionDigest(**rows[0]._mapping) if rows else None
+        return from_columns(rows[0]._mapping) if rows else None
 
     async def missions(self) -> list[MissionDigest]:
         """The last drafted first."""
         rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
-        return [MissionDigest(**row._mapping) for row in rows]
+        return [from_columns(row._mapping) for row in rows]
 
-    async def page(self, most: int, before: PlaceInList | None, named: str) -> list[MissionDigest]:
-        """The next missions of the same list. before: the last one known, None for the first page. named: a part of
-        their name, "" for all."""
-        query = select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id).limit(most)
+    async def page(self, most: int, before: PlaceInList | None, wanted: Wanted) -> list[MissionDigest]:
+        """The next missions of the same list. before: the last one known, None for the first page."""
+        query = (
+            select(missions)
+            .where(*_asked(wanted))
+            .order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id)
+            .limit(most)
+        )
         if before is not None:
             at, later = missions.c.drafted_at_us, missions.c.mission_id > before.mission_id
             query = query.where((at < before.drafted_at_us) | ((at == before.drafted_at_us) & later))
-        if named:
-            query = query.where(missions.c.name.icontains(named, autoescape=True))
-        return [MissionDigest(**row._mapping) for row in await self._fetch(query)]
+        return [from_columns(row._mapping) for row in await self._fetch(query)]
 
     async def unfinished(self) -> list[MissionDigest]:
         """Started, and not ended or with a craft still in the air."""
         going_on = missions.c.ended_at_us.is_(None) | missions.c.flying
         query = select(missions).where(missions.c.started_at_us.is_not(None) & going_on)
-        return [MissionDigest(**row._mapping) for row in await self._fetch(query)]
+        return [from_columns(row._mapping) for row in await self._fetch(query)]
 
     async def sweep(self, mission_id: str, sweep_id: str) -> SweepEntry | None:
         """None for an unknown sweep."""

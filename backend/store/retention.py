@@ -12,10 +12,12 @@ from sqlalchemy import ColumnElement, delete, func, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.store.digest import to_us
-from backend.store.tables import missions, sweeps
+from backend.store.tables import events, missions, sweeps, tracks
 
 log = logging.getLogger("crossfix.store")
 
+DELETED_DAYS = 30.0
+"""So long a deleted mission can be restored."""
 AT_ONCE = 50
 """Sweeps in one transaction: a flight that writes meanwhile waits for no more than that."""
 PAUSE_S = 0.05
@@ -74,8 +76,26 @@ async def thin(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
     return found
 
 
-async def keep_thin(engine: AsyncEngine, keep_days: float) -> None:
+async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
+    """Missions that were deleted longer ago go for good, with all that is kept of them, one in a transaction. How many.
+    Raises what the driver raises."""
+    gone = (missions.c.deleted_at_us < to_us(now - timedelta(days=keep_days))) & ~missions.c.flying
+    writer = engine.execution_options(write=True)
+    taken = 0
+    while True:
+        async with writer.begin() as connection:
+            mission_id = (await connection.execute(select(missions.c.mission_id).where(gone).limit(1))).scalar()
+            if mission_id is None:
+                return taken
+            for table in (sweeps, tracks, events, missions):
+                await connection.execute(delete(table).where(table.c.mission_id == mission_id))
+        taken += 1
+        await asyncio.sleep(PAUSE_S)
+
+
+async def keep_thin(engine: AsyncEngine, keep_days: float | None) -> None:
     """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
+    keep_days None: raw sweeps are kept for ever.
 
     The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it.
     """
@@ -84,8 +104,13 @@ async def keep_thin(engine: AsyncEngine, keep_days: float) -> None:
         await asyncio.sleep(wait_s)
         wait_s = EVERY_S
         try:
+            buried = await bury(engine, DELETED_DAYS, datetime.now(UTC))
+            if buried:
+                log.info("%d missions deleted more than %g days ago are gone", buried, DELETED_DAYS)
+            if keep_days is None:
+                continue
             taken = await thin(engine, keep_days, datetime.now(UTC))
             if taken.sweeps:
                 log.info("took %d raw sweeps older than %g days (%d bytes)", taken.sweeps, keep_days, taken.size_bytes)
         except Exception:
-            log.exception("old raw sweeps could not be taken; tried again later")
+            log.exception("old raw sweeps or missions could not be taken; tried again later")

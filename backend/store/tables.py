@@ -43,6 +43,18 @@ missions = Table(
     Column("bearings", Integer, nullable=False),
     Column("rejected_sweeps", Integer, nullable=False),
     Column("last_seq", Integer, nullable=False),
+    Column("tags", Text, nullable=False),
+    Column("notes", Text, nullable=False),
+    Column("deleted_at_us", BigInteger),
+    Column("sought", Text, nullable=False),
+    Column("vehicles", Text, nullable=False),
+    Column("west", Double),
+    Column("south", Double),
+    Column("east", Double),
+    Column("north", Double),
+    Column("truths", Integer, nullable=False),
+    Column("sketch", JSON, nullable=False),
+    Index("missions_in_order", "drafted_at_us", "mission_id"),
 )
 
 events = Table(

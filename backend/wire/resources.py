@@ -21,6 +21,7 @@ from backend.events import (
 )
 from backend.reasons import Reason
 from backend.spec import Area, Id, MissionSpec, Model, Place
+from backend.wire.library import Sketch
 from planner.options import BasePolicy, DiscreteSelection, Estimator, Method
 
 
@@ -77,6 +78,10 @@ class MissionSummary(Model):
     bearings: int
     rejected_sweeps: int
     last_seq: int
+    tags: list[str]
+    notes: str
+    deleted_at_utc: datetime | None
+    sketch: Sketch
 
 
 class EmitterFound(Model):

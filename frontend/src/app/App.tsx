@@ -19,6 +19,8 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   bearings: () => import("../pages/BearingsPage").then((m) => m.BearingsPage),
   maps: () => import("../pages/MapsPage").then((m) => m.MapsPage),
   health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
+  calibration: () => import("../pages/CalibrationPage").then((m) => m.CalibrationPage),
+  report: () => import("../pages/ReportPage").then((m) => m.ReportPage),
   people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
   join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
   signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),

@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
 import { draft, update } from "./draft";
-import { profileOf, profiles, removeProfile, saveProfile, withProfile } from "./profiles";
+import { profileOf, profiles, removeProfile, saveProfile, takeBack, withProfile } from "./profiles";
 
 export function ProfileRow() {
   const [name, setName] = useState("");
@@ -47,6 +47,11 @@ export function ProfileRow() {
           >
             {t("edit.profile.save")}
           </button>
+          {(known.find((p) => p.name === name)?.history?.length ?? 0) > 0 && (
+            <button type="button" data-testid="profile-back" onClick={() => takeBack(name)}>
+              {t("edit.profile.back", { date: known.find((p) => p.name === name)!.history![0]!.at.slice(0, 10) })}
+            </button>
+          )}
           {known.some((p) => p.name === name) && (
             <button type="button" onClick={() => removeProfile(name)}>
               {t("edit.area.clear")}

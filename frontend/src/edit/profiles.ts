@@ -1,5 +1,6 @@
 // Vehicles and sensors one flies again and again: the values that belong to the equipment, kept under a name.
 import { signal } from "@preact/signals";
+import type { Suggested } from "../sources/libraryApi";
 import type { MissionSpec } from "../wire";
 
 export interface Profile {
@@ -10,7 +11,18 @@ export interface Profile {
     MissionSpec["flight"],
     "altitude_relative_m" | "minimum_altitude_relative_m" | "maximum_altitude_relative_m" | "speed_m_s" | "reserve_battery_percent"
   >;
+  /** What it was before each taking over, the newest first. */
+  history?: readonly Change[];
 }
+
+export interface Change {
+  /** UTC, ISO 8601. */
+  at: string;
+  sensor: Profile["sensor"];
+  motion: Profile["motion"];
+}
+
+const MOST_KEPT = 20;
 
 const KEY = "crossfix.profiles";
 
@@ -52,8 +64,33 @@ export const withProfile = (spec: MissionSpec, { sensor, motion, flight }: Profi
   flight: { ...spec.flight, ...flight },
 });
 
-/** A profile of the same name is replaced. */
-export function saveProfile(profile: Profile): void {
+/** With what checked flights suggest. Pure: the profile after it, its values of before kept in its history. */
+export function learned(profile: Profile, suggested: Suggested, at: string): Profile {
+  const { sensor, motion, history = [] } = profile;
+  const { sigma_deg, outlier_probability, speed_m_s: speed, constant_s: constant } = suggested;
+  return {
+    ...profile,
+    sensor: { ...sensor, sigma_deg, outlier_probability },
+    motion: speed === null || constant === null ? motion : { kind: "linear_constant", speed_m_s: speed, constant_s: constant },
+    history: [{ at, sensor, motion }, ...history].slice(0, MOST_KEPT),
+  };
+}
+
+export function learnInto(name: string, suggested: Suggested): void {
+  const profile = profiles.peek().find((p) => p.name === name);
+  if (profile) saveProfile(learned(profile, suggested, new Date().toISOString()));
+}
+
+/** As it was before the last taking over; the change itself is forgotten. */
+export function takeBack(name: string): void {
+  const profile = profiles.peek().find((p) => p.name === name);
+  const [before, ...history] = profile?.history ?? [];
+  if (profile && before) saveProfile({ ...profile, sensor: before.sensor, motion: before.motion, history });
+}
+
+/** A profile of the same name is replaced; its history goes on. */
+export function saveProfile(saved: Profile): void {
+  const profile = { ...saved, history: saved.history ?? profiles.peek().find((p) => p.name === saved.name)?.history ?? [] };
   keep([...profiles.peek().filter((p) => p.name !== profile.name), profile].toSorted((a, b) => a.name.localeCompare(b.name)));
 }
 

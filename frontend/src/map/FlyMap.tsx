@@ -3,6 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { type GeoJSONSource, type Map as GlMap, type ImageSource, type MapMouseEvent, Marker } from "maplibre-gl";
 import { useEffect, useRef } from "preact/hooks";
 import { cancelProposal, proposal, propose } from "../commands/proposal";
+import { tapping, tell } from "../commands/truth";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
 import { shownBelief } from "../state/belief";
@@ -92,6 +93,7 @@ function nextElement(): HTMLElement {
 const spec = computed(() => mission.value.spec);
 const bearings = computed(() => mission.value.bearings);
 const estimated = computed(() => mission.value.belief);
+const truth = computed(() => mission.value.truth);
 const emitterId = computed(() => mission.value.emitterId);
 const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.plan));
 const home = computed(() => mission.value.home);
@@ -130,7 +132,7 @@ function bind(map: GlMap): () => void {
     }),
     effect(() => paintBelief(map)),
     effect(() => {
-      const shown = { spec: spec.value, bearings: bearings.value, belief: estimated.value, emitterId: emitterId.value };
+      const shown = { spec: spec.value, bearings: bearings.value, belief: estimated.value, emitterId: emitterId.value, truth: truth.value };
       put(map, "measured", measuredFeatures(shown, emittersThen.value));
     }),
     effect(() => {
@@ -285,7 +287,8 @@ export function FlyMap() {
       box.current?.setAttribute("data-ready", "true");
     });
     created.on("click", (event: MapMouseEvent) => {
-      if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
+      if (tapping.peek()) void tell({ lat: event.lngLat.lat, lon: event.lngLat.lng }, "map");
+      else if (canPropose()) propose({ lat: event.lngLat.lat, lon: event.lngLat.lng });
     });
     created.on("mousemove", "candidates", ({ features }) => {
       highlighted.value = (features?.[0]?.properties.index as number | undefined) ?? null;

@@ -136,9 +136,18 @@ function emittersFeatures(spec: MissionSpec | null, emitters: Emitters, looked: 
   });
 }
 
+/** Where the emitter was found, and the way from the estimate to it. */
+function truthFeatures({ belief, truth }: Partial<Pick<MissionView, "belief" | "truth">>): GeoJSON.Feature[] {
+  const place = truth?.fact.place;
+  if (!place) return [];
+  const estimate = belief?.fact.estimate;
+  const off = estimate ? [line([lonLat(estimate), lonLat(place)], { what: "truth_line" })] : [];
+  return [...off, point(lonLat(place), { what: "truth" })];
+}
+
 /** What the sweeps say and what follows, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
 export const measuredFeatures = (
-  mission: Bearings & Pick<MissionView, "belief"> & Partial<Pick<MissionView, "emitterId">>,
+  mission: Bearings & Pick<MissionView, "belief"> & Partial<Pick<MissionView, "emitterId" | "truth">>,
   emitters: Emitters = new Map(),
 ): Features =>
   collection([
@@ -147,6 +156,7 @@ export const measuredFeatures = (
     ...placeFeatures(mission),
     ...estimateFeatures(mission),
     ...emittersFeatures(mission.spec, emitters, mission.emitterId ?? null),
+    ...truthFeatures(mission),
   ]);
 
 export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: number | null): Features {

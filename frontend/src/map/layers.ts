@@ -214,6 +214,20 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       paint: { "circle-radius": 5, "circle-color": colours.ink, "circle-stroke-color": colours.halo, "circle-stroke-width": 2.5 },
     },
     {
+      id: "truth-line",
+      type: "line",
+      source: "measured",
+      filter: of("truth_line"),
+      paint: { "line-color": colours.ink, "line-width": 1.5, "line-dasharray": [2, 2] },
+    },
+    {
+      id: "truth",
+      type: "circle",
+      source: "measured",
+      filter: of("truth"),
+      paint: { "circle-radius": 7, "circle-color": colours.halo, "circle-stroke-color": colours.ink, "circle-stroke-width": 3 },
+    },
+    {
       id: "emitters",
       type: "circle",
       source: "measured",

@@ -12,6 +12,7 @@ import { PreflightPanel } from "../panels/PreflightPanel";
 import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
+import { TruthCard } from "../panels/TruthCard";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
 
@@ -71,6 +72,7 @@ export function FlyPage() {
           </>
         )}
         {!before && <PlanPanel />}
+        <TruthCard />
         <div class="drawers">
           {before && missionId && <AntennaCheck missionId={missionId} />}
           <ImportRecording />

@@ -2,10 +2,13 @@
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
+import { LabelForm } from "../panels/LabelForm";
+import { LibraryFilter } from "../panels/LibraryFilter";
+import { MiniMap } from "../panels/MiniMap";
 import { ProblemBox, problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { readRecording, replays } from "../sources/replay";
-import { type Library, withFirstPage, withNextPage } from "../state/library";
+import { ANY, asQuery, type Filter, type Library, withFirstPage, withNextPage } from "../state/library";
 import { isOver } from "../state/mission";
 import { go, missionAddress } from "../state/route";
 import { change, settings } from "../state/settings";
@@ -44,13 +47,29 @@ function Export({ id }: { id: string }) {
   );
 }
 
-function Row({ mission }: { mission: MissionSummary }) {
+interface RowProperties {
+  mission: MissionSummary;
+  editing: boolean;
+  onEdit: (id: string | null) => void;
+}
+
+function Row({ mission, editing, onEdit }: RowProperties) {
   return (
     <tr data-testid="mission-row" data-mission={mission.mission_id} data-phase={mission.phase}>
+      <td>
+        <MiniMap sketch={mission.sketch} />
+      </td>
       <td>
         <a href={missionAddress(mission.mission_id)}>
           <strong>{mission.name}</strong>
         </a>
+        {mission.tags.map((tag) => (
+          <span class="label" key={tag}>
+            {tag}
+          </span>
+        ))}
+        {mission.notes && <p class="muted notes">{mission.notes}</p>}
+        {editing && <LabelForm mission={mission} onDone={() => onEdit(null)} />}
       </td>
       <td>
         <span class={`tag tone-${toneOfMission(mission.phase, mission.outcome)}`}>
@@ -72,6 +91,14 @@ function Row({ mission }: { mission: MissionSummary }) {
             {t("missions.copy")}
           </a>
           {isOver(mission.phase) && <Export id={mission.mission_id} />}
+          {isOver(mission.phase) && (
+            <a class="button" href={`#/report/${encodeURIComponent(mission.mission_id)}`} data-testid="open-report">
+              {t("missions.report")}
+            </a>
+          )}
+          <button type="button" data-testid="label-mission" onClick={() => onEdit(editing ? null : mission.mission_id)}>
+            {t("missions.label")}
+          </button>
         </div>
       </td>
     </tr>
@@ -104,13 +131,15 @@ function OpenRecording({ onProblem }: { onProblem: (text: string) => void }) {
 }
 
 /** The list of missions with this part in their name, kept current; `more` reads the page that follows. */
-function useLibrary(named: string) {
+function useLibrary(filter: Filter) {
+  const asked = asQuery(filter);
+  const named = JSON.stringify(asked);
   const [library, setLibrary] = useState<Library | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   useEffect(() => {
     let current = true;
     const read = () =>
-      api.missions(named, null).then(
+      api.missions(asked, null).then(
         (page) => {
           if (!current) return;
           setLibrary((before) => withFirstPage(before, named, page));
@@ -118,7 +147,7 @@ function useLibrary(named: string) {
         },
         (error: unknown) => current && setProblem(asProblem(error)),
       );
-    const first = setTimeout(() => void read(), named ? TYPING_MS : 0);
+    const first = setTimeout(() => void read(), filter === ANY ? 0 : TYPING_MS);
     const timer = setInterval(() => void read(), REFRESH_MS);
     return () => {
       current = false;
@@ -127,7 +156,7 @@ function useLibrary(named: string) {
     };
   }, [named]);
   const more = (from: Library) =>
-    api.missions(from.named, from.next).then(
+    api.missions(JSON.parse(from.named) as Record<string, string>, from.next).then(
       (page) => setLibrary((now) => (now?.named === from.named ? withNextPage(now, page) : now)),
       (error: unknown) => setProblem(asProblem(error)),
     );
@@ -136,8 +165,9 @@ function useLibrary(named: string) {
 
 export function MissionsPage() {
   const [broken, setBroken] = useState<string | null>(null);
-  const [wanted, setWanted] = useState("");
-  const { library, problem, more } = useLibrary(wanted.trim());
+  const [filter, setFilter] = useState<Filter>(ANY);
+  const [editing, setEditing] = useState<string | null>(null);
+  const { library, problem, more } = useLibrary(filter);
   const shown = library?.missions;
   return (
     <div class="page" data-testid="missions">
@@ -147,14 +177,15 @@ export function MissionsPage() {
           type="search"
           placeholder={t("missions.search")}
           aria-label={t("missions.search")}
-          value={wanted}
-          onInput={(e) => setWanted(e.currentTarget.value)}
+          value={filter.named}
+          onInput={(e) => setFilter({ ...filter, named: e.currentTarget.value })}
         />
         <OpenRecording onProblem={setBroken} />
         <a class="button primary" href="#/new" data-testid="new-mission">
           {t("missions.new")}
         </a>
       </div>
+      <LibraryFilter filter={filter} missions={shown ?? []} onChange={setFilter} />
       {!settings.value.tourSeen && (
         <div class="card page-head" data-testid="tour-offer">
           <span class="grow">{t("tour.offer")}</span>
@@ -173,11 +204,14 @@ export function MissionsPage() {
       )}
       {problem && <ProblemBox problem={problem} />}
       {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
-      {shown?.length === 0 && <p class="card">{t(library?.named ? "missions.noneNamed" : "missions.empty")}</p>}
+      {shown?.length === 0 && <p class="card">{t(filter !== ANY ? "missions.noneNamed" : "missions.empty")}</p>}
       {shown && shown.length > 0 && (
         <table class="table">
           <thead>
             <tr>
+              <th scope="col">
+                <span class="visually-hidden">{t("missions.map")}</span>
+              </th>
               <th scope="col">{t("missions.name")}</th>
               <th scope="col">{t("missions.state")}</th>
               <th scope="col">{t("missions.drafted")}</th>
@@ -190,7 +224,7 @@ export function MissionsPage() {
           </thead>
           <tbody>
             {shown.map((mission) => (
-              <Row mission={mission} key={mission.mission_id} />
+              <Row mission={mission} editing={editing === mission.mission_id} onEdit={setEditing} key={mission.mission_id} />
             ))}
           </tbody>
         </table>

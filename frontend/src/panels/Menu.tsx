@@ -58,6 +58,11 @@ export function Menu() {
             </a>
           </li>
           <li>
+            <a href="#/calibration" onClick={close} data-testid="menu-calibration">
+              {t("menu.calibration")}
+            </a>
+          </li>
+          <li>
             <a href="#/people" onClick={close} data-testid="menu-people">
               {t("menu.people")}
             </a>

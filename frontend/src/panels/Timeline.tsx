@@ -2,15 +2,19 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { type MessageKey, t } from "../i18n";
-import { isMain, toneOf } from "../state/eventWeight";
+import { type EventTone, isMain, toneOf } from "../state/eventWeight";
 import { eventWords } from "../state/eventWords";
 import { cursor, events, liveMission, look } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
-import { formatClock, formatLength } from "../units/quantities";
+import { formatClock, formatLength, formatNumber } from "../units/quantities";
 import type { Recorded } from "../wire";
 
 const showAll = signal(false);
+
+/** Seconds of the mission a second. */
+const PACES = [0.5, 1, 2, 5, 10, 20, 50];
+const JUMPS = ["decision", "bearing", "alert"] as const;
 
 /** Runs through the recorded moments, `speed` seconds of the mission a second. */
 function usePlayback(all: readonly Recorded[]): [number | null, (speed: number | null) => void] {
@@ -106,6 +110,13 @@ export function stepEvent(step: -1 | 1): void {
   look(target >= last.seq ? null : Math.max(all[0]!.seq, target));
 }
 
+/** To the next event of its kind after the one looked at; from the last one, or live, to the first. */
+function jumpTo(tone: EventTone): void {
+  const those = events.peek().filter((e) => toneOf(e.event) === tone);
+  const next = those.find((e) => e.seq > (cursor.peek() ?? Infinity)) ?? those[0];
+  if (next) look(next.seq);
+}
+
 function Log({ all }: { all: readonly Recorded[] }) {
   const list = useRef<HTMLOListElement>(null);
   const emitters = mission.value.spec?.emitters ?? [];
@@ -156,6 +167,7 @@ export function Timeline() {
   const all = events.value;
   const reviewing = cursor.value !== null;
   const [speed, play] = usePlayback(all);
+  const [pace, setPace] = useState(10);
   return (
     <section class="timeline" aria-label={t("timeline.label")} data-testid="timeline" data-tour="6">
       <div class="timeline-controls">
@@ -197,11 +209,45 @@ export function Timeline() {
           disabled={all.length === 0}
           onClick={() => {
             if (speed === null && cursor.peek() === null && all[0]) look(all[0].seq);
-            play(speed === null ? 10 : null);
+            play(speed === null ? pace : null);
           }}
         >
-          {speed === null ? `${t("timeline.play")} 10×` : t("timeline.pause")}
+          {t(speed === null ? "timeline.play" : "timeline.pause")}
         </button>
+        <select
+          data-testid="pace"
+          aria-label={t("timeline.pace")}
+          value={pace}
+          onChange={(e) => {
+            const chosen = Number(e.currentTarget.value);
+            setPace(chosen);
+            if (speed !== null) play(chosen);
+          }}
+        >
+          {PACES.map((one) => (
+            <option value={one} key={one}>
+              {formatNumber(one, one < 1 ? 1 : 0)}×
+            </option>
+          ))}
+        </select>
+        <select
+          class="jump"
+          data-testid="jump"
+          aria-label={t("timeline.jump")}
+          value=""
+          disabled={all.length === 0}
+          onChange={(e) => {
+            jumpTo(e.currentTarget.value as EventTone);
+            e.currentTarget.value = "";
+          }}
+        >
+          <option value="">{t("timeline.jump")}</option>
+          {JUMPS.filter((tone) => all.some((e) => toneOf(e.event) === tone)).map((tone) => (
+            <option value={tone} key={tone}>
+              {t(`timeline.jump.${tone}`)}
+            </option>
+          ))}
+        </select>
         <label class="check">
           <input type="checkbox" checked={showAll.value} onChange={(e) => (showAll.value = e.currentTarget.checked)} />
           {t("timeline.filter.all")}

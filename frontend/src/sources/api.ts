@@ -98,8 +98,8 @@ const compassPath = (craftId: string) => `/crafts/${encodeURIComponent(craftId)}
 export const compass = (craftId: string) => json<CompassKnown>(compassPath(craftId));
 export const forgetCompass = (craftId: string) => json<CompassKnown>(compassPath(craftId), { method: "DELETE" });
 /** A page of the list. after: `next` of the page before. */
-export const missions = (named: string, after: string | null) =>
-  json<MissionList>(`/missions?${new URLSearchParams(after === null ? { named } : { named, after })}`);
+export const missions = (asked: Readonly<Record<string, string>>, after: string | null) =>
+  json<MissionList>(`/missions?${new URLSearchParams(after === null ? asked : { ...asked, after })}`);
 export const mission = (id: string) => json<Mission>(missionPath(id));
 export const draftMission = (spec: MissionSpec) => json<Mission>("/missions", withBody("POST", spec));
 export const editMission = (id: string, spec: MissionSpec) => json<Mission>(`${missionPath(id)}/spec`, withBody("PUT", spec));

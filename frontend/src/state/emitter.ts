@@ -1,5 +1,5 @@
 // What is known of one emitter: a fold of the mission's events.
-import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected } from "../wire";
+import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected, TruthNoted } from "../wire";
 
 export interface At<T> {
   fact: T;
@@ -26,6 +26,8 @@ export interface EmitterState {
   beliefs: readonly BeliefPoint[];
   /** The last belief that said localized: of an emitter that moves it stands for its moment. */
   claim: At<BeliefUpdated> | null;
+  /** What was told of its place after the flight, the last word. */
+  truth: At<TruthNoted> | null;
 }
 
 export const emptyEmitter = (emitterId: string): EmitterState => ({
@@ -35,6 +37,7 @@ export const emptyEmitter = (emitterId: string): EmitterState => ({
   belief: null,
   beliefs: [],
   claim: null,
+  truth: null,
 });
 
 /** `event` is one that speaks of this emitter. */
@@ -50,6 +53,8 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
         claim: null,
         bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
       };
+    case "truth_noted":
+      return { ...state, truth: { fact: event, seq, at } };
     case "belief_updated":
       return {
         ...state,

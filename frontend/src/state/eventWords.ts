@@ -177,6 +177,14 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.alert_cleared");
     case "server_restarted":
       return t("event.server_restarted");
+    case "truth_noted":
+      return t(event.place === null ? "event.truth_nowhere" : "event.truth_noted", { by: event.by });
+    case "mission_labelled":
+      return t("event.mission_labelled", { by: event.by });
+    case "mission_deleted":
+      return t("event.mission_deleted", { by: event.by });
+    case "mission_restored":
+      return t("event.mission_restored", { by: event.by });
     case "mission_ended":
       return t("event.mission_ended", {
         outcome: t(`outcome.${event.outcome}` satisfies MessageKey),

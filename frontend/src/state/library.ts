@@ -1,6 +1,29 @@
 // The list of missions as far as it was read: the first page again and again, the others as they are asked for.
 import type { MissionList, MissionSummary } from "../wire";
 
+/** What is asked of the list; "" for any. box: west,south,east,north. since, until: days, until included. */
+export interface Filter {
+  named: string;
+  emitter: string;
+  vehicle: string;
+  outcome: string;
+  box: string;
+  since: string;
+  until: string;
+  deleted: boolean;
+}
+
+export const ANY: Filter = { named: "", emitter: "", vehicle: "", outcome: "", box: "", since: "", until: "", deleted: false };
+
+const DAY_MS = 86_400_000;
+
+/** As the address of the list says it: what is asked, and nothing besides. */
+export function asQuery({ since, until, deleted, ...words }: Filter): Record<string, string> {
+  const after = until === "" ? "" : new Date(Date.parse(`${until}T00:00:00Z`) + DAY_MS).toISOString();
+  const asked = { ...words, since: since === "" ? "" : `${since}T00:00:00Z`, until: after, deleted: deleted ? "true" : "" };
+  return Object.fromEntries(Object.entries(asked).flatMap(([name, said]) => (said.trim() === "" ? [] : [[name, said.trim()]])));
+}
+
 export interface Library {
   readonly named: string;
   readonly missions: readonly MissionSummary[];

@@ -107,6 +107,8 @@ function foldSearch(state: MissionState, { event, at_utc: at, seq }: Recorded): 
       return { ...withSpec(state, event.spec, seq), checks: null, preflightPassed: null };
     case "area_changed":
       return state.spec ? withSpec(state, searching(state.spec, event.search), seq) : state;
+    case "mission_labelled":
+      return state.spec ? { ...state, spec: { ...state.spec, name: event.name } } : state;
     case "preflight_checked":
       return { ...state, checks: event.checks, preflightPassed: event.passed };
     case "mission_started":
@@ -143,6 +145,7 @@ const emitterOf = (event: MissionEvent): string | null => {
     case "bearing_measured":
     case "bearing_excluded":
     case "belief_updated":
+    case "truth_noted":
       return event.emitter_id;
     default:
       return null;

@@ -10,6 +10,8 @@ export type Route =
   | { page: "bearings"; missionId: string }
   | { page: "maps" }
   | { page: "health" }
+  | { page: "calibration" }
+  | { page: "report"; missionIds: string[] }
   | { page: "people" }
   | { page: "join"; code: string }
   | { page: "signIn"; fault: string };
@@ -18,7 +20,8 @@ export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
-  if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people") return { page: parts[0] };
+  if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people" || parts[0] === "calibration") return { page: parts[0] };
+  if (parts[0] === "report" && id) return { page: "report", missionIds: parts.slice(1) };
   if (parts[0] === "sign-in" && id) return { page: "signIn", fault: id };
   if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {

@@ -28,6 +28,7 @@ export interface MissionView extends Omit<MissionState, "emitters" | "crafts" | 
   rejected: readonly At<SweepRejected>[];
   belief: EmitterState["belief"];
   beliefs: readonly BeliefPoint[];
+  truth: EmitterState["truth"];
   automatic: boolean;
   returnsAt: CraftState["returnsAt"];
   authority: CraftState["authority"];

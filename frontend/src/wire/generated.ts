@@ -453,7 +453,9 @@ export interface paths {
         };
         /**
          * List Missions
-         * @description Missions, newest first, a page at a time. after: `next` of the page before. named: a part of the name.
+         * @description Missions, newest first, a page at a time. after: `next` of the page before. named: a part of name, tags or notes.
+         *     emitter: of an emitter's name, id or frequency in MHz. box: west,south,east,north that the area meets, degrees.
+         *     since, until: drafted, UTC. deleted: those that wait to be gone.
          */
         get: operations["list_missions"];
         put?: never;
@@ -482,7 +484,11 @@ export interface paths {
         get: operations["get_mission"];
         put?: never;
         post?: never;
-        delete?: never;
+        /**
+         * Delete Mission
+         * @description Take a mission out of the list; for thirty days it can be restored. 409 while it flies.
+         */
+        delete: operations["delete_mission"];
         options?: never;
         head?: never;
         patch?: never;
@@ -832,6 +838,86 @@ export interface paths {
          *     data package for TAK), bundle (a zip with all of them).
          */
         get: operations["export_mission"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/labels": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Label Mission
+         * @description Rename a mission, tag it, write notes to it.
+         */
+        put: operations["label_mission"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/truth": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Tell Truth
+         * @description Say where an emitter was found, or that it was not. What is said last counts; the journal keeps all of it.
+         */
+        put: operations["tell_truth"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Mission
+         * @description Bring a deleted mission back into the list.
+         */
+        post: operations["restore_mission"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/calibration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Calibration
+         * @description How right bearings, fixes and forecasts were where the truth is known; "" for every craft or antenna.
+         */
+        get: operations["calibration"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2109,6 +2195,29 @@ export interface components {
              */
             code: "budget_too_small";
         };
+        /**
+         * @description Of all checked missions of a craft and antenna, or of all. within_1_sigma and within_2_sigma: of bearings, offset
+         *     not taken off (68 and 95 % when sigma is right). c95: of fixes. error_ratio: root mean square of error over stated
+         *     error of the fixes. forecast_90: times that the 90 % figure held. sharpness_deg: mean stated sigma.
+         *     antennas: all there are, to choose from. suggested None: fewer than `needed` bearings.
+         */
+        Calibration: {
+            missions: number;
+            not_found: number;
+            fixes: components["schemas"]["CheckedFix"][];
+            bearings: components["schemas"]["CheckedBearing"][];
+            within_1_sigma: components["schemas"]["ShareFact"];
+            within_2_sigma: components["schemas"]["ShareFact"];
+            outliers: components["schemas"]["ShareFact"];
+            c95: components["schemas"]["ShareFact"];
+            error_ratio: number | null;
+            forecast_90: components["schemas"]["ShareFact"];
+            sharpness_deg: number | null;
+            antennas: string[];
+            crafts: string[];
+            needed: number;
+            suggested: components["schemas"]["SuggestedSensor"] | null;
+        };
         CallNotListed: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2173,6 +2282,27 @@ export interface components {
             ok: boolean;
             reason: components["schemas"]["Reason"];
             blocking: boolean;
+        };
+        /** @description error_deg: clockwise of the truth. outlier: by more than its kind explains. */
+        CheckedBearing: {
+            mission_id: string;
+            place: components["schemas"]["Place"];
+            error_deg: number;
+            sigma_deg: number;
+            outlier: boolean;
+        };
+        /**
+         * @description An emitter of a mission whose place is known since. error_m: from the estimate; stated_m: the expected error that
+         *     was stated. inside: within the 95 % region.
+         */
+        CheckedFix: {
+            mission_id: string;
+            name: string;
+            emitter_id: string;
+            error_m: number;
+            stated_m: number;
+            inside: boolean;
+            localized: boolean;
         };
         /** @description clearance_m: what would be left above the highest ground within tolerance. */
         ClearanceShort: {
@@ -2713,7 +2843,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
         /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
@@ -4055,12 +4185,25 @@ export interface components {
             bearings: number;
             rejected_sweeps: number;
             last_seq: number;
+            tags: string[];
+            notes: string;
+            deleted_at_utc: string | null;
+            sketch: components["schemas"]["Sketch"];
             spec: components["schemas"]["MissionSpec"];
             editable: boolean;
             home: components["schemas"]["Place"] | null;
             localized: boolean;
             found: components["schemas"]["EmitterFound"][];
             outcome_reason: components["schemas"]["Reason"] | null;
+        };
+        /** @description Out of the list; everything of it is kept for some days more. */
+        MissionDeleted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mission_deleted";
+            by: string;
         };
         MissionDoesNotFly: {
             /**
@@ -4107,6 +4250,25 @@ export interface components {
              */
             code: "mission_flies";
         };
+        /** @description Its name in the list, and what people say about it; the specification stays as it was flown. */
+        MissionLabelled: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mission_labelled";
+            name: string;
+            tags: string[];
+            notes: string;
+            by: string;
+        };
+        /** @description The name in the list, and what people say about the mission. */
+        MissionLabels: {
+            name: string;
+            tags: string[];
+            /** @default  */
+            notes: string;
+        };
         /** @description Newest first. next: what `after` asks for the missions that follow, None when these are the last. */
         MissionList: {
             missions: components["schemas"]["MissionSummary"][];
@@ -4118,6 +4280,15 @@ export interface components {
              * @enum {string}
              */
             code: "mission_over";
+        };
+        /** @description Back in the list. */
+        MissionRestored: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mission_restored";
+            by: string;
         };
         /** @description Everything needed to search; frozen when the mission starts, but for the search area (in hold). */
         MissionSpec: {
@@ -4180,6 +4351,10 @@ export interface components {
             bearings: number;
             rejected_sweeps: number;
             last_seq: number;
+            tags: string[];
+            notes: string;
+            deleted_at_utc: string | null;
+            sketch: components["schemas"]["Sketch"];
         };
         /** @description limit: which one the work on it met; busy: as much work as may wait is waiting. */
         MissionTooHeavy: {
@@ -6110,7 +6285,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
         };
         RecordedElsewhere: {
             recorded_hz: number;
@@ -6696,6 +6871,13 @@ export interface components {
             kind: "set_automatic";
             automatic: boolean;
         };
+        /** @description of: how often something was looked at; share: how often it held, with its 95 % interval (Wilson). */
+        ShareFact: {
+            of: number;
+            share: number;
+            low: number;
+            high: number;
+        };
         SigmfFieldMissing: {
             file: string;
             /** @enum {string} */
@@ -6778,6 +6960,20 @@ export interface components {
              * @enum {string}
              */
             code: "simulator_silent";
+        };
+        /**
+         * @description A small map of a mission, longitude and latitude: outline of its area (rings, thinned), places of bearings, and
+         *     by emitter id the estimate and what is known since (None: looked for and not found).
+         */
+        Sketch: {
+            outline: number[][][];
+            places: number[][];
+            found: {
+                [key: string]: number[];
+            };
+            truth: {
+                [key: string]: number[] | null;
+            };
         };
         SoapyMissing: {
             /**
@@ -6943,6 +7139,15 @@ export interface components {
              * @enum {string}
              */
             code: "strongest_used";
+        };
+        /** @description For the next flight, in the fields of the specification. offset_deg: the antenna's. */
+        SuggestedSensor: {
+            sigma_deg: number;
+            outlier_probability: number;
+            offset_deg: number;
+            offset_std_error_deg: number;
+            speed_m_s: number | null;
+            constant_s: number | null;
         };
         /** @description unknown: what of the sweep is not a number. */
         SweepIncomplete: {
@@ -7436,6 +7641,35 @@ export interface components {
              * @enum {string}
              */
             code: "tried_again";
+        };
+        /**
+         * @description Somebody found the emitter, or looked for it and did not (`place` None); the last word on an emitter counts.
+         *
+         *     accuracy_m: of the place as its teller knows it, None when nobody said.
+         */
+        TruthNoted: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "truth_noted";
+            emitter_id: string;
+            place: components["schemas"]["Place"] | null;
+            accuracy_m: number | null;
+            /** @enum {string} */
+            how: "map" | "typed" | "phone";
+            by: string;
+        };
+        /**
+         * @description Where the emitter was found; `place` None: it was looked for and not found. emitter_id None: the search's only
+         *     one. accuracy_m: of the place, None when unknown.
+         */
+        TruthTold: {
+            emitter_id?: string | null;
+            place: components["schemas"]["Place"] | null;
+            accuracy_m?: number | null;
+            /** @enum {string} */
+            how: "map" | "typed" | "phone";
         };
         TunedElsewhere: {
             device: string;
@@ -8614,6 +8848,13 @@ export interface operations {
                 limit?: number;
                 after?: string | null;
                 named?: string;
+                emitter?: string;
+                vehicle?: string;
+                outcome?: "" | "localized" | "not_localized" | "aborted" | "failed";
+                box?: string | null;
+                since?: string | null;
+                until?: string | null;
+                deleted?: boolean;
             };
             header?: never;
             path?: never;
@@ -8694,6 +8935,36 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Mission"];
                 };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_mission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description What went wrong and how to mend it */
             default: {
@@ -9346,6 +9617,142 @@ export interface operations {
                     "application/json": Record<string, never>;
                     "application/vnd.mcap": string;
                     "application/zip": string;
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    label_mission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["MissionLabels"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mission"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    tell_truth: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TruthTold"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mission"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_mission: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Mission"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    calibration: {
+        parameters: {
+            query?: {
+                craft?: string;
+                antenna?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Calibration"];
                 };
             };
             /** @description What went wrong and how to mend it */

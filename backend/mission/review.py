@@ -1,0 +1,65 @@
+"""After the flight: what is told of an emitter, a mission's labels, its deletion. Facts like all others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from backend.events import MissionDeleted, MissionLabelled, MissionRestored, ReviewFact, TruthNoted
+from backend.events.review import TruthWay
+from backend.mission.flights import Flights
+from backend.mission.records import Records
+from backend.reasons import refusals
+from backend.reasons.search import WhichEmitter
+from backend.search.errors import MissionConflict, MissionInputError
+from backend.search.inputs import Reviewed
+from backend.spec import Place
+
+
+@dataclass(slots=True)
+class Review:
+    """All methods raise MissionNotFound."""
+
+    records: Records
+    flights: Flights
+
+    async def tell_truth(
+        self,
+        mission_id: str,
+        emitter_id: str | None,
+        place: Place | None,
+        accuracy_m: float | None,
+        how: TruthWay,
+        by: str,
+    ) -> None:
+        """place None: looked for and not found. Raises MissionInputError for an emitter that is not looked for."""
+        state, _ = await self.records.load(mission_id)
+        emitters = tuple(state.search.emitters)
+        if emitter_id is None and len(emitters) != 1:
+            raise MissionInputError(WhichEmitter(len(emitters)), "emitter_id")
+        about = emitters[0] if emitter_id is None else emitter_id
+        if about not in emitters:
+            raise MissionInputError(refusals.NoSuchEmitter(about), "emitter_id")
+        await self._record(mission_id, TruthNoted(emitter_id=about, place=place, accuracy_m=accuracy_m, how=how, by=by))
+
+    async def label(self, mission_id: str, name: str, tags: list[str], notes: str, by: str) -> None:
+        """In the place of what was said before."""
+        await self._record(mission_id, MissionLabelled(name=name, tags=tags, notes=notes, by=by))
+
+    async def delete(self, mission_id: str, by: str) -> None:
+        """Out of the list, to be restored for some days. Raises MissionConflict while it is under way."""
+        state, _ = await self.records.load(mission_id)
+        running = self.flights.running(mission_id)
+        if running is not None or state.search.stage == "open":
+            raise MissionConflict(refusals.MissionFlies())
+        await self._record(mission_id, MissionDeleted(by=by))
+
+    async def restore(self, mission_id: str, by: str) -> None:
+        """Into the list again."""
+        await self._record(mission_id, MissionRestored(by=by))
+
+    async def _record(self, mission_id: str, fact: ReviewFact) -> None:
+        if self.flights.running(mission_id) is not None:
+            await self.flights.give(mission_id, Reviewed(fact))
+            return
+        async with self.records.lock(mission_id):
+            await self.flights.give(mission_id, Reviewed(fact))

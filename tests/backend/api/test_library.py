@@ -1,0 +1,71 @@
+"""The library: missions found again, labelled, deleted and brought back, checked against the truth."""
+
+from __future__ import annotations
+
+AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
+FAR = {"type": "Polygon", "coordinates": [[[8.2, 51.6], [8.204, 51.6], [8.204, 51.602], [8.2, 51.602], [8.2, 51.6]]]}
+
+
+async def draft(client, **changes) -> str:
+    reply = await client.post("/api/missions", json={"name": "Search", "area": AREA, **changes})
+    assert reply.status_code == 201, reply.text
+    return reply.json()["mission_id"]
+
+
+async def names(client, **asked) -> set[str]:
+    reply = await client.get("/api/missions", params=asked)
+    assert reply.status_code == 200, reply.text
+    return {mission["name"] for mission in reply.json()["missions"]}
+
+
+async def test_missions_are_found_by_place_emitter_date_result_and_words(client):
+    await draft(client, name="near", emitters=[{"label": "Fox 12", "frequency_hz": 148.52e6}])
+    await draft(client, name="far", area=FAR)
+    assert await names(client, box="7.1,50.5,7.203,50.65") == {"near"}
+    assert await names(client, box="7.3,50.5,8.0,51.7") == set()
+    assert await names(client, emitter="fox 12") == await names(client, emitter="148.52") == {"near"}
+    assert await names(client, emitter="%") == set()
+    assert await names(client, outcome="localized") == set()
+    assert await names(client, vehicle="craft-1") == set(), "neither has flown"
+    assert await names(client, since="2000-01-01T00:00:00Z") == {"near", "far"}
+    assert await names(client, until="2000-01-01T00:00:00Z") == set()
+    for wrong in ({"box": "1,2,3"}, {"box": "a,b,c,d"}, {"outcome": "lost"}, {"since": "today"}, {"emitter": "\x00"}):
+        assert (await client.get("/api/missions", params=wrong)).status_code == 422, wrong
+
+
+async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client):
+    mission_id = await draft(client)
+    labels = {"name": "Owls", "tags": ["night", "season 3"], "notes": "by the river"}
+    assert (await client.put(f"/api/missions/{mission_id}/labels", json=labels)).json()["name"] == "Owls"
+    for words in ("owls", "SEASON", "river"):
+        assert await names(client, named=words) == {"Owls"}
+    (listed,) = (await client.get("/api/missions")).json()["missions"]
+    assert (listed["tags"], listed["notes"]) == (labels["tags"], labels["notes"])
+    assert listed["sketch"]["outline"] == [AREA["coordinates"][0]]
+    for wrong in ({**labels, "name": " "}, {**labels, "tags": ["a\nb"]}, {**labels, "tags": ["x"] * 21}):
+        assert (await client.put(f"/api/missions/{mission_id}/labels", json=wrong)).status_code == 422
+
+
+async def test_a_deleted_mission_is_out_of_the_list_and_comes_back(client):
+    mission_id = await draft(client)
+    assert (await client.delete(f"/api/missions/{mission_id}")).status_code == 204
+    assert await names(client) == set()
+    assert await names(client, deleted=True) == {"Search"}
+    assert (await client.post(f"/api/missions/{mission_id}/restore")).status_code == 200
+    assert await names(client) == {"Search"}
+    assert (await client.delete("/api/missions/unknown")).status_code == 404
+
+
+async def test_the_truth_is_told_and_the_last_word_counts(client):
+    mission_id = await draft(client)
+    told = {"place": {"lat": 50.601, "lon": 7.202}, "accuracy_m": 4, "how": "phone"}
+    found = (await client.put(f"/api/missions/{mission_id}/truth", json=told)).json()
+    assert found["sketch"]["truth"] == {"emitter-1": [7.202, 50.601]}
+    checked = (await client.get("/api/calibration")).json()
+    assert (checked["missions"], checked["not_found"], checked["fixes"], checked["suggested"]) == (1, 0, [], None)
+    assert checked["c95"] == {"of": 0, "share": 0.0, "low": 0.0, "high": 1.0}
+    not_found = {"place": None, "how": "map"}
+    assert (await client.put(f"/api/missions/{mission_id}/truth", json=not_found)).status_code == 200
+    assert (await client.get("/api/calibration")).json()["missions"] == 0
+    wrong = {**told, "emitter_id": "nobody"}
+    assert (await client.put(f"/api/missions/{mission_id}/truth", json=wrong)).status_code == 422
