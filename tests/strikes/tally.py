@@ -24,7 +24,7 @@ def line(outcome: Outcome, flown: int) -> str:
     noticed = "never noticed" if outcome.noticed_s is None else f"noticed {outcome.noticed_s:.2f} s"
     took = "did not take" if outcome.took_s is None else f"took {outcome.took_s:.3f} s"
     undone = f"UNDONE to {outcome.back_to:#x} (the pilot's is {flown:#x})" if outcome.back_to is not None else "stays"
-    why = f", {_told(outcome)}" if outcome.counts and unnoticed(outcome) else ""
+    why = f", {_told(outcome)}" if outcome.counts and (outcome.undone or unnoticed(outcome)) else ""
     return (
         f"{outcome.scene:9} {outcome.moment:10} {outcome.means:6} {outcome.delay_s * 1e3:4.0f} ms: {took}, {undone}, "
         f"{noticed}, {outcome.commands} commands afterwards, the last {outcome.last_command_s:.2f} s"
@@ -33,7 +33,7 @@ def line(outcome: Outcome, flown: int) -> str:
 
 
 def _told(outcome: Outcome) -> str:
-    """Why it was noticed late: the autopilot told it late, this process stood still, or the program did not see it."""
+    """Why it was undone or noticed late: what the autopilot told, how long this process stood still, what we knew."""
     told = "the autopilot never told its mode" if outcome.told_s is None else f"told after {outcome.told_s:.2f} s"
     return (
         f"{told}, this process stood still for {outcome.stalled_s:.2f} s and delivered {outcome.held_up_s:.2f} s late "
