@@ -22,7 +22,7 @@ MOST_OUTLIERS = 0.6
 SCALES, SCALE_WEIGHTS = (0.5, 1.0, 1.45), (0.15, 0.63, 0.22)
 """Of the stated sigmas. One flight's bearings agree by luck too often to tell a sensor that is better than it says, so
 this has little weight until flights have taught it."""
-RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.3, 0.2, 0.25)
+RATES, RATE_WEIGHTS = (0.03, 0.2, 0.5, 1.0, 2.0), (0.07, 0.18, 0.36, 0.06, 0.33)
 """Of the specified outlier probability; the mean is nine tenths of that. From two bearings nobody sees an outlier: a
 claim after two takes a source whose flights taught that it has hardly any."""
 
