@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test coverage unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -94,6 +94,8 @@ check-page:
 kernel: setup-dev ## compiled once here, not by each test worker
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 
+UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci -m "not system and not browser and not long"
+
 unit-and-system: # missions wait for the wall's clock, and the unit tests fill their pauses
 	@mkdir -p $(STAMPS); $(MAKE) --no-print-directory system >$(STAMPS)/system.log 2>&1 & missions=$$!; \
 	trap "kill $$missions; exit 130" INT TERM; \
@@ -101,8 +103,11 @@ unit-and-system: # missions wait for the wall's clock, and the unit tests fill t
 	echo "Waiting for the whole missions; what they say so far is in $(STAMPS)/system.log"; \
 	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
 
-unit: kernel ## tests without a vehicle or a browser, and how much of the code they run
-	nice -n 10 $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci --cov --cov-report= --durations 25 -m "not system and not browser and not long"
+unit: kernel ## tests without a vehicle or a browser
+	nice -n 10 $(UNIT_TESTS) --durations 25
+
+coverage: kernel ## how much of the code the unit tests run: they take longer so
+	$(UNIT_TESTS) --cov --cov-report=
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets

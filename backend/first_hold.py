@@ -1,8 +1,8 @@
 """The first second of a server: the vehicle that the server before left in flight is held, before anything else loads.
 
 Reads no more of the journal than whether a craft was in flight and who flew it. Where that cannot be told so quickly
-(another database, facts still in the spool, rows of before), the mission's own recovery does it, some seconds later;
-it follows in any case and records what happened.
+(a database that does not answer, facts still in the spool, rows of before), the mission's own recovery does it, some
+seconds later; it follows in any case and records what happened.
 """
 
 from __future__ import annotations
@@ -12,18 +12,21 @@ import fcntl
 import json
 import logging
 import sqlite3
+from collections.abc import Awaitable, Callable, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, fields
+from importlib import import_module
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from backend.settings import Settings
-from backend.simulation.hangar import Hangar
 from backend.store.spool_layout import holds_entries
 from hardware.authority import NOBODY, Authority
-from hardware.autopilot.vehicle import MavsdkVehicle
+from hardware.autopilot.opening import open_connection
 from hardware.clock import ScaledClock
-from hardware.ports import HardwareError
+
+if TYPE_CHECKING:  # loaded while the vehicle is listened for
+    from hardware.autopilot.vehicle import MavsdkVehicle
 
 log = logging.getLogger("crossfix")
 
@@ -67,16 +70,26 @@ async def hold_what_flies(settings: Settings) -> FirstHold | None:
 
 
 async def _hold_what_flies(settings: Settings) -> FirstHold | None:
-    left = left_in_flight(settings)
+    left = await left_in_flight(settings)
     if left is None:
         return None
-    url = settings.vehicle_url or await Hangar(settings).address_left()
+    url = settings.vehicle_url or await _simulated(settings)
     if url is None:
         return None
+    opening = asyncio.create_task(asyncio.to_thread(open_connection, url))
+    await asyncio.to_thread(import_module, "hardware.autopilot.vehicle")
+    try:
+        opened = await opening
+    except OSError as error:
+        log.warning("no link to the vehicle that was left in flight: %s", error)
+        return None
+    from hardware.autopilot.vehicle import MavsdkVehicle
+    from hardware.ports import HardwareError
+
     clock = ScaledClock(factor=settings.time_factor)
     if left.at_s > clock.now():  # a sped-up clock must not run behind what it has recorded
         clock = ScaledClock(left.at_s, settings.time_factor)
-    vehicle = MavsdkVehicle(url, clock)
+    vehicle = MavsdkVehicle(url, clock, opened=opened)
     try:
         await vehicle.connect(ANSWERS_S)
     except HardwareError as error:
@@ -87,30 +100,38 @@ async def _hold_what_flies(settings: Settings) -> FirstHold | None:
     return FirstHold(url, vehicle, left.authority, clock, asyncio.create_task(_hold(vehicle)) if ours else None)
 
 
+async def _simulated(settings: Settings) -> str | None:
+    from backend.simulation.hangar import Hangar  # a real vehicle has no hangar here
+
+    return await Hangar(settings).address_left()
+
+
 async def _hold(vehicle: MavsdkVehicle) -> None:
     """The mission's recovery orders it again, and tells what came of it."""
+    from hardware.ports import HardwareError
+
     try:
         await vehicle.hold()
     except HardwareError as error:
         log.warning("the first hold: %s", error)
 
 
-def left_in_flight(settings: Settings) -> LeftInFlight | None:
-    """From the SQLite file itself, read-only."""
-    path = _database(settings)
-    if path is None or not path.exists() or _another_server(path) or holds_entries(settings.spool_path):
+async def left_in_flight(settings: Settings) -> LeftInFlight | None:
+    """From the database itself, without what is needed to write to it."""
+    url = settings.async_database_url
+    sqlite = url.removeprefix(SQLITE)
+    if _locked(settings.spool_path) or holds_entries(settings.spool_path):
         return None
     try:
-        with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True, timeout=0.3)) as connection:
-            return _in_flight(connection)
-    except (sqlite3.Error, ValueError, TypeError, KeyError) as error:
+        return await (_in_postgresql(url) if sqlite == url else _in_sqlite(sqlite))
+    except (sqlite3.Error, OSError, ValueError, TypeError, KeyError) as error:
         log.info("what flies is not known from the first look: %s", error)
         return None
 
 
-def _another_server(database: Path) -> bool:
-    """One that runs and flies: this one will not start, and must not stop its vehicle."""
-    with suppress(FileNotFoundError), Path(f"{database}.server").open() as lock:
+def _locked(path: Path) -> bool:
+    """By a server that runs and flies: this one will not start, and must not stop its vehicle."""
+    with suppress(FileNotFoundError), path.open() as lock:
         try:
             fcntl.flock(lock.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -118,30 +139,50 @@ def _another_server(database: Path) -> bool:
     return False
 
 
-def _database(settings: Settings) -> Path | None:
-    prefix = "sqlite+aiosqlite:///"
-    url = settings.async_database_url
-    return Path(url.removeprefix(prefix)) if url.startswith(prefix) else None
+SQLITE, POSTGRESQL = "sqlite+aiosqlite:///", "postgresql+asyncpg:"
+DATABASE_ANSWERS_S = 1.0
+Rows = Callable[..., Awaitable[Sequence[Any]]]
+"""(statement, at most one value for its `$1`) -> rows, to be indexed."""
 
 
-def _in_flight(connection: sqlite3.Connection) -> LeftInFlight | None:
-    going_on = "started_at_us IS NOT NULL AND (ended_at_us IS NULL OR flying)"
-    rows = connection.execute(
-        f"SELECT mission_id, crafts FROM missions WHERE {going_on} ORDER BY started_at_us DESC LIMIT 1"
-    ).fetchall()
-    if not rows or not json.loads(rows[0][1]):
+async def _in_sqlite(path: str) -> LeftInFlight | None:
+    """Raises sqlite3.Error, also where there is none."""
+    if _locked(Path(f"{path}.server")):
         return None
-    mission_id = rows[0][0]
-    at_us, form = connection.execute(
-        "SELECT max(at_us), min(form) FROM events WHERE mission_id = ?", [mission_id]
-    ).fetchone()
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True, timeout=0.3)) as connection:
+
+        async def rows(statement: str, *value: str) -> Sequence[Any]:
+            return connection.execute(statement.replace("$1", "?"), value).fetchall()
+
+        return await _in_flight(rows)
+
+
+async def _in_postgresql(url: str) -> LeftInFlight | None:
+    """Raises OSError when it does not answer."""
+    asyncpg: Any = import_module("asyncpg")  # only where it is needed: 0.1 s; it has no types
+    try:
+        async with asyncio.timeout(DATABASE_ANSWERS_S):
+            connection = await asyncpg.connect(url.replace(POSTGRESQL, "postgresql:", 1))
+            try:
+                return await _in_flight(connection.fetch)
+            finally:
+                connection.terminate()
+    except (asyncpg.PostgresError, asyncpg.InterfaceError) as error:
+        raise OSError(str(error)) from error
+
+
+async def _in_flight(rows: Rows) -> LeftInFlight | None:
+    going_on = "started_at_us IS NOT NULL AND (ended_at_us IS NULL OR flying)"
+    found = await rows(f"SELECT mission_id, crafts FROM missions WHERE {going_on} ORDER BY started_at_us DESC LIMIT 1")
+    if not found or not json.loads(found[0][1]):
+        return None
+    mission_id = found[0][0]
+    at_us, form = (await rows("SELECT max(at_us), min(form) FROM events WHERE mission_id = $1", mission_id))[0]
     if form != FORM:
         return None
-    found = connection.execute(
-        "SELECT body FROM events WHERE mission_id = ? AND kind = 'authority_changed' ORDER BY seq DESC LIMIT 1",
-        [mission_id],
-    ).fetchone()
-    authority = NOBODY if found is None else _authority(json.loads(found[0])["authority"])
+    of_authority = "mission_id = $1 AND kind = 'authority_changed' ORDER BY seq DESC LIMIT 1"
+    found = await rows(f"SELECT body FROM events WHERE {of_authority}", mission_id)
+    authority = _authority(json.loads(found[0][0])["authority"]) if found else NOBODY
     return LeftInFlight(authority, at_us / 1e6)
 
 

@@ -11,7 +11,7 @@ from fastapi import FastAPI
 from backend.api.application import make_application
 from backend.api.scene import close_scene_views
 from backend.api.services import Services
-from backend.live.connections import Door, limited
+from backend.live.connections import Door, allow_descriptors, limited
 from backend.live.protocol import LiveProtocol
 from backend.settings import Settings
 from backend.wiring import open_services
@@ -19,6 +19,12 @@ from hardware.payload.messages import MAXIMUM_MESSAGE_BYTES
 
 HEAD_BYTES = 32 * 2**10
 """Of a request: its line and all its headers."""
+
+OTHER_DESCRIPTORS = 200
+"""For the database, the vehicle, files and logs."""
+LEAST_CONNECTIONS = 50
+LET_IN_AT_ONCE = 32
+"""Connections in one turn of the event loop: a thousand at once do not hold up those who are inside."""
 
 OpenServices = Callable[[Settings], AbstractAsyncContextManager[Services]]
 
@@ -42,8 +48,12 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
 def server_config(settings: Settings, app: FastAPI) -> uvicorn.Config:
     """How uvicorn runs it: one process, since the vehicle has one commander; no compression on the live channel; only a
     trusted proxy may say who asks."""
+    room = allow_descriptors() - settings.live_clients_max - OTHER_DESCRIPTORS
     door = Door(
-        settings.connections_max, settings.connections_each, settings.header_timeout_s, settings.trusted_proxies
+        max(LEAST_CONNECTIONS, min(settings.connections_max, room)),
+        settings.connections_each,
+        settings.header_timeout_s,
+        settings.trusted_proxies,
     )
     return uvicorn.Config(
         app,
@@ -53,6 +63,7 @@ def server_config(settings: Settings, app: FastAPI) -> uvicorn.Config:
         h11_max_incomplete_event_size=HEAD_BYTES,
         host=settings.host,
         port=settings.port,
+        backlog=LET_IN_AT_ONCE,
         ws=LiveProtocol,
         ws_max_size=MAXIMUM_MESSAGE_BYTES,
         ws_per_message_deflate=False,

@@ -18,6 +18,14 @@ ReceiverState = Literal["ok", "silent", "off", "lost"]
 
 
 @dataclass(frozen=True, slots=True)
+class Kept:
+    """How many there are of something that is stored, and what they take."""
+
+    number: int
+    size_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
 class TrackPoint:
     """One thinned point of the flown track (2 Hz)."""
 

@@ -49,8 +49,8 @@ class Settings(BaseSettings):
     """Of whoever has no such value; none: they do not enter."""
     oidc_email_domains: tuple[str, ...] = ()
     """When there are any, only verified addresses in one of them enter: for providers where anybody has an account."""
-    connections_max: int = Field(default=600, ge=10, le=100_000)
-    """Of HTTP, open at the same time; live websockets are counted by live_clients_max."""
+    connections_max: int = Field(default=2000, ge=10, le=100_000)
+    """Of HTTP, open at the same time, as far as the system allows; live websockets are counted by live_clients_max."""
     connections_each: int = Field(default=100, ge=5, le=100_000)
     """Of one address, but for this machine's and the trusted proxies'."""
     header_timeout_s: float = Field(default=10.0, gt=0, le=300)
@@ -70,6 +70,13 @@ class Settings(BaseSettings):
 
     keep_sweeps_days: Annotated[float, Field(ge=0, le=36_500)] | None = None
     """Raw sweeps of missions that ended longer ago are taken; None: kept for ever."""
+
+    overlays_max: int = Field(default=200, ge=0)
+    overlays_max_bytes: int = Field(default=500 * 10**6, ge=0)
+    """Of all overlays together, as they are stored; maps and terrain may fill the disk up to disk_low_bytes."""
+    recordings_max_sweeps: int = Field(default=20_000, ge=0)
+    recordings_max_bytes: int = Field(default=2 * 10**9, ge=0)
+    """Of the raw sweeps of all imported recordings together, as they are stored."""
 
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""

@@ -6,9 +6,9 @@ Defaults: the field system of spec section 8.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, FailFast, Field, model_validator
 
 from hardware.readings import Latitude, Longitude, Place
 from planner.options import FIELD, BasePolicy, DiscreteSelection, Estimator, Method, PlannerOptions, Sampling
@@ -20,7 +20,11 @@ class Model(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", json_schema_serialization_defaults_required=True)
 
 
+T = TypeVar("T")
+
 LonLat = tuple[Longitude, Latitude]
+Listed = Annotated[list[T], FailFast()]
+"""Of thousands of wrong positions the first is named."""
 Positive = Annotated[float, Field(gt=0, le=1e12, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, le=1e12, allow_inf_nan=False)]
 
@@ -29,14 +33,14 @@ class Polygon(Model):
     """GeoJSON Polygon: linear rings, the first the outline, the others holes."""
 
     type: Literal["Polygon"] = "Polygon"
-    coordinates: list[list[LonLat]]
+    coordinates: Listed[Listed[LonLat]]
 
 
 class MultiPolygon(Model):
     """GeoJSON MultiPolygon."""
 
     type: Literal["MultiPolygon"] = "MultiPolygon"
-    coordinates: list[list[list[LonLat]]]
+    coordinates: Listed[Listed[Listed[LonLat]]]
 
 
 Area = Annotated[Polygon | MultiPolygon, Field(discriminator="type")]
@@ -103,6 +107,18 @@ Id = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 FIRST_EMITTER = "emitter-1"
 
 
+MovementKind = Literal["still", "animal", "walking", "drifting"]
+
+
+class MovementSpec(Model):
+    """How what is looked for moves. speed_m_s: root mean square over its pauses and runs; of kind "still" it does not
+    count. The kind says how soon the direction is forgotten: an animal that feeds turns every half minute, a person
+    walks on for minutes, wind and water carry for a quarter of an hour."""
+
+    kind: MovementKind = "still"
+    speed_m_s: float = Field(default=0.2, ge=0.01, le=5, allow_inf_nan=False)
+
+
 class EmitterSpec(Model):
     """What is looked for, and where it may be. The pulses (width, period, how far one strays from it) count for kind
     "pulsed" only."""
@@ -116,6 +132,7 @@ class EmitterSpec(Model):
     """A 406 MHz distress beacon sends a burst of 0.44 s every 50 s, give or take 2.5."""
     pulse_jitter_s: float = Field(default=0.03, ge=0, le=5, allow_inf_nan=False)
     prior: PriorSpec = Field(default_factory=UniformPriorSpec)
+    movement: MovementSpec = Field(default_factory=MovementSpec)
 
     @model_validator(mode="after")
     def pulses_have_pauses(self) -> EmitterSpec:
@@ -168,8 +185,9 @@ class LearnedErrors(Model):
 class SensorSpec(Model):
     """The bearing sensor as the planner and the localizer assume it.
 
-    bearing_errors: a specification that does not name them means independent ones. learned: of joint errors, what the
-    flights of this craft and antenna taught; the server writes it down when a mission is drafted, edited and started.
+    bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
+    and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
+    taught; the server writes it down when a mission is drafted, edited and started.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -215,6 +233,8 @@ class LocalizationSpec(Model):
     minimum_place_distance_m: NonNegative = 10.0
     minimum_crossing_angle_deg: float = Field(default=20.0, ge=0, le=90)
     maximum_bearings: int = Field(default=20, ge=2, le=200)
+    follow: bool = False
+    """True: when all are localized, those that move are looked for on, until the battery rule brings the craft home."""
 
 
 class FlightSpec(Model):

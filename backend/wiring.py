@@ -35,7 +35,7 @@ from backend.store.journal import SqlJournal
 from backend.store.lessons_folder import LessonsFolder
 from backend.store.opening import open_journal
 from backend.version import VERSION
-from hardware.autopilot.link import check_url
+from hardware.autopilot.opening import check_url
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
 from hardware.direction_finding.antenna import AntennaPattern

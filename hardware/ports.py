@@ -23,11 +23,11 @@ from hardware.readings import (
     Sweep,
     Telemetry,
 )
-from hardware.reasons import HardwareReason
 from planner.reason import ReasonedError
 
-if TYPE_CHECKING:  # numpy comes with it, and a vehicle left in flight is held before that is loaded
+if TYPE_CHECKING:  # much comes with these, and a vehicle left in flight is held before that is loaded
     from hardware.direction_finding.antenna import AntennaPattern
+    from hardware.reasons.union import HardwareReason
 
 
 class HardwareError(ReasonedError):

@@ -137,16 +137,23 @@ def cells_hull(cells: BoolArray, x0: float, y0: float, h: float) -> Ring:
     return convex_hull(np.asarray(np.concatenate(corners), dtype=np.float64))
 
 
-def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
-    """Distance in m from each of (n, 2) points to a convex polygon (0 inside); the hull may be a point or a segment."""
+def distance_to_edges(points: FloatArray, region: Region) -> FloatArray:
+    """Distance in m from each of (n, 2) points to the nearest edge of any ring, from inside or outside."""
     points = np.asarray(points, dtype=float).reshape(-1, 2)
-    start, end = hull, np.roll(hull, -1, axis=0)
+    start, end = edges(region)
     along = end - start
     length2 = np.maximum((along**2).sum(axis=1), 1e-300)
     offset = points[:, None, :] - start
     t = np.clip((offset * along).sum(axis=2) / length2, 0.0, 1.0)
-    distance = np.sqrt(((offset - t[..., None] * along) ** 2).sum(axis=2)).min(axis=1)
+    return np.sqrt(((offset - t[..., None] * along) ** 2).sum(axis=2)).min(axis=1)
+
+
+def distance_to_convex(points: FloatArray, hull: Ring) -> FloatArray:
+    """Distance in m from each of (n, 2) points to a convex polygon (0 inside); the hull may be a point or a segment."""
+    points = np.asarray(points, dtype=float).reshape(-1, 2)
+    distance = distance_to_edges(points, (hull,))
     if len(hull) >= 3:
+        along, offset = np.roll(hull, -1, axis=0) - hull, points[:, None, :] - hull
         turn = along[:, 0] * offset[..., 1] - along[:, 1] * offset[..., 0]
         inside = (turn >= 0).all(axis=1) | (turn <= 0).all(axis=1)
         distance = np.where(inside, 0.0, distance)

@@ -50,6 +50,24 @@ def hard_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, margin: floa
     return np.where(inside_wedge(bearing, x, y, margin), gaussian_likelihood(error, bearing.sigma), 0.0)
 
 
+def mean_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, h: float) -> FloatArray:
+    """Mean of the likelihood over the square cells of side h (m) about (x, y), zero for those that the wedge misses.
+
+    A cell's points differ by h^2 / 12 in variance across the line of sight, whatever its direction, so the mean is
+
+        sigma / sqrt(v) exp(-e^2 / (2 v)),   v = sigma^2 + h^2 / (12 r^2),
+
+    with e the error at the centre and r the distance, of the nearest cells at least h / sqrt(6) (then a cell is about
+    a radian wide). No cell that the wedge touches has less than exp(-8) for its exponential, as at the wedge's edge.
+    """
+    error = wrap(expected_bearing(bearing.x, bearing.y, x, y) - bearing.angle)
+    square = h**2 / 12.0
+    variance = bearing.sigma**2 + square / np.maximum((x - bearing.x) ** 2 + (y - bearing.y) ** 2, 2.0 * square)
+    exponent = np.minimum(0.5 * error**2 / variance, 0.5 * WEDGE_SIGMAS**2)
+    mean = bearing.sigma / np.sqrt(variance) * np.exp(-exponent)
+    return np.where(inside_wedge(bearing, x, y, h / np.sqrt(2.0)), mean, 0.0)
+
+
 def inside_wedge(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> BoolArray:
     """Whether points lie in the +-4 sigma wedge widened by `margin` m to each side and behind its apex."""
     half = WEDGE_SIGMAS * bearing.sigma

@@ -25,6 +25,10 @@ points (`planner.sampling`)."""
 Estimator = Literal["map", "expected_value", "geometric_median"]
 """Point estimate of a belief (`planner.belief.estimate`)."""
 
+CellLikelihood = Literal["centre", "mean"]
+"""What a cell's likelihood is: that of its centre, as in the thesis, or the mean over the cell. Near the sensor a wedge
+is narrower than a cell; the centres' belief is too sure there, and a planner that knows it measures from there."""
+
 
 @dataclass(frozen=True, slots=True)
 class PlannerOptions:
@@ -49,4 +53,5 @@ STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 CROSSFIX = PlannerOptions(
     base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
 )
-"""Ours (docs/decisions/0032): `crossfix` in studies, and for missions that name the dynamic program as base policy."""
+"""Ours (docs/decisions/0032): `crossfix` in studies, and what the suggested mission names. The specification's own
+defaults stay FIELD: a stored mission that names no planner was flown with it."""

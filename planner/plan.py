@@ -15,10 +15,9 @@ from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
 from planner.options import FIELD, PlannerOptions
-from planner.policy.dynamic_program import substitute
+from planner.policy.dynamic_program import stands_on
 from planner.policy.rollout import SELECTIONS, Rollout
 from planner.policy.simulation import HORIZON, KernelName, TerminalValue, simulate
-from planner.policy.value_table import program_for
 from planner.reasons import BeliefOutOfStep, NoWay, UnusableNumber
 from planner.sampling import random_paths
 from planner.types import Bearing, Decision, FloatArray, LinearMotion, PlannerError, Problem
@@ -99,13 +98,12 @@ def expected_time_from(
     PlannerError when xy cannot be reached.
     """
     _check(belief, bearings, rollouts)
-    program = program_for(problem) if options.base_policy == "dynamic_program" else None
-    wanted = substitute(problem) if options.base_policy == "dynamic_program" else options.base_policy
+    followed, program = stands_on(problem, options.base_policy)
     simulation = simulate(
         problem,
         belief,
         xy if platform_xy is None else platform_xy,
-        base_policy=wanted if program is None else "dynamic_program",
+        base_policy=followed,
         heading=heading,
         horizon=horizon,
         threads=threads,

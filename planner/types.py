@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from planner.options import FIELD, Estimator
+from planner.options import FIELD, CellLikelihood, Estimator
 from planner.reason import ReasonedError
 from planner.reasons import ChoiceReason, NotYetReason, RefusalReason
 
@@ -58,6 +58,7 @@ class Bearing:
     x, y: sensor position, m ENU. angle, sigma: rad. `outlier_probability` eps mixes in a uniform likelihood,
     (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma. source: who
     took it; a joint belief (planner.belief.joint) gives the bearings of one source one bias, scale and outlier rate.
+    taken_at: s on any clock; counts for emitters that move only.
     """
 
     x: float
@@ -67,6 +68,7 @@ class Bearing:
     outlier_probability: float = 0.0
     peaks: tuple[Peak, ...] = ()
     source: str = ""
+    taken_at: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +134,8 @@ class Problem:
     enter or cross. sigma: rad, the bearing noise the planner assumes. threshold: mu, m. measurement_time: t_m, s.
     standoff: r_min, m: actions nearer than this to C95 are removed (0: unconstrained).
     action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
-    the flight area instead (the field system: 15 m).
+    the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
+    rollouts.
     """
 
     area: Region
@@ -146,6 +149,7 @@ class Problem:
     action_grid: tuple[int, int] = (20, 20)
     action_spacing: float | None = None
     estimator: Estimator = FIELD.estimator
+    likelihood: CellLikelihood = "centre"
     prior: Prior = field(default_factory=UniformPrior)
 
 

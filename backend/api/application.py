@@ -8,6 +8,7 @@ from contextlib import AbstractAsyncContextManager
 from fastapi import Depends, FastAPI
 
 from backend.api import live, payload, probes, problems, scene
+from backend.api.bodies import Bodies
 from backend.api.dependencies import passed_the_gate
 from backend.api.gate import Gate
 from backend.api.guard import Guard
@@ -43,6 +44,7 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     app.router.default = Page(settings.page_dir)
     app.state.meters = Meters()
     app.state.meters.watch(lambda: app.state.services)
+    app.add_middleware(Bodies)
     app.add_middleware(Metered, meters=app.state.meters)
     app.add_middleware(Gate)
     app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))

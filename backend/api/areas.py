@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from pydantic import ValidationError
 from shapely import MultiPolygon, Polygon
 from shapely.geometry import shape
 from shapely.ops import unary_union
 
 from backend import spec
+from backend.api.problems import MOST_NAMED
 from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml
 from backend.maps.refusal import MapRefused
@@ -20,6 +22,24 @@ from backend.search.errors import MissionInputError
 from backend.wire.resources import AreaImport, AreaUpload
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+
+
+class AreaRefused(ValueError):
+    """What was sent is no upload of an area. errors: as pydantic tells them."""
+
+    def __init__(self, errors: list[dict[str, Any]]) -> None:
+        super().__init__(errors)
+        self.errors = errors
+
+
+def area_of(body: bytes) -> AreaImport:
+    """The same for a request's body. Raises AreaRefused, MissionInputError."""
+    try:
+        upload = AreaUpload.model_validate_json(body)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_input=False)[:MOST_NAMED]
+        raise AreaRefused([{**each, "loc": ("body", *each["loc"])} for each in found]) from error
+    return read_area(upload)
 
 
 def read_area(upload: AreaUpload) -> AreaImport:

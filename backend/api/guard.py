@@ -14,18 +14,12 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from backend.api.problems import ApiProblem, respond
+from backend.api.bodies import too_large
+from backend.api.problems import respond
 from backend.reasons import request as reasons
 from backend.wire.problem import Problem, problem
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-BODY_BYTES = 8 * 2**20
-RECORDING_BYTES = 128 * 2**20
-"""A minute of IQ at the usual rates."""
-EXPORT_BYTES = 32 * 2**20
-"""Hours of a mission with some hundred sweeps."""
-UPLOADS = ("/api/maps", "/api/overlays")
-"""Their bodies are files, streamed to disk under limits of their own."""
 
 
 class Guard:
@@ -41,7 +35,7 @@ class Guard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refusal = self._foreign(scope, headers) or _too_large(scope, headers)
+        refusal = self._foreign(scope, headers) or too_large(scope)
         if refusal is not None:
             await refuse(refusal, scope, receive, send)
             return
@@ -49,7 +43,7 @@ class Guard:
             await self._app(scope, receive, send)
             return
         secured = _secured(send, headers.get("host", ""), scope["path"])
-        await self._app(scope, _counted(scope, receive), secured)
+        await self._app(scope, receive, secured)
 
     def _foreign(self, scope: Scope, headers: Headers) -> Problem | None:
         host = headers.get("host", "")
@@ -76,40 +70,6 @@ class Guard:
         except ValueError:
             return name in self._allowed
         return True
-
-
-def _too_large(scope: Scope, headers: Headers) -> Problem | None:
-    length, most = headers.get("content-length", "0"), _most_bytes(scope["path"])
-    if most is None or not length.isdigit() or int(length) <= most:
-        return None
-    return problem(413, reasons.BodyTooLarge(most))
-
-
-def _most_bytes(path: str) -> int | None:
-    """None: the endpoint has its own limit."""
-    if path.startswith(UPLOADS):
-        return None
-    if path == "/api/recordings/read":
-        return EXPORT_BYTES
-    recording = path.startswith("/api/missions/") and path.endswith("/recordings")
-    return RECORDING_BYTES if recording else BODY_BYTES
-
-
-def _counted(scope: Scope, receive: Receive) -> Receive:
-    most = _most_bytes(scope["path"])
-    if most is None:
-        return receive
-    taken = 0
-
-    async def counted() -> Message:
-        nonlocal taken
-        message = await receive()
-        taken += len(message.get("body", b""))
-        if taken > most:
-            raise ApiProblem(413, reasons.BodyTooLarge(most))
-        return message
-
-    return counted
 
 
 async def refuse(

@@ -22,7 +22,8 @@ LONG_FACTS = 500
 async def beside(services: Services, facts: int, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
     """The result of `work`, a function of a module that asks nobody. facts: how many it works on. Raises ApiProblem."""
     if facts < LONG_FACTS:
-        return await asyncio.to_thread(work, *args, **kwargs)
+        async with services.beside:
+            return await asyncio.to_thread(work, *args, **kwargs)
     try:
         return await services.desk.run(work, *args, **kwargs)
     except WorkStopped as error:

@@ -15,7 +15,8 @@ from starlette.requests import ClientDisconnect
 from backend.api.problems import ApiProblem, not_found
 from backend.maps.refusal import MapRefused, NotStored
 from backend.reasons.maps import NoRoomForMap
-from backend.reasons.request import UploadBrokeOff
+from backend.reasons.request import BodyTooLarge, UploadBrokeOff
+from backend.reasons.storage import StockFull
 from backend.reasons.terrain import TerrainTooLarge
 from backend.reasons.work import DiskFull
 from backend.workers import Workers
@@ -83,7 +84,10 @@ async def as_problem(what: What, doing: Awaitable[T]) -> T:
 
 
 def _refused(error: MapRefused) -> ApiProblem:
-    return ApiProblem(413 if isinstance(error.reason, NoRoomForMap | TerrainTooLarge) else 422, error.reason)
+    return ApiProblem(
+        413 if isinstance(error.reason, BodyTooLarge | NoRoomForMap | StockFull | TerrainTooLarge) else 422,
+        error.reason,
+    )
 
 
 def label(name: str, filename: str) -> str:

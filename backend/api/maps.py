@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
-from datetime import UTC, datetime
 from functools import lru_cache
 from pathlib import Path as FilePath
 from typing import Annotated
@@ -17,17 +15,14 @@ from backend.api.map_files import (
     ContentId,
     Filename,
     Name,
-    as_problem,
     in_thread,
-    label,
     upload,
 )
-from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
+from backend.api.problems import PROBLEM_RESPONSES
 from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
-from backend.maps.overlay_folder import MOST_OVERLAY_BYTES, OverlayFolder
-from backend.reasons.request import BodyTooLarge
+from backend.maps.overlay_folder import OverlayFolder
 from backend.wire.maps import (
     Coverage,
     CoverageRequest,
@@ -64,7 +59,9 @@ def map_folder(services: ServicesDep) -> MapFolder:
 def overlay_folder(services: ServicesDep) -> OverlayFolder:
     """One for each request; all of it is on disk."""
     settings = services.settings
-    return OverlayFolder(settings.data_dir / "overlays", settings.disk_low_bytes)
+    return OverlayFolder(
+        settings.data_dir / "overlays", settings.disk_low_bytes, settings.overlays_max, settings.overlays_max_bytes
+    )
 
 
 MapFolderDep = Annotated[MapFolder, Depends(map_folder)]
@@ -153,18 +150,7 @@ async def upload_overlay(
     filename: Filename = "",
 ) -> Overlay:
     """Store a GeoJSON, KML or KMZ file: the request's body is the file itself, at most 20 MB."""
-    content = await _bounded(request.stream(), MOST_OVERLAY_BYTES)
-    called, now = label(name, filename), datetime.now(UTC)
-    return await as_problem("overlay", services.workers.run(folder.store, content, called, now))
-
-
-async def _bounded(body: AsyncIterator[bytes], most: int) -> bytes:
-    held = bytearray()
-    async for piece in body:
-        held += piece
-        if len(held) > most:
-            raise ApiProblem(413, BodyTooLarge(most))
-    return bytes(held)
+    return await upload("overlay", folder, request, services.workers, name, filename)
 
 
 @router.get("/overlays/{overlay_id}", response_class=Response, responses={200: {"model": OverlayCollection}})

@@ -12,6 +12,7 @@ from backend.api.dependencies import MetersDep, MissionId, PrincipalDep, Service
 from backend.api.ordering import ordered, permit
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
+from backend.api.suggestion import with_errors_estimated
 from backend.commands import CommandReply, CommandRequest
 from backend.events import CheckFact
 from backend.logs import about
@@ -91,7 +92,8 @@ def _place(after: str) -> PlaceInList:
 
 @router.post("", status_code=201)
 async def create_mission(spec: MissionSpec, services: ServicesDep, principal: PrincipalDep) -> Mission:
-    """Draft a mission."""
+    """Draft a mission. The errors of bearings are estimated with the place unless the request says otherwise."""
+    spec = with_errors_estimated(spec)
     return await _mission(services, await services.missions.drafts.create(spec, principal.name))
 
 
@@ -106,7 +108,7 @@ async def edit_mission(
     mission_id: MissionId, spec: MissionSpec, services: ServicesDep, principal: PrincipalDep
 ) -> Mission:
     """Replace the specification of a draft; 409 once the mission has started."""
-    await services.missions.drafts.edit(mission_id, spec, principal.name)
+    await services.missions.drafts.edit(mission_id, with_errors_estimated(spec), principal.name)
     return await _mission(services, mission_id)
 
 

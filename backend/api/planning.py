@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
+from fastapi.exceptions import RequestValidationError
 
-from backend.api.areas import read_area
+from backend.api.areas import AreaRefused, area_of
 from backend.api.dependencies import MissionId, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.suggestion import with_errors_estimated
 from backend.spec import MissionSpec, SearchArea
 from backend.wire.resources import (
     AreaImport,
     AreaOutlook,
-    AreaUpload,
     ExpectedTime,
     ExpectedTimeRequest,
     PlacesCompared,
@@ -63,7 +64,7 @@ async def area_outlook(mission_id: MissionId, search: SearchArea, services: Serv
 async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
     """Plan the first place of a mission that is not flown yet."""
     async with services.planning:
-        found = await services.missions.questions.preview(spec)
+        found = await services.missions.questions.preview(with_errors_estimated(spec))
     return Preview(
         start=found.start,
         first_place=found.first_place,
@@ -77,7 +78,16 @@ async def preview_mission(spec: MissionSpec, services: ServicesDep) -> Preview:
     )
 
 
-@router.post("/areas")
-async def import_area(upload: AreaUpload, services: ServicesDep) -> AreaImport:
+AREA_BODY = {
+    "required": True,
+    "content": {"application/json": {"schema": {"$ref": "#/components/schemas/AreaUpload"}}},
+}
+
+
+@router.post("/areas", openapi_extra={"requestBody": AREA_BODY})
+async def import_area(request: Request, services: ServicesDep) -> AreaImport:
     """Read the polygons of a GeoJSON or KML file as a mission area; 422 says what cannot be read."""
-    return await services.workers.run(read_area, upload)
+    try:
+        return await services.workers.run(area_of, await request.body())
+    except AreaRefused as refused:
+        raise RequestValidationError(refused.errors) from refused

@@ -29,6 +29,8 @@ from planner.types import PlannerError
 log = logging.getLogger("crossfix.api")
 
 MEDIA_TYPE = "application/problem+json"
+MOST_NAMED = 20
+"""Wrong fields of a request, one by one; the sentence counts them all."""
 
 PROBLEM_RESPONSES: dict[int | str, dict[str, object]] = {
     "default": {
@@ -75,9 +77,10 @@ def respond(found: Problem, headers: dict[str, str] | None = None) -> JSONRespon
 
 
 def field_problems(error: RequestValidationError) -> list[FieldProblem]:
-    """pydantic's findings with the place they are about; "body" is left off, query and path names stay."""
+    """The first MOST_NAMED of pydantic's findings with the place they are about; "body" is left off, query and path
+    names stay."""
     found: list[FieldProblem] = []
-    for item in error.errors():
+    for item in error.errors()[:MOST_NAMED]:
         location: list[int | str] = list(item["loc"])
         if location and location[0] == "body":
             location = without_tags(location[1:], error.body)
@@ -139,9 +142,9 @@ async def on_problem(_: Request, error: Exception) -> JSONResponse:
 async def on_invalid(_: Request, error: Exception) -> JSONResponse:
     """422, with a line for each field."""
     assert isinstance(error, RequestValidationError)
-    errors = field_problems(error)
+    errors, faults = field_problems(error), len(error.errors())
     first = errors[0].field if errors else ""
-    return respond(problem(422, reasons.RequestInvalid(first, max(len(errors), 1)), errors))
+    return respond(problem(422, reasons.RequestInvalid(first, max(faults, 1)), errors))
 
 
 async def on_mission_input(_: Request, error: Exception) -> JSONResponse:

@@ -10,10 +10,13 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 from pydantic import TypeAdapter, ValidationError
 
+from backend.api.dependencies import ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
+from backend.reasons import carried
 from backend.reasons.request import ExportUnreadable
 from backend.store.exported import ExportedLater, NotExported, export_of_today
 from backend.wire.resources import ExportedMission, Track, TrackFact
+from planner.reason import ReasonedError
 
 router = APIRouter(prefix="/api/recordings", tags=["review"], responses=PROBLEM_RESPONSES)
 
@@ -27,19 +30,37 @@ BODY = {
 }
 
 
+SHORT_BYTES = 256 * 2**10
+"""Read in a thread; the event loop waits while a longer one is parsed there."""
+
+
+class ExportRefused(ReasonedError):
+    """What was sent is no exported mission that can be read."""
+
+    def __init__(self, reason: ExportUnreadable) -> None:
+        super().__init__(reason)
+
+
 @router.post("/read", response_model=ExportedMission, openapi_extra={"requestBody": BODY})
-async def read_exported_mission(request: Request) -> Response:
+async def read_exported_mission(request: Request, services: ServicesDep) -> Response:
     """The events and the flown paths of an exported mission, whichever Crossfix exported it."""
     text = await request.body()
-    return Response(await asyncio.to_thread(_read, text), media_type="application/json")
+    try:
+        if len(text) <= SHORT_BYTES:
+            answer = await asyncio.to_thread(read_export, text)
+        else:
+            answer = await services.workers.run(read_export, text)
+    except ExportRefused as refused:
+        raise ApiProblem(422, carried(refused.reason)) from refused
+    return Response(answer, media_type="application/json")
 
 
-def _read(text: bytes) -> str:
-    """The answer's JSON. Raises ApiProblem."""
+def read_export(text: bytes) -> str:
+    """The answer's JSON. Raises ExportRefused."""
     try:
         parsed = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise ApiProblem(422, ExportUnreadable("not_json")) from error
+        raise ExportRefused(ExportUnreadable("not_json")) from error
     try:
         exported = export_of_today(parsed)
         mission = ExportedMission(
@@ -50,9 +71,9 @@ def _read(text: bytes) -> str:
             ],
         )
     except ExportedLater as error:
-        raise ApiProblem(422, ExportUnreadable("later")) from error
+        raise ExportRefused(ExportUnreadable("later")) from error
     except (NotExported, ValidationError, RecursionError) as error:
-        raise ApiProblem(422, ExportUnreadable("not_exported")) from error
+        raise ExportRefused(ExportUnreadable("not_exported")) from error
     return mission.model_dump_json()
 
 

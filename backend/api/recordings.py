@@ -17,11 +17,12 @@ from pydantic import AfterValidator, Field, StringConstraints
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.api.services import Services
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
 from backend.reasons import carried
 from backend.reasons import request as reasons
 from backend.search.errors import MissionInputError
-from backend.search.importing import Upload
+from backend.search.importing import Upload, imported_before
 from backend.spec import Id, Model, Place
 from backend.wire.resources import ImportedSweep, RecordingImport
 from backend.workers import Workers
@@ -86,10 +87,21 @@ async def import_recording(
     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
     """
     upload = await _read(form, services.workers)
+    await _must_fit(services, mission_id, upload)
     facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
     if already:
         response.status_code = 200
     return _reply(facts, already)
+
+
+async def _must_fit(services: Services, mission_id: str, upload: Upload) -> None:
+    """Raises ApiProblem unless there is room for its raw sweeps, or they are there already."""
+    imports = await services.journal.read_kinds(mission_id, ("recording_imported",))
+    if imported_before(imports, upload.recording_id):
+        return
+    sweeps = [recorded.sweep for recorded in upload.recording.sweeps]
+    size_bytes = sum(sweep.at_s.nbytes + sweep.heading_deg.nbytes + sweep.power_db.nbytes for sweep in sweeps)
+    await services.stocks["recordings"].must_take(len(sweeps), size_bytes)
 
 
 async def _read(form: RecordingForm, workers: Workers) -> Upload:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
@@ -51,6 +50,9 @@ MEDIA_TYPES: dict[ExportFormat, str] = {
 }
 ENDINGS: dict[ExportFormat, str] = {"cot": "tak.zip", "bundle": "zip"}
 
+SUPPOSED_TIMES = 5
+"""A what-if takes as long as this many beliefs of the mission: one after each bearing, and a plan."""
+
 BINARY: dict[int | str, dict[str, object]] = {
     200: {
         "description": "A belief frame",
@@ -77,7 +79,7 @@ async def list_events(
 ) -> EventPage:
     """Recorded events with seq > after."""
     digest = await stored_mission(services, mission_id)
-    recorded = await services.journal.read(mission_id, after)
+    recorded = await services.journal.read(mission_id, after, limit + 1)
     page = recorded[:limit]
     return EventPage(events=page, last_seq=digest.last_seq, more=len(recorded) > len(page))
 
@@ -109,7 +111,7 @@ async def ask_what_if(mission_id: MissionId, request: WhatIfRequest, services: S
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
     antenna = await another_antenna(services, mission_id, recorded, request)
     async with services.planning:
-        found = await asyncio.to_thread(what_if, mission_id, recorded, request, antenna)
+        found = await beside(services, SUPPOSED_TIMES * len(recorded), what_if, mission_id, recorded, request, antenna)
     if found is None:
         raise not_found("belief_after", str(request.bearings))
     return found
@@ -120,7 +122,7 @@ async def get_antenna(mission_id: MissionId, services: ServicesDep, emitter: Emi
     """Whether the sweeps of an emitter (None: the first) fit the antenna that was measured, and which one they show."""
     await stored_mission(services, mission_id)
     recorded = await services.journal.read_kinds(mission_id, SUPPOSED_KINDS)
-    found = await asyncio.to_thread(antenna_review, recorded, emitter, services.pattern)
+    found = await beside(services, len(recorded), antenna_review, recorded, emitter, services.pattern)
     if found is None:
         raise not_found("belief_about", str(emitter))
     return found

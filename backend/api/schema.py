@@ -40,6 +40,7 @@ from backend.reasons.adapter import BY_NAME
 from backend.spec import Area
 from backend.wire.messages import LiveMessage
 from backend.wire.problem import Problem
+from backend.wire.resources import AreaUpload
 
 ROUTERS = (
     entering.router,
@@ -117,7 +118,7 @@ def wire_schema(version: str) -> dict[str, Any]:
     app = FastAPI(title="Crossfix", version=version, generate_unique_id_function=operation_id)
     for router in ROUTERS:
         app.include_router(router)
-    for name, union in {**UNIONS, "Problem": Problem}.items():
+    for name, union in {**UNIONS, "Problem": Problem, "AreaUpload": AreaUpload}.items():
         app.add_api_route(SCHEMA_ONLY + name, lambda: None, response_model=union, methods=["GET"], name=name)
     document = get_openapi(title=app.title, version=app.version, routes=app.routes)
     paths, schemas = document["paths"], document["components"]["schemas"]

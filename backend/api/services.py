@@ -8,10 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from backend.api.stock import Stock, stocks
 from backend.auth.access import Access
 from backend.live.hub import Hub
+from backend.maps.overlay_folder import OverlayFolder
+from backend.ports import Kept
 from backend.settings import Settings
 from backend.store.journal import SqlJournal
+from backend.wire.health import StockKind
 from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.payload.session import PayloadHub
@@ -32,7 +36,9 @@ class Services:
 
     now: UTC epoch seconds of the mission's clock. planning: what-if questions are answered one at a time, so that
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
+    beside: short work on missions runs in one thread at a time, since each more takes the interpreter from the flight.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
+    stocks: what comes from outside, and how much of it may be kept.
     access: who may enter. provider: whom the settings trust to say who somebody is.
     """
 
@@ -49,4 +55,15 @@ class Services:
     workers: Workers = field(default_factory=Workers)
     desk: Workers = field(default_factory=lambda: Workers(time_s=DESK_S, memory_bytes=DESK_BYTES))
     planning: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
+    beside: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)
+    stocks: dict[StockKind, Stock] = field(init=False)
+
+    def __post_init__(self) -> None:
+        overlays = OverlayFolder(self.settings.data_dir / "overlays")
+
+        async def kept_overlays() -> Kept:
+            return await asyncio.to_thread(overlays.kept)
+
+        made = stocks(self.settings, kept_overlays, self.journal.imported_sweeps)
+        object.__setattr__(self, "stocks", made)

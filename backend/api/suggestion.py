@@ -2,21 +2,43 @@
 
 from __future__ import annotations
 
-from backend.spec import MissionSpec, Polygon
+from backend.spec import MissionSpec, PlannerSpec, Polygon, SensorSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+from planner.options import CROSSFIX
 
 WIDTH_M, HEIGHT_M = 313.0, 200.0
 """As wide as the field system's area, and deeper, so that a newcomer's search takes more than two places."""
 
 NAME = "New search"
 
+PLANNER = PlannerSpec(
+    method=CROSSFIX.method,
+    base_policy=CROSSFIX.base_policy,
+    selection=CROSSFIX.selection,
+    sampling=CROSSFIX.sampling,
+    estimator=CROSSFIX.estimator,
+    budget=CROSSFIX.budget,
+)
+"""`crossfix study run --planner crossfix` is the planner at these settings."""
+
 
 def suggested_mission(home: Place) -> MissionSpec:
-    """All other values are the specification's defaults. The home lies on the area's southern edge."""
+    """Planned by our own planner, the errors of bearings estimated with the place; all other values are the
+    specification's defaults. The home lies on the area's southern edge."""
     frame = LocalFrame(home)
     east = WIDTH_M / 2
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(name=NAME, area=area)
+    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"), planner=PLANNER)
+
+
+def with_errors_estimated(asked: MissionSpec) -> MissionSpec:
+    """A request that does not say how the errors of bearings hang together has them estimated with the place.
+
+    A stored specification that does not say it is from before they were, and means independent ones.
+    """
+    if "bearing_errors" in asked.sensor.model_fields_set:
+        return asked
+    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update={"bearing_errors": "joint"})})

@@ -42,6 +42,7 @@ async def health(services: ServicesDep) -> Health:
         viewers=services.hub.viewers(),
         disk_free_bytes=free_bytes(services),
         keep_sweeps_days=settings.keep_sweeps_days,
+        stocks=[stock.health() for stock in services.stocks.values()],
         simulated=settings.simulated,
         time_factor=settings.time_factor,
     )

@@ -7,7 +7,7 @@ import tempfile
 import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import httpx
 import typer
@@ -19,7 +19,7 @@ from backend.cli.edge import print_json, remark, stop, words_of
 from backend.cli.running import CannotServe, running_server, stop_on_signals
 from backend.settings import Settings, settings_of
 from backend.simulation.emitters import EMITTERS, SimulatedEmitter
-from backend.spec import MOST_EMITTERS, EmitterSpec
+from backend.spec import MOST_EMITTERS, EmitterSpec, MovementSpec
 from backend.store.delivery import DatabaseAway
 from backend.store.opening import DatabaseUnusable
 from backend.store.reading import JournalUnavailable
@@ -31,15 +31,30 @@ TAG = EmitterSpec(frequency_hz=150_000_000.0, kind="pulsed", label="wildlife tag
 """What the page's preset for wildlife sets."""
 
 TAG_SENSOR = {"measurement_time_s": 45.0, "sigma_deg": 9.0}
+GAITS: tuple[Literal["animal", "walking", "drifting"], ...] = ("animal", "walking", "drifting")
 SPACING_HZ = 100_000.0
 """Between the frequencies of several emitters."""
 
 
-def sought(first: EmitterSpec, count: int) -> list[EmitterSpec]:
+def movement(kind: str | None, pace: float) -> MovementSpec:
+    """kind None: still. Raises ValueError for one that is not known."""
+    if kind is None:
+        return MovementSpec()
+    for known in GAITS:
+        if kind == known:
+            return MovementSpec(kind=known, speed_m_s=pace)
+    raise ValueError(f"--moves {kind!r} is not known: choose one of {', '.join(GAITS)}")
+
+
+def sought(first: EmitterSpec, count: int, moving: MovementSpec | None = None) -> list[EmitterSpec]:
     """Emitters like the first, each at a frequency of its own."""
     return [
         first.model_copy(
-            update={"emitter_id": f"emitter-{number}", "frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ}
+            update={
+                "emitter_id": f"emitter-{number}",
+                "frequency_hz": first.frequency_hz + (number - 1) * SPACING_HZ,
+                "movement": moving or MovementSpec(),
+            }
         )
         for number in range(1, count + 1)
     ]
@@ -47,10 +62,17 @@ def sought(first: EmitterSpec, count: int) -> list[EmitterSpec]:
 
 def simulated(emitters: list[EmitterSpec]) -> list[SimulatedEmitter]:
     """What is always there, and the further emitters that are looked for."""
-    return [
-        *EMITTERS,
-        *(SimulatedEmitter(e.frequency_hz, e.pulse_period_s if e.kind == "pulsed" else None) for e in emitters[1:]),
-    ]
+    wanted = [_simulated(emitter) for emitter in emitters]
+    first = wanted[0].frequency_hz
+    return [*(wanted[0] if other.frequency_hz == first else other for other in EMITTERS), *wanted[1:]]
+
+
+def _simulated(emitter: EmitterSpec) -> SimulatedEmitter:
+    period_s = emitter.pulse_period_s if emitter.kind == "pulsed" else None
+    kind = emitter.movement.kind
+    return SimulatedEmitter(
+        emitter.frequency_hz, period_s, None if kind == "still" else kind, emitter.movement.speed_m_s
+    )
 
 
 def demo(
@@ -74,6 +96,10 @@ def demo(
     emitters: Annotated[
         int, typer.Option(min=1, max=MOST_EMITTERS, help="How many emitters to look for, each at its own frequency.")
     ] = 1,
+    moves: Annotated[
+        str | None, typer.Option(help="The emitters move, and are followed: animal, walking or drifting.")
+    ] = None,
+    pace: Annotated[float, typer.Option(min=0.01, max=5.0, help="With --moves: how fast, m/s.")] = 0.2,
     mend_failsafes: Annotated[
         bool,
         typer.Option(help="Set failsafe parameters of the autopilot that would not act, and say which."),
@@ -104,7 +130,8 @@ def demo(
     except ValueError as error:
         stop(error)
     try:
-        result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, tag, emitters))
+        looked_for = sought(TAG if tag else CARRIER, emitters, movement(moves, pace))
+        result = asyncio.run(_demo(settings, headless, json_, mend_failsafes, tag, looked_for))
     except (CannotServe, DatabaseUnusable, HardwareError, PatternError, ValueError) as error:
         stop(error)
     except (DatabaseAway, JournalUnavailable) as error:
@@ -121,8 +148,9 @@ def demo(
         _tell(result)
 
 
-async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool, tag: bool, count: int) -> dict[str, Any]:
-    emitters = sought(TAG if tag else CARRIER, count)
+async def _demo(
+    settings: Settings, headless: bool, json_: bool, mend: bool, tag: bool, emitters: list[EmitterSpec]
+) -> dict[str, Any]:
     changes: Mapping[str, Any] = {
         "emitters": [emitter.model_dump(mode="json") for emitter in emitters],
         "sensor": TAG_SENSOR if tag else {},
@@ -132,7 +160,7 @@ async def _demo(settings: Settings, headless: bool, json_: bool, mend: bool, tag
             remark(f"the page: {running.url}")
             await asyncio.to_thread(webbrowser.open, running.url)
         log = await fly(running, settings, mend, changes)
-        result = summary(log, settings, {} if running.receiver is None else running.receiver.truth)
+        result = summary(log, settings, {} if running.receiver is None else running.receiver.truth_at)
         if not headless:
             _tell(result, err=json_)
             remark("the page stays open to look at; Ctrl-C stops the server")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -43,16 +43,22 @@ class MissionLog:
         return [event for event in events if emitter_id is None or getattr(event, "emitter_id", None) == emitter_id]
 
 
-def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place]) -> dict[str, Any]:
-    """What `--json` prints. truths: where each emitter stands, by its frequency; empty when that is not known.
+TruthAt = Callable[[float], Mapping[float, Place]]
+"""Where each emitter is at a time (UTC epoch seconds), by its frequency; empty when that is not known."""
+
+
+def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place] | TruthAt) -> dict[str, Any]:
+    """What `--json` prints. truths: where each emitter stands, by its frequency, or is at a time; empty when that is
+    not known. An emitter is graded at its last claim, when it was claimed at all, and then by where it was.
 
     `localized` and `outcome` are the mission's. Errors, bearings and sweeps are those of its first emitter; the others
     follow in `emitters` when there are several.
     """
     ended = log.all(MissionEnded)[-1]
     emitters = log.all(MissionDrafted)[-1].spec.emitters
-    graded = [_graded(log, emitter, truths.get(emitter.frequency_hz)) for emitter in emitters]
-    name, truth = emitters[0].emitter_id, truths.get(emitters[0].frequency_hz)
+    truth_at: TruthAt = truths if callable(truths) else lambda _: truths
+    graded = [_graded(log, emitter, truth_at) for emitter in emitters]
+    name, frequency = emitters[0].emitter_id, emitters[0].frequency_hz
     bearings = log.all(BearingMeasured, name)
     result = {
         "localized": ended.outcome == "localized",
@@ -60,7 +66,11 @@ def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place]) 
         "expected_rmse_m": graded[0]["expected_rmse_m"],
         "in_c95": graded[0]["in_c95"],
         "bearings": len(bearings),
-        "bearing_errors_deg": [] if truth is None else [_bearing_error(b, truth) for b in bearings],
+        "bearing_errors_deg": [
+            _bearing_error(b, truth)
+            for b in bearings
+            if (truth := truth_at(b.taken_at_s or 0.0).get(frequency)) is not None
+        ],
         "bearing_sigmas_deg": [b.sigma_deg for b in bearings],
         "rejected_sweeps": len(log.all(SweepRejected, name)),
         "mission_time_s": ended.mission_time_s,
@@ -76,10 +86,18 @@ def summary(log: MissionLog, settings: Settings, truths: Mapping[float, Place]) 
     return result | ({"emitters": graded} if len(graded) > 1 else {})
 
 
-def _graded(log: MissionLog, emitter: EmitterSpec, truth: Place | None) -> dict[str, Any]:
-    """The last estimate of an emitter against the truth."""
-    beliefs = log.all(BeliefUpdated, emitter.emitter_id)
-    estimate = beliefs[-1].estimate if beliefs else None
+def _graded(log: MissionLog, emitter: EmitterSpec, truth_at: TruthAt) -> dict[str, Any]:
+    """The last claim about an emitter, else the last estimate, against where it was then."""
+    beliefs = [
+        (record.event, record.at_utc.timestamp())
+        for record in log.recorded
+        if isinstance(record.event, BeliefUpdated) and record.event.emitter_id == emitter.emitter_id
+    ]
+    moves = emitter.movement.kind != "still"
+    claims = [one for one in beliefs if moves and one[0].localized] or beliefs
+    last, at_s = claims[-1] if claims else (None, 0.0)
+    estimate = None if last is None else last.estimate
+    truth = truth_at(at_s).get(emitter.frequency_hz)
     error_m = in_c95 = None
     if estimate is not None and truth is not None:
         error_m = math.hypot(*LocalFrame(truth).to_enu(Place(estimate.lat, estimate.lon)))
@@ -87,7 +105,7 @@ def _graded(log: MissionLog, emitter: EmitterSpec, truth: Place | None) -> dict[
     return {
         "emitter_id": emitter.emitter_id,
         "frequency_hz": emitter.frequency_hz,
-        "localized": bool(beliefs) and beliefs[-1].localized,
+        "localized": last is not None and last.localized,
         "error_m": error_m,
         "expected_rmse_m": None if estimate is None else estimate.expected_rmse_m,
         "in_c95": in_c95,

@@ -40,6 +40,10 @@ class RunningServer:
         self.server.should_exit = True
 
 
+WAITING_TO_ENTER = 2048
+"""Connections that the system keeps until they are let in: the event loop takes those of a crowd a few at a time."""
+
+
 class _Server(uvicorn.Server):
     """Says when it answers. Leaves signals to `stop_on_signals`: uvicorn would raise them again once it has stopped,
     and end the process before the vehicle and the journal are closed."""
@@ -54,6 +58,8 @@ class _Server(uvicorn.Server):
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
+        for bound in sockets or ():
+            bound.listen(WAITING_TO_ENTER)
         self.ready.set()
 
 

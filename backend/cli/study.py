@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from backend.cli.edge import print_json, remark, stop, words_of
+from backend.cli.field_study import field_rows
 from backend.cli.truth import truth
 from planner.options import STUDY
 from planner.study.errors import StudyError
@@ -25,6 +26,7 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
+FIELD_WORLD = "field-world"
 DEFAULT_DIRECTORY = Path("study-results")
 
 Directory = Annotated[
@@ -38,7 +40,8 @@ def run(
         list[str] | None,
         typer.Option(
             help="1: uniform prior, eleven targets in a row. 2: Gaussian prior. 3: ring around the start. "
-            "field: the flown system's area. May be repeated, like --config, --planner and --seed.",
+            "field: the flown system's area. May be repeated, like --config, --planner and --seed. field-world: whole "
+            "searches from simulated sweeps, with echoes, shadows and a wrong compass; by itself.",
         ),
     ] = None,
     config: Annotated[
@@ -48,7 +51,8 @@ def run(
         list[str] | None,
         typer.Option(
             help="base, fisher, entpp, entpp8, sopt, vander_hook, tokekar_subset, tokekar_worst_case, tokekar_tree, "
-            "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: rollouts on the dynamic program.",
+            "lookahead, lookahead_myopic, dynamic_program, rollout, or crossfix: rollouts on the dynamic program. "
+            "field-world: crossfix, rollout, fisher, entpp, entropy_of_nine or random_walk.",
         ),
     ] = None,
     selection: Annotated[
@@ -82,6 +86,10 @@ def run(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler to fly on instead, for instance tcp://host:8786.")
     ] = None,
+    turn_rate: Annotated[float, typer.Option(help="field-world: of a sweep, degrees a second.")] = 30.0,
+    compass_sd: Annotated[
+        float, typer.Option(help="field-world: standard deviation of the flights' compass errors, degrees.")
+    ] = 4.0,
     results: Directory = DEFAULT_DIRECTORY,
     json_: Annotated[
         bool, typer.Option("--json", help="Print one JSON object; a list of them when several cells were asked for.")
@@ -91,6 +99,12 @@ def run(
 
     Example: crossfix study run --scenario 2 --planner base --planner entpp --config medium --runs 1000
     """
+    if scenario is not None and FIELD_WORLD in scenario:
+        try:
+            _field_world(scenario, planner, runs, seed, turn_rate, compass_sd, json_)
+        except (PlannerError, StudyError) as error:
+            _refuse(error, json_)
+        return
     study = _modules()
     try:
         cells = [
@@ -156,6 +170,23 @@ def report(
 
 
 app.command()(truth)
+
+
+def _field_world(
+    scenario: list[str],
+    planner: list[str] | None,
+    runs: int,
+    seed: list[int] | None,
+    turn_rate: float,
+    compass_sd: float,
+    json_: bool,
+) -> None:
+    seeds = seed or [1]
+    if len(scenario) > 1 or len(seeds) > 1:
+        raise StudyError("field-world is flown by itself, from one --seed on: give --scenario and --seed once")
+    if runs < 1 or seeds[0] < 0:
+        raise StudyError(f"--runs must be 1 or more and --seed 0 or more, got {runs} and {seeds[0]}")
+    field_rows(planner or ["crossfix"], runs, seeds[0], turn_rate, compass_sd, json_)
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

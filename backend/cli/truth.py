@@ -13,6 +13,7 @@ from backend.search.localization import localization
 from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
 from planner.study.errors import StudyError
+from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
 from planner.study.truth import Claim, Model, Search, Truth, learn, missions, row_named, truth_of
 
@@ -31,7 +32,8 @@ def truth(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
             "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
             "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: four or eight tags in the field "
-            "scenario, each a claim."
+            "scenario, each a claim; moving_0.1, moving_0.2 or moving_0.4: an emitter that walks or drifts at that "
+            "speed, in m/s."
         ),
     ],
     missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,
@@ -71,16 +73,22 @@ def study_row(row: str, count: int, model: str = "joint", first_seed: int = 1, f
         raise StudyError(f"--missions must be 1 or more, got {count}")
     if row in TAGS:
         return _tags_row(row, count, known, first_seed)
-    wanted = row_named(row)
+    wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
     prior = unknown_errors(mission.sensor.outlier_probability)
-    if flights and known == "joint":
+    if wanted is not None and flights and known == "joint":
         prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
         remark(f"{row}: learned from {flights} flights")
     claims: list[Claim] = []
-    for claim in missions(search, wanted, range(first_seed, first_seed + count), known, prior):
+    seeds = range(first_seed, first_seed + count)
+    flown = (
+        moving_missions(search, row, seeds, known, prior)
+        if wanted is None
+        else missions(search, wanted, seeds, known, prior)
+    )
+    for claim in flown:
         claims.append(claim)
         if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
             remark(f"{row}: {len(claims)} of {count} missions")

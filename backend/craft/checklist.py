@@ -9,7 +9,7 @@ from backend.craft.ground_check import ground_checks, knows_nothing
 from backend.craft.listening import Listening, channels_of
 from backend.craft.nets import nets_check
 from backend.craft.recent_telemetry import recent
-from backend.craft.return_altitude import return_altitude_check
+from backend.craft.return_altitude import least_return_altitude_m, return_altitude_check
 from backend.craft.safety import Situation, limits_of, start_vetoes
 from backend.events import CheckFact
 from backend.ports import Grounds
@@ -65,12 +65,12 @@ async def checklist(
 
     await recent(situation)
     found = [check_fact(check) for check in await equipment.vehicle.preflight()]
-    returns = await return_altitude_check(mission.flight, equipment.vehicle)
-    found += [] if returns is None else [returns]
     home, _ = home_of(equipment.vehicle.telemetry())
     terrain = None if grounds is None or home is None else await grounds.around(home)
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry(), terrain)
-    found.append(sound)
+    least_m = None if task is None else await asyncio.to_thread(least_return_altitude_m, task)
+    returns = await return_altitude_check(mission.flight, equipment.vehicle, least_m)
+    found += [sound] if returns is None else [returns, sound]
     if task is not None:
         found += await asyncio.to_thread(ground_checks, task)
         found.append(await nets_check(equipment.vehicle, limits_of(task)))

@@ -14,9 +14,9 @@ from backend.spec import EmitterSpec, MissionSpec
 from hardware.deadline import Deadline
 from hardware.ports import Clock, Receiver, ReceiverError
 from hardware.readings import Channel, PowerSample, Pulses
-from hardware.reasons import HardwareReason
 from hardware.reasons.channels import FrequencyNotAskedFor
 from hardware.reasons.receiver import ReceiverSilent, ReceiverStreamEnded
+from hardware.reasons.union import HardwareReason
 from planner.reason import sentence_of
 
 log = logging.getLogger("crossfix.mission")

@@ -172,7 +172,7 @@ def _search_changed(step: CraftStep) -> None:
     phase = step.craft.phase
     if phase == "planning" or (phase == "waiting" and step.craft.chosen is None):
         go_on(step, flight.Proceeds("belief"))
-    elif phase in ("flying", "measuring", "waiting") and step.search.localized:
+    elif phase in ("flying", "measuring", "waiting") and step.search.done:
         go_home(step, Localized())
 
 
@@ -342,9 +342,9 @@ def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached 
 
 def _on_the_ground(step: CraftStep) -> None:
     """Not by our order (a failsafe's doing, or a return from before a restart). What was found is kept."""
-    if step.search.localized or step.search.stage == "ended":
+    if step.search.found or step.search.stage == "ended":
         step.do(CancelWork())
-        come_down(step, flight.Landed("localized" if step.search.localized else "hold"))
+        come_down(step, flight.Landed("localized" if step.search.found else "hold"))
         return
     reason = flight.Landed("hold")
     if step.craft.phase in AUTOMATIC:

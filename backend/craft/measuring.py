@@ -7,6 +7,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass
 from itertools import cycle
+from statistics import fmean
 from uuid import uuid4
 
 import numpy as np
@@ -69,7 +70,14 @@ async def measure(
     return tuple(
         [
             await _result(
-                equipment, mission, emitter, heard[emitter.emitter_id], place_number, attempt, began_s, taken_s
+                equipment,
+                mission,
+                emitter,
+                heard[emitter.emitter_id],
+                place_number,
+                attempt,
+                (began_s, ended_s),
+                taken_s,
             )
             for emitter in mission.emitters
         ]
@@ -83,16 +91,17 @@ async def _result(
     samples: list[PowerSample],
     place_number: int,
     attempt: int,
-    began_s: float,
+    turn_s: tuple[float, float],
     taken_s: float,
 ) -> Measured:
+    """turn_s: when the turn began and ended. taken_s: from the order to the bearing."""
     sweep_id = str(uuid4())
     taken = Taken(emitter.emitter_id, CraftSource(craft_id=equipment.craft_id), sweep_id, place_number, attempt)
     telemetry = equipment.vehicle.telemetry()
     try:
         sweep = assemble_sweep(
             [sample for sample in samples if sample.detected],
-            equipment.vehicle.headings(began_s - 1.0),
+            equipment.vehicle.headings(turn_s[0] - 1.0),
             frequency_hz=emitter.frequency_hz,
             altitude_amsl_m=math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m,
             position=None,
@@ -105,7 +114,7 @@ async def _result(
         reason = NoPulseHeard() if unheard else carried(error.reason)
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason))
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
-    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s))
+    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, fmean(turn_s)))
 
 
 async def _show_progress(

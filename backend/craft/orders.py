@@ -141,7 +141,7 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
     if search.stage == "ended":
         insist(step, "hold")
         step.go("hold", reason)
-    elif given.on_ground and not search.localized:
+    elif given.on_ground and not search.found:
         take_off(step, reason)
     else:
         go_on(step, reason)

@@ -104,7 +104,7 @@ class CraftRunner:
                 return self.work.vetoes_against(place)
             case Resume():
                 found = resume_vetoes(telemetry)
-                if telemetry.in_air is False and not self._search().localized:
+                if telemetry.in_air is False and not self._search().found:
                     found += battery_vetoes(self.limits, self.watch.situation(), self.limits.measurement_time_s)
                 return found
             case _:

@@ -93,7 +93,7 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         take_off(step, reason)
     elif not search.beliefs_current:
         step.go("planning", reason)
-    elif search.localized:
+    elif search.done:
         go_home(step, Localized())
     elif craft.chosen is not None and (accepted or craft.accepted or craft.automatic):
         place, number = craft.chosen.place, craft.place_number
@@ -105,7 +105,7 @@ def go_on(step: CraftStep, reason: Reason, accepted: bool = False) -> None:
         step.do(FlyTo(number, place))
     elif craft.chosen is not None:
         step.go("waiting", reason)
-    elif search.place_number >= spec.localization.maximum_bearings:
+    elif search.place_number >= spec.localization.maximum_bearings and not (search.follows and search.found):
         go_home(step, NotLocalized(PlacesUsedUp(search.place_number), search.not_yet))
     else:
         step.go("planning", reason)

@@ -108,7 +108,7 @@ class Work:
             self.listening,
             effect.place_number,
             effect.attempt,
-            wanted=[emitter.emitter_id for emitter in self.search().wanted],
+            wanted=[emitter.emitter_id for emitter in self.search().sought],
         )
         for measured in found:
             self.keep_sweep(measured, effect.place_number, effect.attempt)
@@ -146,10 +146,11 @@ class Work:
     ) -> PlanChosen:
         """For all emitters that are not localized; each turn listens to all of them. closed: m ENU."""
         number, threads, craft_id = effect.place_number, self.equipment.threads, self.equipment.craft_id
-        if len(search.wanted) > 1 and self.task.mission.planner.method == "rollout":
-            wanted = [(self.task.emitters[e.emitter_id].without(closed), e.bearings) for e in search.wanted]
+        sought = search.sought
+        if len(sought) > 1 and self.task.mission.planner.method == "rollout":
+            wanted = [(self.task.emitters[e.emitter_id].without(closed), e.bearings) for e in sought]
             return next_place_together(wanted, platform, number, effect.avoid, threads, craft_id)
-        emitter = (*search.wanted, *search.emitters.values())[0]
+        emitter = sought[0]
         task = self.task.emitters[emitter.emitter_id].without(closed)
         belief = task.planning_belief(task.planner_bearings(emitter.bearings))
         return next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)

@@ -83,6 +83,7 @@ class BearingMeasured(Fact):
     heading's and the antenna's. remarks: what makes the bearing less certain.
     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
+    taken_at_s: UTC epoch seconds of the middle of the turn; None: nobody said (imported, or before it was kept).
     """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
@@ -107,6 +108,7 @@ class BearingMeasured(Fact):
     remarks: list[Reason] = Field(default_factory=list[Reason])
     likelihood: str | None = None
     samples_without_heading: int = 0
+    taken_at_s: Known = None
 
 
 class RecordingImported(Fact):

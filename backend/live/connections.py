@@ -1,45 +1,77 @@
 """uvicorn's HTTP connection with limits: how many in all, how many of one address, and how long a request's head takes.
 
-Without them a thousand half-sent requests use up the process's file descriptors, and nobody gets in. A live websocket
-is counted only until it is one: the live channel has a limit of its own.
+Without them a thousand half-sent requests use up the process's file descriptors, and nobody gets in. Where there is no
+room left, whoever keeps the server waiting makes room: a stranger who fills every place with half a request, a body
+that never ends or an answer that is never taken keeps nobody out for longer than a whole request takes to arrive.
+
+A live websocket is counted only until it is one: the live channel has a limit of its own.
 """
 
 from __future__ import annotations
 
 import asyncio
 import ipaddress
+import resource
 from collections import Counter
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 
+class Visitor(Protocol):
+    """A connection, as the door sees it. Told apart by identity."""
+
+    @property
+    def keeps_waiting(self) -> bool:
+        """Is it the other side's turn: to send a head or a body, or to take an answer?"""
+        ...
+
+    def turn_out(self) -> None:
+        """Cut it off now."""
+        ...
+
+
 @dataclass(slots=True)
 class Door:
-    """most: open at once. each: of one address, but for this machine's and `exempt` ones. head_s: for a whole head."""
+    """most: open at once. each: of one address, but for this machine's and `exempt` ones. head_s: for a whole head.
+
+    inside: the address of each, the longest there first.
+    """
 
     most: int
     each: int
     head_s: float
     exempt: Collection[str] = ()
-    inside: Counter[str] = field(default_factory=Counter[str])
+    inside: dict[Visitor, str] = field(default_factory=dict[Visitor, str])
 
-    def enter(self, address: str) -> bool:
-        """False: there are too many."""
-        crowd = self.inside[address] >= self.each and address not in self.exempt and not _ours(address)
-        if crowd or self.inside.total() >= self.most:
+    def enter(self, visitor: Visitor, address: str) -> bool:
+        """False: there are too many, and all of them are being served."""
+        of_this = [other for other, whose in self.inside.items() if whose == address]
+        if len(of_this) >= self.each and address not in self.exempt and not _ours(address):
+            if not self._make_room(of_this):
+                return False
+        elif len(self.inside) >= self.most and not self._make_room(list(self.inside)):
             return False
-        self.inside[address] += 1
+        self.inside[visitor] = address
         return True
 
-    def leave(self, address: str) -> None:
-        """Once for each that has entered."""
-        self.inside[address] -= 1
-        if self.inside[address] <= 0:
-            del self.inside[address]
+    def leave(self, visitor: Visitor) -> None:
+        """Nothing happens when it has left before."""
+        self.inside.pop(visitor, None)
+
+    def _make_room(self, among: list[Visitor]) -> bool:
+        """Of those who keep the server waiting, the one from the address with the most of them who came first."""
+        waited_for = [visitor for visitor in among if visitor.keeps_waiting]
+        if not waited_for:
+            return False
+        crowd = Counter(self.inside[visitor] for visitor in waited_for)
+        chosen = max(waited_for, key=lambda visitor: crowd[self.inside[visitor]])  # the first of the largest
+        self.leave(chosen)
+        chosen.turn_out()
+        return True
 
 
 def _ours(address: str) -> bool:
@@ -55,18 +87,24 @@ class LimitedProtocol(H11Protocol):
     def __init__(self, door: Door, **uvicorns: Any) -> None:
         super().__init__(**uvicorns)
         self._door = door
-        self._address: str | None = None
         self._head_timer: asyncio.TimerHandle | None = None
+
+    @property
+    def keeps_waiting(self) -> bool:
+        """As the door asks it."""
+        return self.conn.their_state in (h11.IDLE, h11.SEND_BODY) or self.flow.write_paused
+
+    def turn_out(self) -> None:
+        """As the door orders it."""
+        self.transport.abort()
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Closed again at once when there are too many."""
         super().connection_made(transport)
-        address = "unknown" if self.client is None else self.client[0]
-        if not self._door.enter(address):
+        if self._door.enter(self, "unknown" if self.client is None else self.client[0]):
+            self._await_head()
+        else:
             transport.abort()
-            return
-        self._address = address
-        self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Makes room."""
@@ -76,7 +114,7 @@ class LimitedProtocol(H11Protocol):
     def data_received(self, data: bytes) -> None:
         """The time for a head runs until it is whole, for each request of a connection."""
         super().data_received(data)
-        if self.conn.their_state is h11.IDLE and self._address is not None:
+        if self.conn.their_state is h11.IDLE:
             self._await_head()
         else:
             self._head_is_whole()
@@ -87,7 +125,7 @@ class LimitedProtocol(H11Protocol):
         super().handle_websocket_upgrade(event)
 
     def _await_head(self) -> None:
-        if self._head_timer is None:
+        if self._head_timer is None and self in self._door.inside:
             self._head_timer = asyncio.get_running_loop().call_later(self._door.head_s, self._too_slow)
 
     def _head_is_whole(self) -> None:
@@ -102,9 +140,7 @@ class LimitedProtocol(H11Protocol):
 
     def _left(self) -> None:
         self._head_is_whole()
-        if self._address is not None:
-            self._door.leave(self._address)
-            self._address = None
+        self._door.leave(self)
 
 
 def limited(door: Door) -> Callable[..., LimitedProtocol]:
@@ -114,3 +150,10 @@ def limited(door: Door) -> Callable[..., LimitedProtocol]:
         return LimitedProtocol(door, **uvicorns)
 
     return connection
+
+
+def allow_descriptors() -> int:
+    """As many open files and connections as this process may ask for, the usual 1024 are few; how many that is."""
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+    return hard

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -60,9 +61,17 @@ class Reading:
 
     def bounds(self) -> Box:
         """(west, south, east, north) degrees. Raises ValueError when nothing was read."""
-        positions = [position for feature in self.features for position in _positions(feature.geometry["coordinates"])]
-        lon, lat = zip(*positions, strict=True)
-        return min(lon), min(lat), max(lon), max(lat)
+        boxes = [_box(feature.geometry["coordinates"]) for feature in self.features]
+        west, south, east, north = zip(*boxes, strict=True)
+        return min(west), min(south), max(east), max(north)
+
+
+def _box(coordinates: Any) -> Box:
+    west = south = math.inf
+    east = north = -math.inf
+    for lon, lat in _positions(coordinates):
+        west, south, east, north = min(west, lon), min(south, lat), max(east, lon), max(north, lat)
+    return west, south, east, north
 
 
 def _positions(coordinates: Any) -> Iterator[tuple[float, float]]:

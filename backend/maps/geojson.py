@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from pydantic import JsonValue
 
@@ -91,7 +91,8 @@ def _position(value: JsonValue) -> list[float]:
     lon, lat = _number(value[0]), _number(value[1])
     if not (abs(lon) <= 180 and abs(lat) <= 90):
         raise PartUnusable("swapped" if abs(lon) <= 90 and abs(lat) <= 180 else "in_metres")
-    return [float(lon), float(lat)]
+    value[:] = (float(lon), float(lat))
+    return cast("list[float]", value)
 
 
 def _number(value: JsonValue) -> float:
@@ -101,9 +102,13 @@ def _number(value: JsonValue) -> float:
 
 
 def _list(value: JsonValue, read: Callable[[JsonValue], T], fewest: int) -> list[T]:
+    """In place: a second copy of a million positions takes a hundred megabytes."""
     if not isinstance(value, list) or len(value) < fewest:
         raise PartUnusable("too_few_positions")
-    return [read(part) for part in value]
+    parts = cast("list[Any]", value)
+    for index, part in enumerate(parts):
+        parts[index] = read(part)
+    return parts
 
 
 def _line(value: JsonValue) -> list[list[float]]:

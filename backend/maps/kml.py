@@ -13,17 +13,20 @@ import zlib
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any, get_args
-from xml.etree.ElementTree import Element, ParseError
+from xml.etree.ElementTree import Element, ParseError, TreeBuilder
 
 from defusedxml import DefusedXmlException
-from defusedxml.ElementTree import fromstring
+from defusedxml.ElementTree import DefusedXMLParser
 
-from backend.maps.features import MARKUP, MOST_NAME, Reading
+from backend.maps.features import MARKUP, MOST_FEATURES, MOST_NAME, Reading
 from backend.maps.geojson import DEEPEST_COLLECTION, plain_geometries
 from backend.maps.refusal import MapRefused, PartUnusable
-from backend.reasons.maps import FileLeftOut, KindLeftOut, NotDrawn, NotReadableAs
+from backend.reasons.maps import FileLeftOut, KindLeftOut, NotDrawn, NotReadableAs, TooManyFeatures
 
 MOST_KML_BYTES = 100 * 2**20
+MOST_ELEMENTS = 500_000
+"""Ten for each placemark."""
+BLOCK_BYTES = 2**16
 NOT_DRAWN: tuple[NotDrawn, ...] = get_args(NotDrawn)
 
 Style = dict[str, Any]
@@ -44,12 +47,9 @@ def read_kmz(content: bytes) -> Reading:
                 raise MapRefused(NotReadableAs("kmz", "no_kml_inside"))
             main = "doc.kml" if "doc.kml" in names else names[0]
             with archive.open(main) as file:
-                kml = file.read(MOST_KML_BYTES + 1)
+                reading = _reading(_tree(iter(lambda: file.read(BLOCK_BYTES), b"")))
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
         raise MapRefused(NotReadableAs("kmz", "not_unpacked")) from error
-    if len(kml) > MOST_KML_BYTES:
-        raise MapRefused(NotReadableAs("kmz", "too_large"))
-    reading = read_kml(kml)
     for other in names:
         if other != main:
             reading.note(FileLeftOut(other[:MOST_NAME]))
@@ -58,11 +58,44 @@ def read_kmz(content: bytes) -> Reading:
 
 def read_kml(content: bytes) -> Reading:
     """All placemarks. MapRefused when it is no KML; what cannot be drawn is named in `notes`."""
+    return _reading(_tree(iter((content,))))
+
+
+class _Bounded(TreeBuilder):
+    """Ends a document that has more in it than can be drawn before it has filled the memory."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._elements = self._placemarks = 0
+
+    def start(self, tag: str, attrs: dict[str, str]) -> Element:  # type: ignore[override]  # its stub names them otherwise
+        """Raises MapRefused."""
+        self._elements += 1
+        self._placemarks += tag.endswith("Placemark")
+        if self._placemarks > MOST_FEATURES:
+            raise MapRefused(TooManyFeatures(MOST_FEATURES))
+        if self._elements > MOST_ELEMENTS:
+            raise MapRefused(NotReadableAs("kml", "too_large"))
+        return super().start(tag, attrs)
+
+
+def _tree(blocks: Iterator[bytes]) -> Element:
+    """Raises MapRefused for what is no XML, or too much of it."""
+    parser = DefusedXMLParser(target=_Bounded(), forbid_dtd=True)
+    taken = 0
     try:
-        root = fromstring(content, forbid_dtd=True)
+        for block in blocks:
+            taken += len(block)
+            if taken > MOST_KML_BYTES:
+                raise MapRefused(NotReadableAs("kml", "too_large"))
+            parser.feed(block)
+        return parser.close()
     except (ParseError, ValueError, LookupError) as error:
         fault = "document_type" if isinstance(error, DefusedXmlException) else "not_xml"
         raise MapRefused(NotReadableAs("kml", fault)) from error
+
+
+def _reading(root: Element) -> Reading:
     if _tag(root) != "kml":
         raise MapRefused(NotReadableAs("kml", "other_xml"))
     reading = Reading()

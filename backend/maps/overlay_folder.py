@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import shutil
+from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -20,22 +21,32 @@ from backend.maps.geojson import read_geojson
 from backend.maps.kml import read_kml, read_kmz
 from backend.maps.refusal import MapRefused, NotStored
 from backend.maps.simplify import simplified
+from backend.maps.upload import received
+from backend.ports import Kept
 from backend.reasons import REASONS
 from backend.reasons.maps import NoRoomForMap, NothingToDraw, NotReadableAs, OverlayFormat, OverlayUnusable
+from backend.reasons.request import BodyTooLarge
+from backend.reasons.storage import StockFull
 from backend.wire.maps import Overlay, OverlayCollection
+from backend.workers import Workers
 
 MOST_OVERLAY_BYTES = 20 * 10**6
-MOST_STORED_BYTES = 500 * 10**6
-"""Of all overlays together."""
 ID_DIGITS = 16
 
 
 @dataclass(frozen=True)
 class OverlayFolder:
-    """`reserve_bytes`: disk that no upload may take, kept for the journal."""
+    """reserve_bytes: disk that no upload may take, kept for the journal. most, most_bytes: of all overlays together."""
 
     directory: Path
     reserve_bytes: int = 0
+    most: int = 200
+    most_bytes: int = 500 * 10**6
+
+    def kept(self) -> Kept:
+        """What is stored now."""
+        sizes = [path.stat().st_size for path in self.directory.glob("*.geojson")]
+        return Kept(len(sizes), sum(sizes))
 
     def overlays(self) -> tuple[list[Overlay], list[OverlayUnusable]]:
         """All overlays by name, and the descriptions that are none."""
@@ -54,7 +65,18 @@ class OverlayFolder:
         path.with_suffix(".json").unlink(missing_ok=True)
         path.unlink()
 
-    def store(self, content: bytes, name: str, added_at: datetime) -> Overlay:
+    async def store(
+        self, body: AsyncIterator[bytes], name: str, announced_bytes: int | None, now: datetime, workers: Workers
+    ) -> Overlay:
+        """Write an upload to disk, read it, and keep what it holds. Raises MapRefused, WorkStopped."""
+        async with received(body, announced_bytes, self.directory, self.reserve_bytes, _look, now) as upload:
+            return await workers.run(self.keep_file, upload.path, name, now)
+
+    def keep_file(self, path: Path, name: str, added_at: datetime) -> Overlay:
+        """What a file holds; the file itself is not needed any more."""
+        return self.keep(path.read_bytes(), name, added_at)
+
+    def keep(self, content: bytes, name: str, added_at: datetime) -> Overlay:
         """Read a file and keep what it holds. MapRefused when there is nothing in it that can be drawn, or no room."""
         kind, reading = read_overlay(content)
         if not reading.features:
@@ -71,16 +93,20 @@ class OverlayFolder:
             added_at_utc=added_at,
         )
         collection = OverlayCollection(features=features).model_dump_json().encode()
-        self._must_fit(len(collection))
+        self._must_fit(overlay_id, len(collection))
         self._write(f"{overlay_id}.geojson", collection)
         self._write(f"{overlay_id}.json", overlay.model_dump_json().encode())
         return overlay
 
-    def _must_fit(self, size: int) -> None:
+    def _must_fit(self, overlay_id: str, size: int) -> None:
+        """What was stored before under the same id is replaced."""
         self.directory.mkdir(parents=True, exist_ok=True)
-        used = sum(path.stat().st_size for path in self.directory.glob("*.geojson"))
-        free = shutil.disk_usage(self.directory).free - self.reserve_bytes
-        room = max(0, min(free, MOST_STORED_BYTES - used))
+        kept, before = self.kept(), self.directory / f"{overlay_id}.geojson"
+        old_bytes = before.stat().st_size if before.is_file() else None
+        more = 0 if old_bytes is not None else 1
+        if kept.number + more > self.most or kept.size_bytes - (old_bytes or 0) + size > self.most_bytes:
+            raise MapRefused(StockFull("overlays", self.most, self.most_bytes))
+        room = max(0, shutil.disk_usage(self.directory).free - self.reserve_bytes)
         if size > room:
             raise MapRefused(NoRoomForMap(size, room, self.reserve_bytes))
 
@@ -95,6 +121,11 @@ class OverlayFolder:
         part = self.directory / f"{name}.part"
         part.write_bytes(content)
         os.replace(part, self.directory / name)
+
+
+def _look(first_bytes: bytes, size: int) -> None:
+    if size > MOST_OVERLAY_BYTES:
+        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES))
 
 
 def _description(path: Path) -> Overlay:

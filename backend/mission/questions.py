@@ -58,7 +58,7 @@ class Questions:
                 return craft.work.vetoes_against(where, way)
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
-        emitters = search.wanted or tuple(search.emitters.values())[:1]
+        emitters = search.wanted or search.sought[:1]
         wanted = [(task.emitters[one.emitter_id], one.bearings) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:

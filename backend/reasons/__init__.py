@@ -24,7 +24,7 @@ from backend.reasons.storage import StorageReason
 from backend.reasons.terrain import TerrainReason
 from backend.reasons.work import WorkReason
 from hardware.readings import CheckName
-from hardware.reasons import HardwareReason
+from hardware.reasons.union import HardwareReason
 from planner.reason import Reason as AnyReason
 from planner.reason import Words
 from planner.reasons import PlannerReason

@@ -92,6 +92,21 @@ class ReturnAltitudeChecked:
 
 
 @dataclass(frozen=True, slots=True)
+class ReturnMeetsGround:
+    """Relative to home. least_relative_m: as high it must climb to keep its clearance on a straight way home."""
+
+    parameter: str
+    altitude_relative_m: float
+    least_relative_m: float
+    code: Literal["return_meets_ground"] = "return_meets_ground"
+    english: ClassVar[Words] = Words(
+        "The autopilot's own return climbs to {altitude_relative_m} ({parameter}) and flies straight home: over the "
+        "ground in between it needs {least_relative_m}.",
+        "Set {parameter} to at least {least_relative_m}, and the mission's ceiling no lower; or choose another home.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class ReturnAltitudeUnread:
     parameter: str
     ceiling_relative_m: float
@@ -104,6 +119,7 @@ class ReturnAltitudeUnread:
 CheckReason = (
     ReturnAltitudeChecked
     | ReturnAltitudeUnread
+    | ReturnMeetsGround
     | RoomToFly
     | StartAllowed
     | ReceiverDelivers

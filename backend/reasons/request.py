@@ -130,6 +130,28 @@ class BodyTooLarge:
 
 
 @dataclass(frozen=True, slots=True)
+class BodyTooRich:
+    most_fields: int
+    most_items: int
+    code: Literal["body_too_rich"] = "body_too_rich"
+    english: ClassVar[Words] = Words(
+        "A request may have at most {most_fields} named fields and {most_items} items in its lists.",
+        "Simplify the geometry.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTooSlow:
+    """wait_s: how long nothing arrived."""
+
+    wait_s: float
+    code: Literal["body_too_slow"] = "body_too_slow"
+    english: ClassVar[Words] = Words(
+        "Nothing of the request arrived for {wait_s}.", "Look at the network, then send it again."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class UnknownHost:
     host: str
     code: Literal["unknown_host"] = "unknown_host"
@@ -262,6 +284,8 @@ RequestReason = (
     | NothingThere
     | HttpRefused
     | BodyTooLarge
+    | BodyTooRich
+    | BodyTooSlow
     | UnknownHost
     | ForeignOrigin
     | SamplesNotStored

@@ -35,6 +35,23 @@ class DiskLow:
 
 
 @dataclass(frozen=True, slots=True)
+class StockFull:
+    """What comes from outside has room of its own. most: overlays, or raw sweeps of recordings."""
+
+    what: Literal["overlays", "recordings"]
+    most: int
+    most_bytes: int
+    code: Literal["stock_full"] = "stock_full"
+    english: ClassVar[Words] = Words(
+        "There is no room for it: at most {most} {what?overlays=overlays|recordings=raw sweeps of recordings} and "
+        "{most_bytes} of them are kept.",
+        "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and "
+        "CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise "
+        "CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NothingStores:
     """database, spool: what keeps each from storing."""
 
@@ -105,6 +122,7 @@ StorageReason = (
     DatabaseSilent
     | DatabaseSlow
     | DiskLow
+    | StockFull
     | NothingStores
     | FactUnfit
     | WrittenElsewhere

@@ -38,7 +38,9 @@ from hardware.readings import Place
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief, digest, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
+from planner.belief.moving import Assumed, MovingBelief, moving_prior, predicted, update_moving
 from planner.belief.verdict import verdict
+from planner.movement import DRIFTING_S, PURPOSEFUL_S, WALKING_S, Movement
 from planner.types import (
     Bearing,
     Estimate,
@@ -63,6 +65,9 @@ DOUBT = 0.05
 
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
+
+PERSISTENCE_S = {"animal": WALKING_S, "walking": PURPOSEFUL_S, "drifting": DRIFTING_S}
+"""By the kind of movement."""
 
 KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
 """The planner's places and ways stay so far off no-fly zones: a little more than safety asks."""
@@ -90,7 +95,14 @@ class Localization:
     @property
     def joint(self) -> bool:
         """Whether the errors that a source's bearings have in common are estimated with the place."""
+        if isinstance(self.prior, MovingBelief):
+            return self.prior.assumed.otherwise is not None
         return isinstance(self.prior, JointBelief)
+
+    @property
+    def moving(self) -> bool:
+        """Whether the emitter may be elsewhere by the next bearing."""
+        return isinstance(self.prior, MovingBelief)
 
     def without(self, closed: BaseGeometry | None) -> Localization:
         """The same with these places (m ENU) closed to the planner, too."""
@@ -113,6 +125,7 @@ class Localization:
             outlier_probability=self.mission.sensor.outlier_probability,
             peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
             source=source_name(fact.source),
+            taken_at=(fact.taken_at_s or 0.0) if self.moving else 0.0,
         )
 
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
@@ -129,16 +142,29 @@ class Localization:
         found = self._folds.get(bearings)
         if found is None:
             before = self._folded(bearings[:-1])
-            joint = isinstance(before, JointBelief)
-            found = update_joint(before, bearings[-1]) if joint else update(before, bearings[-1])
+            found = self._with(before, bearings)
             if len(self._folds) >= FOLDS_KEPT:
                 self._folds.clear()
             self._folds[bearings] = found
         return found
 
+    def _with(self, before: GridBelief, bearings: tuple[Bearing, ...]) -> GridBelief:
+        """The last of the bearings taken in. A moving emitter's belief is about the end of the newest turn."""
+        match before:
+            case MovingBelief():
+                now = max(b.taken_at for b in bearings) + 0.5 * self.problem.measurement_time
+                return update_moving(before, bearings[-1], now)
+            case JointBelief():
+                return update_joint(before, bearings[-1])
+            case _:
+                return update(before, bearings[-1])
+
     def planning_belief(self, bearings: Sequence[Bearing]) -> GridBelief:
-        """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart."""
+        """What to plan with: contradicting bearings count as possibly wrong, so that a next place tells them apart.
+        Of a moving emitter: where it may be by the next turn."""
         found = self.belief(bearings)
+        if isinstance(found, MovingBelief):
+            return predicted(found, self.problem.measurement_time)
         if found is not None:
             return found
         doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)
@@ -149,7 +175,7 @@ class Localization:
         bearings = self.planner_bearings(measured)
         folded = self.belief(bearings)
         said = verdict(self.problem, self.rule, bearings, folded)
-        offset = None if self.joint else self.heading_offset(measured)
+        offset = None if self.joint or self.moving else self.heading_offset(measured)
         doubt = offset if offset is not None and offset.significant else None
         shown = self.planning_belief(bearings) if folded is None else folded
         askew = () if doubt is None else (HeadingsAskew(doubt.offset_deg, doubt.std_error_deg),)
@@ -235,14 +261,16 @@ def localization(
         estimator=planner.estimator,
         prior=_prior(emitter.prior, frame),
     )
+    if (walk := _walk(emitter.movement)) is not None:
+        problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, sensor.measurement_time_s))
     rule = LocalizationRule(
-        threshold=wanted.expected_rmse_m,
+        threshold=problem.threshold,
         min_places=wanted.minimum_places,
         min_place_distance=wanted.minimum_place_distance_m,
         min_crossing_angle=math.radians(wanted.minimum_crossing_angle_deg),
     )
     try:
-        prior = _prior_belief(problem, sensor)
+        prior = _prior_belief(problem, sensor, emitter.movement)
     except PlannerError as error:
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
@@ -261,7 +289,11 @@ def source_name(source: BearingSource) -> str:
             return f"{source.kind}:{name}"
 
 
-def _prior_belief(problem: Problem, sensor: spec.SensorSpec) -> GridBelief:
+def _prior_belief(problem: Problem, sensor: spec.SensorSpec, movement: spec.MovementSpec) -> GridBelief:
+    walk = _walk(movement)
+    if walk is not None:
+        known, otherwise = priors_of(sensor) if sensor.bearing_errors == "joint" else ({}, None)
+        return moving_prior(problem, Assumed(walk, known, otherwise))
     match sensor.bearing_errors:
         case "joint":
             known, otherwise = priors_of(sensor)
@@ -270,9 +302,16 @@ def _prior_belief(problem: Problem, sensor: spec.SensorSpec) -> GridBelief:
             return prior_belief(problem)
 
 
+def _walk(movement: spec.MovementSpec) -> Movement | None:
+    """None for one that stands still."""
+    if movement.kind == "still":
+        return None
+    return Movement(movement.speed_m_s, PERSISTENCE_S[movement.kind])
+
+
 def _errors_facts(belief: GridBelief, measured: Sequence[BearingMeasured]) -> list[SourceErrorsFact]:
     """Compass bearings turn the other way round than the planner's angles."""
-    if not isinstance(belief, JointBelief):
+    if not isinstance(belief, JointBelief | MovingBelief):
         return []
     sources = {source_name(fact.source): fact.source for fact in measured}
     return [

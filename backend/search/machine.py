@@ -216,8 +216,9 @@ def _over(step: SearchStep, given: SearchOver) -> None:
 
 
 def _verdict(state: SearchState, because: Reason) -> tuple[Literal["localized", "not_localized"], Reason]:
-    if state.localized:
-        beliefs = [e.belief for e in state.emitters.values() if e.belief is not None]
+    if state.found:
+        claims = [e.belief if e.localized else e.claim for e in state.emitters.values()]
+        beliefs = [belief for belief in claims if belief is not None]
         against = sum(len(belief.contradicting) for belief in beliefs)
         if against == 0:
             return "localized", search.Localized()

@@ -20,6 +20,8 @@ from backend.spec import MissionSpec
 from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
+from planner.belief.moving import MovingBelief
+from planner.movement import FLIGHT_S
 from planner.plan import expected_time_from, plan
 from planner.policy.base import BASE_POLICIES
 from planner.policy.several import Wanted, plan_several
@@ -27,6 +29,9 @@ from planner.travel import straight_suffices, travel_path, visibility_graph
 from planner.types import Decision, FloatArray, PlannerError, Problem, Ring
 
 COST_ROLLOUTS = 200
+
+MEASURING_S, WORN_FROM_M = 30.0, 60.0
+"""Of a moving emitter's search: how long a turn usually takes, and how far off bearings are taken."""
 
 
 def next_place(
@@ -136,6 +141,8 @@ def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: Grid
 
 def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None) -> float:
     """sigma_foreseen = hypot(scale sigma_own, bias' standard deviation), of the source that measured last; rad."""
+    if isinstance(belief, MovingBelief):
+        return _worn(sigma, measured, belief)
     if not isinstance(belief, JointBelief):
         return sigma
     if not measured:
@@ -145,6 +152,14 @@ def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: Grid
         return sigma
     shares = [max(own_sigma_deg(fact), math.degrees(SMALLEST_SIGMA)) / max(fact.sigma_deg, 1e-3) for fact in measured]
     return math.hypot(errors.scale * sigma * geometric_mean(shares), errors.bias_sd)
+
+
+def _worn(sigma: float, measured: Sequence[BearingMeasured], belief: MovingBelief) -> float:
+    """Of an emitter that moves. A rollout's belief stands still, so its bearings count for what they are worth one
+    bearing later: sigma_foreseen^2 = sigma^2 + var(way in one step) / r^2."""
+    spent = [t for fact in measured if (t := fact.measurement_time_s) is not None]
+    step_s = FLIGHT_S + (fmean(spent) if spent else MEASURING_S)
+    return math.hypot(sigma, math.sqrt(float(belief.assumed.movement.variance(step_s))) / WORN_FROM_M)
 
 
 def _learned_share(sigma: float, belief: JointBelief) -> float:

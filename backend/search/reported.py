@@ -80,6 +80,7 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
         fitted_db=[],
         heading_sigma_deg=min(COMPASS_SIGMA_DEG, COMPASS_SHARE * report.sigma_deg),
         remarks=remarks,
+        taken_at_s=report.taken_at_s,
     )
 
 

@@ -47,6 +47,9 @@ class OpenAlert:
 class EmitterState:
     """What is known of one emitter.
 
+    claim, claimed_at_s: the last belief that said localized, and when (UTC epoch seconds): of an emitter that moves it
+    stands for its moment, whatever is believed later.
+
     belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
     epoch seconds at which the belief was first good enough, None when it is not.
     """
@@ -57,6 +60,8 @@ class EmitterState:
     belief: BeliefUpdated | None = None
     belief_current: bool = False
     localized_at_s: float | None = None
+    claim: BeliefUpdated | None = None
+    claimed_at_s: float | None = None
 
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
@@ -123,6 +128,30 @@ class SearchState:
         return bool(self.emitters) and all(emitter.localized for emitter in self.emitters.values())
 
     @property
+    def follows(self) -> bool:
+        """Whether emitters that move are looked for on after they were localized."""
+        return self.mission.localization.follow and any(e.movement.kind != "still" for e in self.mission.emitters)
+
+    @property
+    def done(self) -> bool:
+        """Nothing is left to be measured."""
+        return self.localized and not self.follows
+
+    @property
+    def found(self) -> bool:
+        """What the search ends with: localized now; of one that follows, localized at one time or other."""
+        claimed = bool(self.emitters) and all(emitter.claim is not None for emitter in self.emitters.values())
+        return self.localized or (self.follows and claimed)
+
+    @property
+    def sought(self) -> tuple[EmitterState, ...]:
+        """Whom the next place is for: the wanted, else those that are followed, else all."""
+        if self.wanted or not self.follows:
+            return self.wanted or tuple(self.emitters.values())
+        moving = [e.emitter_id for e in self.mission.emitters if e.movement.kind != "still"]
+        return tuple(self.emitters[name] for name in moving)
+
+    @property
     def beliefs_current(self) -> bool:
         """True also of a search without emitters."""
         return all(emitter.belief_current for emitter in self.emitters.values())
@@ -164,7 +193,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(_with_spec(state, spec), passed=False, antenna=None)
         case AreaChanged(search=search):
             changed = _with_spec(state, state.mission.searching(search))
-            return _each(changed, lambda emitter: replace(emitter, localized_at_s=None))
+            return _each(changed, lambda emitter: replace(emitter, localized_at_s=None, claim=None, claimed_at_s=None))
         case PreflightChecked(passed=passed):
             return replace(state, passed=passed) if state.stage in ("draft", "ready") else state
         case AntennaChecked(check=check):
@@ -203,10 +232,13 @@ def _evolve_emitter(
             emitter = replace(emitter, measured=(*emitter.measured, event), belief_current=False)
             number = max(number, event.place_number)
         case BearingExcluded(bearing_id=bearing_id):
-            emitter = replace(emitter, excluded=emitter.excluded | {bearing_id}, belief_current=False)
+            excluded = emitter.excluded | {bearing_id}
+            emitter = replace(emitter, excluded=excluded, belief_current=False, claim=None, claimed_at_s=None)
         case BeliefUpdated(localized=localized):
             since = (emitter.localized_at_s or at_s) if localized else None
             emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
+            if localized:
+                emitter = replace(emitter, claim=event, claimed_at_s=at_s)
     return replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
 
 

@@ -29,9 +29,14 @@ class Taken:
 
 
 def sweep_fact(
-    taken: Taken, sensor: SensorSpec, sweep: Sweep, reading: BearingReading, measurement_time_s: float | None
+    taken: Taken,
+    sensor: SensorSpec,
+    sweep: Sweep,
+    reading: BearingReading,
+    measurement_time_s: float | None,
+    taken_at_s: float | None = None,
 ) -> BearingMeasured | SweepRejected:
-    """measurement_time_s None: nobody waited for it."""
+    """measurement_time_s None: nobody waited for it. taken_at_s: UTC epoch seconds of the middle of the turn."""
     binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
     needed: tuple[tuple[SweepValue, float], ...] = (
         ("bearing", reading.bearing_deg),
@@ -70,6 +75,7 @@ def sweep_fact(
         remarks=[carried(remark) for remark in reading.remarks],
         likelihood=reading.likelihood,
         samples_without_heading=sweep.samples_without_heading,
+        taken_at_s=taken_at_s,
     )
 
 

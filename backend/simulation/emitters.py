@@ -11,6 +11,7 @@ from backend.api.suggestion import HEIGHT_M, WIDTH_M
 from backend.spec import EmitterSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+from hardware.sim.walk import Gait
 
 EDGE_M = 10.0
 """An emitter stays so far inside the suggested area."""
@@ -18,10 +19,12 @@ EDGE_M = 10.0
 
 @dataclass(frozen=True, slots=True)
 class SimulatedEmitter:
-    """pulse_period_s None: a carrier."""
+    """pulse_period_s None: a carrier. gait, speed_m_s: how it moves, None: it stands still."""
 
     frequency_hz: float
     pulse_period_s: float | None = None
+    gait: Gait | None = None
+    speed_m_s: float = 0.0
 
 
 EMITTERS = (

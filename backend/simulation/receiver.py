@@ -13,6 +13,7 @@ from hardware.readings import Channel, Place, PowerSample, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.reasons.simulation import HomeNotKnown
 from hardware.sim.receiver import SimulatedReceiver
+from hardware.sim.walk import Walk
 from hardware.sim.world import Emitter, World
 
 TELEMETRY_HELD_WALL_S = 0.25
@@ -22,8 +23,8 @@ TELEMETRY_HELD_WALL_S = 0.25
 class EmittersAroundHome:
     """The Receiver port.
 
-    truth: where each simulated emitter stands, by its frequency; empty until the home is known. pose: what tells where
-    the antenna is; whoever knows it better than the vehicle's link sets another before the receiver is first opened.
+    truth: where each simulated emitter is at first, by its frequency; empty until the home is known. pose: what tells
+    where the antenna is; whoever knows it better than the vehicle's link sets another before it is first opened.
     """
 
     def __init__(
@@ -41,6 +42,7 @@ class EmittersAroundHome:
         self._emitters = emitters
         self._receiver: SimulatedReceiver | None = None
         self.truth: Mapping[float, Place] = {}
+        self._transmitting: Mapping[float, Emitter] = {}
         self.pose: Callable[[], Telemetry] = vehicle.telemetry
 
     async def open(self, channels: Sequence[Channel]) -> None:
@@ -55,9 +57,8 @@ class EmittersAroundHome:
         if home is None:
             raise ReceiverError(HomeNotKnown())
         self.truth = emitter_places(self._seed, home, self._emitters)
-        emitters = tuple(
-            Emitter(self.truth[e.frequency_hz], e.frequency_hz, pulse_period_s=e.pulse_period_s) for e in self._emitters
-        )
+        emitters = tuple(self._emitter(e) for e in self._emitters)
+        self._transmitting = {emitter.frequency_hz: emitter for emitter in emitters}
         reflectors = walls(self._seed, home) if self._world == "multipath" else ()
         return SimulatedReceiver(
             World(emitters, reflectors=reflectors, seed=self._seed),
@@ -66,6 +67,18 @@ class EmittersAroundHome:
             ground_amsl_m=telemetry.home_amsl_m or 0.0,
             telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),
         )
+
+    def _emitter(self, wanted: SimulatedEmitter) -> Emitter:
+        walk = None
+        if wanted.gait is not None:
+            seed = self._seed + round(wanted.frequency_hz / 1000.0)
+            walk = Walk(wanted.gait, wanted.speed_m_s, self._clock.now(), seed)
+        place = self.truth[wanted.frequency_hz]
+        return Emitter(place, wanted.frequency_hz, pulse_period_s=wanted.pulse_period_s, walk=walk)
+
+    def truth_at(self, at_s: float) -> Mapping[float, Place]:
+        """Where each is at that time (UTC epoch seconds), by its frequency; empty until the home is known."""
+        return {frequency: emitter.at(at_s).place for frequency, emitter in self._transmitting.items()}
 
     async def close(self) -> None:
         """Harmless while the home is not known."""

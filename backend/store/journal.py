@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, Recorded
-from backend.ports import FactRefused, JournalUnavailable, TrackPoint
+from backend.ports import FactRefused, JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import FactUnfit
 from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
 from backend.store.digest import MissionDigest, fold
@@ -213,11 +213,13 @@ class SqlJournal:
 
     # Reading: missions in flight from memory, the rest from the database
 
-    async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
-        """Events with seq > after, in order; none for an unknown mission. Raises JournalUnavailable."""
+    async def read(self, mission_id: str, after: int = 0, most: int | None = None) -> list[Recorded]:
+        """Events with seq > after, in order, the first `most` of them; none for an unknown mission.
+
+        Raises JournalUnavailable."""
         if mission_id in self._written:
-            return self._written[mission_id].recorded[after:]
-        return await self._stored.read(mission_id, after)
+            return self._written[mission_id].recorded[after:][:most]
+        return await self._stored.read(mission_id, after, most=most)
 
     async def read_kinds(self, mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
         """The events of some kinds only."""
@@ -261,6 +263,10 @@ class SqlJournal:
             if isinstance(waiting, SweepEntry) and (waiting.mission_id, waiting.sweep_id) == (mission_id, sweep_id):
                 return waiting
         return await self._stored.sweep(mission_id, sweep_id)
+
+    async def imported_sweeps(self) -> Kept:
+        """The raw sweeps of recordings in the database. Raises JournalUnavailable."""
+        return await self._stored.imported_sweeps()
 
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
         """By craft, in time order."""

@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Executable, exc, or_, select
+from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, Recorded
-from backend.ports import JournalUnavailable, TrackPoint
+from backend.ports import JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
@@ -76,9 +76,12 @@ class StoredFacts:
         self._engine = engine
         self._timeout_s = timeout_s
 
-    async def read(self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None) -> list[Recorded]:
-        """Facts of today's form, in order; older ones are upgraded. kinds: None for all."""
+    async def read(
+        self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None, most: int | None = None
+    ) -> list[Recorded]:
+        """Facts of today's form, in order; older ones are upgraded. kinds, most: None for all."""
         query = select(*ROW).where(events.c.mission_id == mission_id, events.c.seq > after).order_by(events.c.seq)
+        query = query.limit(most)
         if kinds is not None:
             query = query.where(events.c.kind.in_(kinds_of_old(kinds)))
         rows = [EventRow(*row) for row in await self._fetch(query)]
@@ -125,6 +128,12 @@ class StoredFacts:
         here = (sweeps.c.mission_id == mission_id) & (sweeps.c.sweep_id == sweep_id)
         rows = await self._fetch(select(*columns).where(here))
         return SweepEntry(**rows[0]._mapping) if rows else None
+
+    async def imported_sweeps(self) -> Kept:
+        """The raw sweeps that came with recordings."""
+        size = func.coalesce(func.sum(func.length(sweeps.c.samples)), 0)
+        rows = await self._fetch(select(func.count(), size).where(sweeps.c.craft_id.is_(None)))
+        return Kept(int(rows[0][0]), int(rows[0][1]))
 
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
         """By craft, in time order."""

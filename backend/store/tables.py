@@ -21,6 +21,7 @@ from sqlalchemy import (
     String,
     Table,
     Text,
+    text,
 )
 
 metadata = MetaData()
@@ -69,6 +70,8 @@ events = Table(
     Index("events_by_kind", "mission_id", "kind"),
 )
 
+_NO_CRAFT = text("craft_id IS NULL")
+
 sweeps = Table(
     "sweeps",
     metadata,
@@ -88,6 +91,7 @@ sweeps = Table(
     Column("tag", Text),
     Column("samples", LargeBinary, nullable=False),
     PrimaryKeyConstraint("mission_id", "sweep_id"),
+    Index("sweeps_imported", "mission_id", sqlite_where=_NO_CRAFT, postgresql_where=_NO_CRAFT),
 )
 """samples: (3, n) float64 little-endian in C order, zlib: at_s, heading_deg, power_db. craft_id: who took it, null when
 no craft did (a recording)."""

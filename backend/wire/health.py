@@ -30,6 +30,21 @@ class VehicleHealth(Model):
     reason: Reason | None
 
 
+StockKind = Literal["overlays", "recordings"]
+
+
+class StockHealth(Model):
+    """What came from outside and is kept. number: of overlays, or of the raw sweeps of recordings. None: not counted
+    yet."""
+
+    what: StockKind
+    number: int | None
+    most: int
+    size_bytes: int | None
+    most_bytes: int
+    full: bool
+
+
 class Health(Model):
     """ok: everything answers; degraded: the server works, a part it needs does not. disk_free_bytes: None when the file
     system does not say. keep_sweeps_days: of missions that are over; None for ever."""
@@ -42,5 +57,6 @@ class Health(Model):
     viewers: int
     disk_free_bytes: int | None
     keep_sweeps_days: float | None
+    stocks: list[StockHealth]
     simulated: bool
     time_factor: float

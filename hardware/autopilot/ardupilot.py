@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
-from hardware.autopilot.link import STATION_SYSTEM
 from hardware.autopilot.messages import HEARTBEAT_ID, TAKE_OFF, Outgoing, command_long, set_mode
+from hardware.autopilot.opening import STATION_SYSTEM
 from hardware.reasons.vehicle import CommandName
 
 GUIDED, RTL, LAND, BRAKE, SMART_RTL, AUTO_RTL = 4, 6, 9, 17, 21, 27

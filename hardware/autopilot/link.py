@@ -11,38 +11,30 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import ctypes
 import json
 import logging
-import socket
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import Any, TypeVar
 
-from mavsdk import ComponentType, Configuration, LogLevel, Mavsdk, System, log_subscribe
+from mavsdk import Mavsdk, System
 from mavsdk.plugins.geofence import Geofence, GeofenceError
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw, MissionRawError, MissionRawResult
 from mavsdk.plugins.param import Param, ParamError, ParamResult
 
 from hardware.autopilot.fence_items import FenceItem
+from hardware.autopilot.opening import Connection, check_url, open_connection
 from hardware.ports import VehicleUnreachable
 from hardware.reasons.vehicle import NoAutopilotAnswers, VehicleLinkNotOpened
 
 log = logging.getLogger(__name__)
-_LEVELS = {LogLevel.WARN: logging.INFO, LogLevel.ERROR: logging.WARNING}
-_SCHEMES = ("udpin://", "udpout://", "tcpin://", "tcpout://", "tcp://", "serial://")
 T = TypeVar("T")
 AUTOPILOT_COMPONENT = 1
 FENCE_WALL_S = 60.0
 """The longest that a fence may take one way; one polygon takes about 4 s on a link of 250 ms each way."""
 CLOSE_WALL_S = 10.0
 """What a parameter is waited for, that nobody answers, and a little more."""
-PATIENCE_WALL_S = 1.5
-"""What a fence's part or a parameter is waited for, before it is sent again."""
-STATION_SYSTEM = 255
-"""Our MAVLink system id. ArduPilot's ground-station failsafe watches the heartbeats of this id only (MAV_GCS_SYSID,
-SYSID_MYGCS: 255 by default); under MAVSDK's own 245 it would never act when this program dies."""
 
 FROM_ANY_COMPONENT = frozenset({"OPEN_DRONE_ID_ARM_STATUS"})
 """Messages that a device of the vehicle sends itself; of all others only the autopilot's own count."""
@@ -75,50 +67,23 @@ def _wire_item(seq: int, item: FenceItem) -> MissionItem:
     )
 
 
-def _keep_log(level: LogLevel, message: str, file: str | None, line: int) -> bool:
-    """MAVSDK prints to stdout by itself, where `--json` promises one JSON value: take its log over."""
-    log.log(_LEVELS.get(level, logging.DEBUG), "mavsdk: %s", message)
-    return True
-
-
-def _be_patient(mavsdk: Mavsdk) -> None:
-    """MAVSDK sends a part of a fence again after 0.5 s, at 250 ms each way before its answer can be here; ArduCopter
-    then ends the transfer ("invalid sequence"). Python's binding leaves out the library's way to change that."""
-    patience = mavsdk._lib.mavsdk_set_timeout_s
-    patience.argtypes, patience.restype = [ctypes.c_void_p, ctypes.c_double], None
-    patience(mavsdk._handle, PATIENCE_WALL_S)
-
-
-def check_url(url: str) -> str:
-    """A connection URL that MAVSDK takes. Raises ValueError with the forms there are."""
-    if not url.startswith(_SCHEMES) or url.endswith("//"):
-        raise ValueError(
-            f"{url!r} is no vehicle address. Use udpin://0.0.0.0:14540 (the vehicle sends to this port), "
-            "udpout://HOST:PORT, tcpout://HOST:PORT, tcpin://0.0.0.0:PORT or serial:///dev/ttyUSB0:57600."
-        )
-    return "tcpout://" + url.removeprefix("tcp://") if url.startswith("tcp://") else url
-
-
-def _refuse_taken_port(url: str) -> None:
-    """MAVSDK binds a port that another program has without a word, and then hears nothing or half."""
-    host, _, port = url.removeprefix("udpin://").rpartition(":")
-    if not url.startswith("udpin://") or not port.isdecimal():
-        return
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.bind((host.strip("[]"), int(port)))
-        except OSError as error:
-            raise VehicleUnreachable(VehicleLinkNotOpened(url, error.strerror or str(error))) from error
-
-
 class MavlinkLink:
-    """One connection, one autopilot. `on_message(name, fields)` is called on the event loop, in order of arrival."""
+    """One connection, one autopilot. `on_message(name, fields)` is called on the event loop, in order of arrival.
 
-    def __init__(self, url: str, names: tuple[str, ...], on_message: Callable[[str, Fields], None]) -> None:
+    opened: a connection to url that is there already, and belongs to the link from now on.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        names: tuple[str, ...],
+        on_message: Callable[[str, Fields], None],
+        opened: Connection | None = None,
+    ) -> None:
         self.url = check_url(url)
         self._names = names
         self._on_message = on_message
-        self._mavsdk: Mavsdk | None = None
+        self._mavsdk: Mavsdk | None = None if opened is None else opened.mavsdk
         self._direct: MavlinkDirect | None = None
         self._param: Param | None = None
         self._mission: MissionRaw | None = None
@@ -133,17 +98,14 @@ class MavlinkLink:
     async def open(self, timeout_s: float) -> None:
         """timeout_s: of the wall. Raises VehicleUnreachable when no autopilot answers."""
         loop = asyncio.get_running_loop()
-        log_subscribe(_keep_log)
-        _refuse_taken_port(self.url)
-        configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
-        configuration.system_id = STATION_SYSTEM
-        mavsdk = self._mavsdk = Mavsdk(configuration)
-        _be_patient(mavsdk)
-        try:
-            await loop.run_in_executor(self._blocking, mavsdk.add_any_connection_with_handle, self.url)
-        except Exception as error:
-            await self.close()
-            raise VehicleUnreachable(VehicleLinkNotOpened(self.url, str(error))) from error
+        if self._mavsdk is None:
+            try:
+                opened = await loop.run_in_executor(self._blocking, open_connection, self.url)
+            except OSError as error:
+                await self.close()
+                raise VehicleUnreachable(VehicleLinkNotOpened(self.url, error.strerror or str(error))) from error
+            self._mavsdk = opened.mavsdk
+        mavsdk = self._mavsdk
         system = await self._first_autopilot(mavsdk, timeout_s)
         if system is None:
             await self.close()

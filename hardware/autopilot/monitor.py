@@ -25,6 +25,7 @@ from hardware.autopilot.messages import (
     request_message,
 )
 from hardware.autopilot.mode_switch import ModeSwitch
+from hardware.autopilot.opening import Connection
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
 from hardware.autopilot.silence import Silence
@@ -84,10 +85,10 @@ hears us later than we hear it."""
 class Monitor:
     """Everything one instance of MavsdkVehicle knows. Its parts are public to the manoeuvres of this package."""
 
-    def __init__(self, url: str, clock: Clock) -> None:
+    def __init__(self, url: str, clock: Clock, opened: Connection | None = None) -> None:
         self.clock = clock
         listened = (*NAMES, "COMMAND_ACK", "STATUSTEXT", "TIMESYNC", "PING", "RC_CHANNELS", ARM_STATUS)
-        self.link = MavlinkLink(url, listened, self._on_message)
+        self.link = MavlinkLink(url, listened, self._on_message, opened)
         self.snapshot = Snapshot()
         self.remote_id = RemoteId()
         self._texts = StatusTexts()

@@ -13,6 +13,7 @@ from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hold import hold
 from hardware.autopilot.monitor import Monitor
 from hardware.autopilot.nets import put_nets_back, read_nets, set_nets
+from hardware.autopilot.opening import Connection
 from hardware.autopilot.preflight import Readiness, failsafe_check, telemetry_checks
 from hardware.autopilot.take_off import MOST_SAID, take_off
 from hardware.autopilot.turn import turn_around
@@ -33,11 +34,14 @@ SAID_LATELY_S = 40.0
 class MavsdkVehicle:
     """A PX4 or ArduCopter multicopter. `connect` before anything else; after `close` make a new one.
 
-    A cancelled manoeuvre sends nothing more; the vehicle ends what it was commanded last. `hold` stops it.
+    A cancelled manoeuvre sends nothing more; the vehicle ends what it was commanded last. `hold` stops it. opened: see
+    MavlinkLink.
     """
 
-    def __init__(self, url: str, clock: Clock, minimum_battery_percent: float = 30.0) -> None:
-        self._monitor = Monitor(url, clock)
+    def __init__(
+        self, url: str, clock: Clock, minimum_battery_percent: float = 30.0, opened: Connection | None = None
+    ) -> None:
+        self._monitor = Monitor(url, clock, opened)
         self._guidance = Guidance(self._monitor)
         self._minimum_battery_percent = minimum_battery_percent
 

@@ -12,8 +12,8 @@ from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
 from hardware.direction_finding.uavrt import is_uavrt, read_rotations
 from hardware.readings import Place, Sweep
-from hardware.reasons import RecordingReason
 from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable
+from hardware.reasons.union import RecordingReason
 
 _HEADING = ("heading_deg", "heading", "yaw_deg", "yaw", "azimuth", "azimuth_deg", "angle", "angle_deg")
 _POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")

@@ -6,8 +6,8 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from hardware.reasons import RecordingReason
 from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnreadable, FileUnusable, Quantity
+from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
 LONGEST_CELL = 60

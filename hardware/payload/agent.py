@@ -36,10 +36,10 @@ from hardware.payload.messages import (
 from hardware.payload.spool import Spool, SpoolError
 from hardware.ports import Receiver, ReceiverError
 from hardware.readings import Channel, PowerSample
-from hardware.reasons import HardwareReason
 from hardware.reasons.payload import PayloadListening, PayloadStarting
 from hardware.reasons.payload_link import MessageOutOfTurn, RefusedByServer
 from hardware.reasons.receiver import NonsensicalPower, ReceiverStreamEnded
+from hardware.reasons.union import HardwareReason
 from planner.reason import sentence_of
 
 LOG = logging.getLogger("crossfix.payload")

@@ -21,9 +21,9 @@ from pydantic import (
 )
 
 from hardware.readings import Channel, Pulses
-from hardware.reasons import HardwareReason
 from hardware.reasons.payload import PayloadStateUnknown
 from hardware.reasons.payload_link import MessageNotUnderstood, PayloadLinkReason
+from hardware.reasons.union import HardwareReason
 from planner.reason import ReasonedError
 
 PROTOCOL = 3

@@ -33,8 +33,8 @@ from hardware.payload.messages import (
     parse_from_agent,
 )
 from hardware.readings import Channel, PowerSample
-from hardware.reasons import HardwareReason
 from hardware.reasons.payload_link import MessageOutOfTurn, OtherProtocol, PayloadConnectedAgain, PayloadLinkReason
+from hardware.reasons.union import HardwareReason
 from planner.reason import sentence_of
 
 CLOCK_OFFSET_LIMIT_S = 0.005

@@ -14,7 +14,6 @@ from hardware.direction_finding.sweep import SweepError, assemble_sweep
 from hardware.direction_finding.table_file import RecordingError
 from hardware.iq import IqBlock, clipped_at_full_scale
 from hardware.readings import Place, PowerSample
-from hardware.reasons import RecordingReason
 from hardware.reasons.channels import SampleRateTooLow
 from hardware.reasons.iq_recording import (
     NoPulseAt,
@@ -27,6 +26,7 @@ from hardware.reasons.iq_recording import (
     SilentAt,
     StrongestUsed,
 )
+from hardware.reasons.union import RecordingReason
 from hardware.sdr.pulses import PulseMeter, PulseSetting
 from hardware.sdr.rotation_headings import annotated_headings, apart, headings_from
 from hardware.sdr.sigmf_file import SigmfRecording, is_sigmf, load_sigmf

@@ -12,9 +12,9 @@ import numpy as np
 
 from hardware.direction_finding.table_file import RecordingError, Row, column_of, read_table
 from hardware.readings import HeadingSample, Place
-from hardware.reasons import RecordingReason
 from hardware.reasons.iq_recording import HeadingsApart, HeadingsOfOtherLength, SigmfFieldMissing
 from hardware.reasons.table import FileUnusable
+from hardware.reasons.union import RecordingReason
 from hardware.sdr.sigmf_file import AZIMUTH_KEY, SigmfRecording
 
 EPOCH_S = 1e8

@@ -6,7 +6,7 @@ Positions WGS84, headings degrees clockwise from true north, powers dBm. Every r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from hardware.frame import LocalFrame
 from hardware.readings import Place
 from hardware.sim.antenna import AntennaField, YagiOnAirframe
 from hardware.sim.propagation import SPEED_OF_LIGHT_M_S, Fading, FadingProcess, two_ray_gain
+from hardware.sim.walk import Walk
 
 THERMAL_NOISE_DBM_HZ = -173.98
 
@@ -25,7 +26,8 @@ class WorldError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Emitter:
-    """A transmitter that stands still. `pulse_period_s` None: a carrier; else pulses of `pulse_width_s`."""
+    """A transmitter. `pulse_period_s` None: a carrier; else pulses of `pulse_width_s`. walk: how it moves, having been
+    at `place` when the walk began; None: it stands still."""
 
     place: Place
     frequency_hz: float = 868_300_000.0
@@ -34,6 +36,13 @@ class Emitter:
     polarization_loss_db: float = 3.0
     pulse_period_s: float | None = None
     pulse_width_s: float = 0.02
+    walk: Walk | None = None
+
+    def at(self, at_s: float) -> Emitter:
+        """Where it is at that time of the world's clock."""
+        if self.walk is None:
+            return self
+        return replace(self, place=LocalFrame(self.place).to_geo(*self.walk.way(at_s)), walk=None)
 
     def __post_init__(self) -> None:
         if not self.frequency_hz > 0:
@@ -166,7 +175,8 @@ class RadioLink:
         if emitter is None:
             return np.zeros(at_s.size, dtype=np.complex128)
         fading = np.array([self._fading.gain(float(t)) for t in at_s])
-        received = self.world.received_fields(emitter, place, height_m, heading_deg) * fading
+        middle = emitter.at(float(at_s.mean())) if at_s.size else emitter
+        received = self.world.received_fields(middle, place, height_m, heading_deg) * fading
         if emitter.pulse_period_s is None:
             return received
         return np.where(at_s % emitter.pulse_period_s < emitter.pulse_width_s, received, 0.0)

@@ -24,7 +24,15 @@ from planner.geometry import (
     signed_area,
     validate_area,
 )
-from planner.observation import WEDGE_SIGMAS, cuts, hard_likelihood, mixture_likelihood, validate_bearing
+from planner.observation import (
+    WEDGE_SIGMAS,
+    cuts,
+    hard_likelihood,
+    mean_likelihood,
+    mixture_likelihood,
+    validate_bearing,
+)
+from planner.options import CellLikelihood
 from planner.reasons import PriorOutsideArea, UnusableGaussian, UnusableRing, disagreement
 from planner.types import (
     Bearing,
@@ -133,16 +141,16 @@ def fold(problem: Problem, bearings: Iterable[Bearing]) -> GridBelief:
     return belief
 
 
-def update(belief: GridBelief, bearing: Bearing) -> GridBelief:
-    """Bayes' rule for one bearing (3.26-3.28), then crop and double.
+def update(belief: GridBelief, bearing: Bearing, likelihood: CellLikelihood = "centre") -> GridBelief:
+    """Bayes' rule for one bearing (3.26-3.28), then crop and double. likelihood: of a hard wedge.
 
     Raises InconsistentBearings when the bearing's wedge and what earlier ones left have no common point.
     """
     validate_bearing(bearing)
-    return _update_hard(belief, bearing) if cuts(bearing) else _update_soft(belief, bearing)
+    return _update_hard(belief, bearing, likelihood) if cuts(bearing) else _update_soft(belief, bearing)
 
 
-def _update_hard(belief: GridBelief, bearing: Bearing) -> GridBelief:
+def _update_hard(belief: GridBelief, bearing: Bearing, likelihood: CellLikelihood) -> GridBelief:
     half = WEDGE_SIGMAS * bearing.sigma
     clipped = (clip_wedge(ring, bearing.x, bearing.y, bearing.angle, half) for ring in belief.possible)
     possible = tuple(ring for ring in clipped if len(ring) > 0)
@@ -156,7 +164,10 @@ def _update_hard(belief: GridBelief, bearing: Bearing) -> GridBelief:
         belief = _crop_to(_doubled(belief), extent)
         doublings += 1
     x, y = np.meshgrid(*belief.centres())
-    density = belief.density * hard_likelihood(bearing, x, y, margin=belief.h / np.sqrt(2.0))
+    if likelihood == "mean":
+        density = belief.density * mean_likelihood(bearing, x, y, belief.h)
+    else:
+        density = belief.density * hard_likelihood(bearing, x, y, margin=belief.h / np.sqrt(2.0))
     mass = density.sum()
     if not mass > 0:
         raise _no_common_point(belief)

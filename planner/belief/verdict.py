@@ -9,6 +9,7 @@ import numpy as np
 from planner.belief.estimate import estimate, mass_within
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief, corrected
+from planner.belief.moving import MovingBelief, corrected_moving, where_it_may_be
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
 from planner.reasons import (
@@ -30,6 +31,9 @@ MOST_BEYOND = 0.02
 """Probability that the error is larger than that, at a claim by a joint belief. Twice what outliers at their usual rate
 leave of a belief of a few bearings, so that it only stops what is not yet settled."""
 
+TELLING_SIGMA = np.deg2rad(25.0)
+"""An emitter that moves: an older bearing, by now less sure than this, is no place that the claim rests on."""
+
 
 def verdict(
     problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief | None
@@ -41,29 +45,39 @@ def verdict(
     """
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
-    bearings = corrected(belief, bearings)
-    consistent = wedges_meet(problem.area, bearings)
     spread = estimate(belief, problem.estimator)
+    area = problem.area
+    if isinstance(belief, MovingBelief):
+        area = where_it_may_be(belief)
+        bearings = corrected_moving(belief, bearings, spread.x, spread.y)
+    else:
+        bearings = corrected(belief, bearings)
+    consistent = wedges_meet(area, bearings)
     if not bearings:
         return Verdict(False, consistent, (NoBearingYet(),), spread)
     against = tuple(i for i, b in enumerate(bearings) if not points_at(b, spread.x, spread.y))
-    supporting = [b for i, b in enumerate(bearings) if i not in against]
+    supporting = [b for i, b in enumerate(bearings) if i not in against and _tells(belief, b)]
     reasons: list[NotYetReason] = [
         *_place_reasons(rule, bearings, supporting),
         *_angle_reasons(rule, supporting, spread.x, spread.y),
     ]
     if against and len(supporting) < max(3, 2 * len(against)):
         reasons.append(EstimateContradicted(len(against), len(bearings)))
-    elif not wedges_meet(problem.area, supporting):
+    elif not wedges_meet(area, supporting):
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
         reasons.append(ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold))
-    elif isinstance(belief, JointBelief):
+    elif isinstance(belief, JointBelief | MovingBelief):
         reasons.extend(_tail_reasons(belief, spread))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
 
 
-def _tail_reasons(belief: JointBelief, spread: Estimate) -> list[NotYetReason]:
+def _tells(belief: GridBelief, bearing: Bearing) -> bool:
+    """Whether a bearing, as the belief reads it, says anything of where the emitter is now."""
+    return not isinstance(belief, MovingBelief) or bearing.sigma <= TELLING_SIGMA
+
+
+def _tail_reasons(belief: GridBelief, spread: Estimate) -> list[NotYetReason]:
     """Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean error says too little."""
     far = FAR_ERRORS * spread.expected_rmse
     beyond = 1.0 - mass_within(belief, spread.x, spread.y, far)

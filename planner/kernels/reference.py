@@ -150,7 +150,7 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
         low, high = _narrowed(low, high, normal, dy, x0 - place[0], h)
     touched = (columns >= low[:, None]) & (columns < high[:, None])
     dx = x0 + (columns + 0.5) * h - place[0]
-    weight = np.where(touched, weight, 0.0) * likelihood(rules, dx[None, :], dy[:, None], angle, NEARLY * h)
+    weight = np.where(touched, weight, 0.0) * likelihood(rules, dx[None, :], dy[:, None], angle, h)
     if not weight.sum() > 0:
         return unchanged
     return Belief(weight, x0, y0, h, hull, belief.bearings + 1, doubled=max(nx, ny) < COARSE_CELLS)
@@ -186,17 +186,23 @@ def _narrowed(
     return low, np.where(reach <= NEARLY * h, high, 0.0)
 
 
-def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, ahead: float) -> FloatArray:
-    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing.
+def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, h: float) -> FloatArray:
+    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing; its mean over a cell of side h with blur.
 
-    Beyond 4 sigma, and for places less than `ahead` m ahead of the sensor, that of the wedge's edge.
+    Beyond 4 sigma, and for places that are not ahead of the sensor, that of the wedge's edge. The mean is
+    observation.mean_likelihood's: with k = h^2 / (12 sigma^2) and r^2 at least h^2 / 6 it is
+    sqrt(r^2 / (r^2 + k)) times the likelihood of sin^2 e r^2 / (r^2 + k).
     """
     along = np.cos(angle) * dx + np.sin(angle) * dy
     across = np.cos(angle) * dy - np.sin(angle) * dx
     length2 = along**2 + across**2
-    sin2 = np.where(along > ahead, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
-    root = np.polynomial.polynomial.polyval(np.minimum(sin2, rules.edge), rules.likelihood)
-    return np.asarray(root**LIKELIHOOD_POWER, dtype=np.float64)
+    sin2 = np.where(along > NEARLY * h, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
+    share = np.ones_like(length2)
+    if rules.blur > 0.0:
+        distance2 = np.maximum(length2, h * h / 6.0)
+        share = distance2 / (distance2 + rules.blur * h * h)
+    root = np.polynomial.polynomial.polyval(np.minimum(sin2 * share, rules.edge), rules.likelihood)
+    return np.asarray(root**LIKELIHOOD_POWER * np.sqrt(share), dtype=np.float64)
 
 
 def estimate(belief: Belief, estimator: int, flat: bool, threshold: float) -> PointEstimate:

@@ -10,7 +10,7 @@ import numpy as np
 from planner.airspace import may_fly
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
-from planner.geometry import distance_to_convex
+from planner.geometry import distance_to_convex, distance_to_edges
 from planner.kernels.value.lookup import Frame, after_at, blended, principal_frame
 from planner.kernels.value.model import nodes
 from planner.motion import flight_time
@@ -42,6 +42,14 @@ def dynamic_program(
 def substitute(problem: Problem) -> BasePolicy:
     """The base policy while there is no table: Fisher's where places are a lattice, else the ellipse policy."""
     return "ellipse" if problem.action_spacing is None else "fisher"
+
+
+def stands_on(problem: Problem, wanted: BasePolicy) -> tuple[BasePolicy, ProgramTable | None]:
+    """The base policy that rollouts follow now, and its table: a substitute while the program has none."""
+    if wanted != "dynamic_program":
+        return wanted, None
+    table = program_for(problem)
+    return (substitute(problem), None) if table is None else (wanted, table)
 
 
 def best_places(
@@ -83,6 +91,8 @@ def _half_steps(frame: Frame) -> FloatArray:
 
 def _allowed(problem: Problem, belief: GridBelief, places: FloatArray) -> FloatArray:
     places = places[may_fly(problem, places)]
+    if problem.action_spacing is not None and problem.flight_area is not None:  # off the fence as a lattice's are
+        places = places[distance_to_edges(places, problem.flight_area) >= 0.5 * problem.action_spacing]
     if problem.standoff > 0 and len(places) > 0:
         places = places[distance_to_convex(places, confidence_region(belief)) >= problem.standoff]
     return places

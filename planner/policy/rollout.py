@@ -16,10 +16,10 @@ from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, DiscreteSelection, Sampling
 from planner.policy.actions import constrained_actions
-from planner.policy.dynamic_program import best_places, substitute
+from planner.policy.dynamic_program import best_places, stands_on
 from planner.policy.fisher import telling_places
-from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, simulate
-from planner.policy.value_table import ProgramTable, program_for
+from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, rules_of, simulate
+from planner.policy.value_table import ProgramTable
 from planner.reasons import (
     BudgetTooSmall,
     ChoiceReason,
@@ -47,6 +47,9 @@ PROGRAM_HORIZON = 2
 
 PATH_BLOCK = 64
 """Common random paths are drawn in blocks of this size, so that path j does not depend on who needs it first."""
+
+FORECAST_PATHS = 128
+"""Sample paths followed to their end for the times left, where those of the choice were closed with a mean."""
 
 TELLING_SHARE = 0.8
 """With a joint belief: of the best place's gain, what a place must offer to be compared at all."""
@@ -151,13 +154,12 @@ class Rollout:
         self, problem: Problem, belief: GridBelief, platform: tuple[float, float], rng: np.random.Generator
     ) -> Decision:
         """Raises PlannerError when no place of the action space may be flown to."""
-        program = program_for(problem) if self.base_policy == "dynamic_program" else None
-        wanted = substitute(problem) if self.base_policy == "dynamic_program" else self.base_policy
+        followed, program = stands_on(problem, self.base_policy)
         simulation = simulate(
             problem,
             belief,
             platform,
-            base_policy=wanted if program is None else "dynamic_program",
+            base_policy=followed,
             heading=self.heading,
             horizon=self.horizon if program is None else min(self.horizon, PROGRAM_HORIZON),
             threads=self.threads,
@@ -175,11 +177,30 @@ class Rollout:
         sampler = RolloutSampler(simulation, belief, self.sampling, rng, places, paths)
         result = self._selection(simulation, places, budget)(sampler.sample, len(places), budget, rng)
         decision = _decision(places, result, sampler)
-        if self.base_policy == "dynamic_program" and program is None:
+        if program is not None:
+            return self._with_times(decision, belief, simulation, program, rng)
+        if self.base_policy == "dynamic_program":
             tried = sum(candidate.rollouts > 0 for candidate in decision.candidates)
             expected_time = float(result.means[result.best])
             return replace(decision, reason=PlannedMeanwhile(expected_time, tried))
         return decision
+
+    def _with_times(
+        self,
+        decision: Decision,
+        belief: GridBelief,
+        simulation: Simulation,
+        program: ProgramTable,
+        rng: np.random.Generator,
+    ) -> Decision:
+        """The times by way of the chosen place, the program followed until the emitter is localized."""
+        rules = rules_of(simulation.problem, "dynamic_program", self.horizon, simulation.graph, program)
+        to_the_end = replace(simulation, rules=rules)
+        paths = random_paths(belief, rules.sigma, FORECAST_PATHS, rules.horizon, rng)
+        tasks = Tasks(np.zeros(FORECAST_PATHS, dtype=np.int64), np.arange(FORECAST_PATHS))
+        chosen = to_the_end.first_actions(np.array([[decision.x, decision.y]]))
+        times = to_the_end.run(chosen, paths, tasks).costs
+        return replace(decision, times=times, rollouts=decision.rollouts + FORECAST_PATHS)
 
     def _selection(self, simulation: Simulation, places: FloatArray, budget: int) -> Selection:
         """With common paths, uniform allocation gives up what loses for sure: no path is shorter than its first leg."""

@@ -20,8 +20,9 @@ import numpy as np
 
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
-from planner.options import PlannerOptions
+from planner.options import BasePolicy, PlannerOptions
 from planner.policy.actions import action_space
+from planner.policy.dynamic_program import stands_on
 from planner.policy.fisher import fisher
 from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, SELECTIONS
 from planner.policy.simulation import Simulation, simulate
@@ -117,14 +118,15 @@ def plan_several(
 ) -> Decision:
     """The next place to measure from (m ENU), for all the wanted emitters at once.
 
-    options: every one of the `budget` sample paths is a rollout of each emitter; independent paths (`pmc`) are drawn as
-    common ones. without: places that the operator refused. times: until the last one is localized if each is flown for
-    by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or reachable.
+    options: every one of the sample paths (`paths_among`) is a rollout of each emitter; independent paths (`pmc`) are
+    drawn as common ones. without: places that the operator refused. times: until the last one is localized if each is
+    flown for by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or
+    reachable.
     """
-    simulations = [simulate(w.problem, w.belief, platform, base_policy=options.base_policy) for w in wanted]
+    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
     places = _places(wanted, simulations[0], without)
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
-    budget, count = options.budget, 0
+    budget, count = paths_among(options.budget, len(wanted)), 0
     if options.sampling == "deterministic":
         if budget < len(places):
             raise PlannerError(BudgetTooSmall(budget, len(places)))
@@ -152,7 +154,7 @@ def times_together(
 
     infinite by way of a place without a way to it.
     """
-    simulations = [simulate(w.problem, w.belief, platform, base_policy=options.base_policy) for w in wanted]
+    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
     allowed = len(_places(wanted, simulations[0], ()))
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
     members = [
@@ -161,6 +163,12 @@ def times_together(
     ]
     chosen = np.arange(len(places))
     return np.stack([member.costs(chosen, 0, paths) for member in members]).mean(axis=0)
+
+
+def _simulation(wanted: Wanted, platform: tuple[float, float], base_policy: BasePolicy) -> Simulation:
+    """Rollouts to the end: how long the last of them takes is not known from a program's mean values."""
+    followed, program = stands_on(wanted.problem, base_policy)
+    return simulate(wanted.problem, wanted.belief, platform, base_policy=followed, program=program)
 
 
 def _member(
@@ -179,6 +187,19 @@ def _member(
     none = Paths(np.empty((0, 2)), np.empty((0, horizon)))
     paths = deterministic_paths(wanted.belief, deterministic, horizon) if deterministic else none
     return _Member(wanted, simulation, simulation.first_actions(places), detour, near, rng, paths)
+
+
+FEWEST_PATHS = 250
+"""Fewer are not shared out among a hundred places."""
+
+
+def paths_among(budget: int, emitters: int) -> int:
+    """How many sample paths of `budget` N are worth their time among E emitters.
+
+    The mean of E emitters' times has a variance of s^2 / (N' E) after N' paths: with N' = N / sqrt(E) the values are
+    still better known than those of one emitter after N.
+    """
+    return max(round(budget / np.sqrt(emitters)), min(budget, FEWEST_PATHS))
 
 
 def standoff_among(problem: Problem, places: int, emitters: int) -> float:

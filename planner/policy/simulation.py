@@ -195,6 +195,7 @@ def rules_of(
         sigma=sigma,
         likelihood=coefficients,
         edge=edge,
+        blur=1.0 / (12.0 * sigma**2) if problem.likelihood == "mean" else 0.0,
         threshold=float(problem.threshold),
         measurement_time=float(problem.measurement_time),
         motion=motion,

@@ -99,7 +99,7 @@ def fly(scenario: Scenario, policy: Policy, start: Opening, run: int, seed: int)
         travel += leg
         here = place
         angle = float(wrap(expected_bearing(here[0], here[1], target[0], target[1]) + noise[bearings]))
-        belief = update(belief, Bearing(float(here[0]), float(here[1]), angle, problem.sigma))
+        belief = update(belief, Bearing(float(here[0]), float(here[1]), angle, problem.sigma), problem.likelihood)
         bearings += 1
     return Mission(
         run=run,

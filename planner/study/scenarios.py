@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from planner.options import Estimator
+from planner.options import CellLikelihood, Estimator
 from planner.study.errors import StudyError
 from planner.types import (
     FloatArray,
@@ -51,6 +51,7 @@ def scenario(
     estimator: Estimator | None = None,
     action_grid: tuple[int, int] | None = None,
     measurement_time: float | None = None,
+    likelihood: CellLikelihood = "centre",
 ) -> Scenario:
     """A scenario by name, its configuration and what departs from it. StudyError for names that do not exist."""
     if name not in _SCENARIOS:
@@ -58,7 +59,7 @@ def scenario(
     if config not in MEASUREMENT_TIMES:
         raise StudyError(f"there is no configuration {config!r}: choose one of {', '.join(MEASUREMENT_TIMES)}")
     made = _SCENARIOS[name](MEASUREMENT_TIMES[config])
-    problem = made.problem
+    problem = replace(made.problem, likelihood=likelihood)
     if estimator is not None:
         problem = replace(problem, estimator=estimator)
     if action_grid is not None:

@@ -120,7 +120,7 @@ def learn(search: Search, row: Row, seeds: Sequence[int], unknown: ErrorPrior) -
 
 def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelief) -> tuple[Claim, GridBelief]:
     problem, rng = search.problem, np.random.default_rng([seed, ROWS_SEED])
-    target = _anywhere(problem, rng)
+    target = anywhere(problem, rng)
     sensor = row.sensor(target, rng)
     belief = unknown
     here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
@@ -198,7 +198,8 @@ def row_named(name: str) -> Row:
     return ROWS.named(name)
 
 
-def _anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
+def anywhere(problem: Problem, rng: np.random.Generator) -> FloatArray:
+    """(2,) m, uniform in the area."""
     x_min, y_min, x_max, y_max = bounds(problem.area)
     while True:
         target = rng.uniform((x_min, y_min), (x_max, y_max))
@@ -214,13 +215,20 @@ def prior_of(problem: Problem, model: Model, prior: ErrorPrior | None) -> GridBe
 
 
 def bearing_of(
-    model: Model, place: FloatArray, angle: float, sigma: float, heading_sigma: float, source: str
+    model: Model,
+    place: FloatArray,
+    angle: float,
+    sigma: float,
+    heading_sigma: float,
+    source: str,
+    taken_at: float = 0.0,
 ) -> Bearing:
     """The independent model takes the heading's error for each bearing's own."""
     x, y = float(place[0]), float(place[1])
     if model == "independent":
-        return Bearing(x, y, angle, float(np.hypot(sigma, heading_sigma)), outlier_probability=DOUBT)
-    return Bearing(x, y, angle, sigma, source=source)
+        total = float(np.hypot(sigma, heading_sigma))
+        return Bearing(x, y, angle, total, outlier_probability=DOUBT, taken_at=taken_at)
+    return Bearing(x, y, angle, sigma, source=source, taken_at=taken_at)
 
 
 def folded(unknown: GridBelief, belief: GridBelief, bearing: Bearing) -> GridBelief:

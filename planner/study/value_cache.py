@@ -7,7 +7,9 @@ equal tables bit for bit on one machine, whether fresh or from the disk.
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
+import sys
 import tempfile
 import threading
 from collections.abc import Callable
@@ -24,8 +26,12 @@ MADE_BY = ("kernels/value/*.py", "policy/value_table.py", "sampling.py", "compil
 
 Maker = Callable[[ProgramKey], ProgramTable]
 
+log = logging.getLogger("crossfix.planner")
+
 _one_at_a_time = threading.Lock()
-_under_way: dict[ProgramKey, threading.Thread] = {}
+_asking = threading.Lock()
+_asked: list[tuple[Problem, Maker]] = []
+_worker: threading.Thread | None = None
 
 
 def cache_directory() -> Path:
@@ -47,14 +53,49 @@ def ensure(problem: Problem, make: Maker = compute) -> ProgramTable:
     return table
 
 
-def prepare(problem: Problem, make: Maker = compute) -> threading.Thread:
-    """`ensure` in a thread that nobody needs to wait for, and that holds up no exit; one a key."""
+def prepare(problem: Problem, make: Maker = compute) -> threading.Thread | None:
+    """Has the table for this problem kept: at once where it is at hand or on the disk, else by a thread that nobody
+    needs to wait for, that gives way to everything else, and that holds up no exit.
+
+    Of several that are asked for while one is computed only the newest is computed after it.
+    """
+    global _worker
     key = key_of(problem)
-    known = _under_way.get(key)
-    if known is None or not known.is_alive():
-        _under_way[key] = known = threading.Thread(target=ensure, args=(problem, make), daemon=True, name="value-table")
-        known.start()
-    return known
+    with _asking:
+        table = program_for(problem)
+        if table is not None and table.key == key:
+            return None
+        found = load(key)
+        if found is not None:
+            keep(found)
+            return None
+        _asked.clear()
+        _asked.append((problem, make))
+        if _worker is None:
+            _worker = threading.Thread(target=_work, daemon=True, name="value-table")
+            _worker.start()
+        return _worker
+
+
+def _work() -> None:
+    global _worker
+    _give_way()
+    while True:
+        with _asking:
+            if not _asked:
+                _worker = None
+                return
+            problem, make = _asked.pop()
+        try:
+            ensure(problem, make)
+        except Exception:
+            log.exception("the dynamic program's table could not be computed; plans go on without it")
+
+
+def _give_way() -> None:
+    """On Linux each thread has a priority of its own."""
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 10)
 
 
 def load(key: ProgramKey) -> ProgramTable | None:

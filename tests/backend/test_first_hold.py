@@ -1,4 +1,4 @@
-"""What the first second of a server knows of what was left in flight, from the file of the journal alone."""
+"""What the first second of a server knows of what was left in flight, from the journal's database alone."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from backend.settings import Settings
 from backend.store.opening import open_journal
 from backend.store.spool import Spool
 from hardware.authority import NOBODY, Authority
+from hardware.sim.autopilot.launch import free_port
 
 STARTED = MissionStarted(craft_id="craft-1", by="anna", home=HOME, home_amsl_m=100.0, software="test")
 ORDERED = Ordered("start", "anna")
@@ -37,21 +38,26 @@ async def stored(settings: Settings, *facts: Event, mission_id: str = "m") -> No
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, database_url: str) -> Settings:
+    return Settings(data_dir=tmp_path, database_url=database_url)
+
+
+@pytest.fixture
+def sqlite(tmp_path: Path) -> Settings:
     return Settings(data_dir=tmp_path)
 
 
 @pytest.mark.parametrize("authority", [OURS, PILOT, FAILSAFE])
 async def test_a_mission_in_flight_is_found_with_who_flew_it(settings: Settings, authority: Authority) -> None:
     await stored(settings, STARTED, goes("flying"), AuthorityChanged(craft_id="craft-1", authority=authority))
-    left = left_in_flight(settings)
+    left = await left_in_flight(settings)
     assert left is not None
     assert left.authority == authority
 
 
 async def test_of_a_mission_that_nobody_flew_yet_that_is_known(settings: Settings) -> None:
     await stored(settings, STARTED, goes("taking_off"))
-    left = left_in_flight(settings)
+    left = await left_in_flight(settings)
     assert left is not None
     assert left.authority == NOBODY
 
@@ -67,17 +73,22 @@ async def test_of_a_mission_that_nobody_flew_yet_that_is_known(settings: Setting
 )
 async def test_it_is_in_flight_until_its_craft_is_down(settings: Settings, facts: Sequence[Event], found: bool) -> None:
     await stored(settings, *facts)
-    assert (left_in_flight(settings) is not None) == found
+    assert (await left_in_flight(settings) is not None) == found
 
 
-async def test_where_it_cannot_be_told_so_quickly_nothing_is_said(settings: Settings, tmp_path: Path) -> None:
+async def test_a_database_that_does_not_answer_holds_nothing_up(settings: Settings, tmp_path: Path) -> None:
     await stored(settings, STARTED, goes("flying"))
-    assert left_in_flight(settings.model_copy(update={"database_url": "postgresql://host/name"})) is None
-    assert left_in_flight(settings.model_copy(update={"data_dir": tmp_path / "elsewhere"})) is None
+    nowhere = {"database_url": f"postgresql://127.0.0.1:{free_port()}/name"}
+    assert await left_in_flight(settings.model_copy(update=nowhere)) is None
+    assert await left_in_flight(Settings(data_dir=tmp_path / "elsewhere")) is None
+
+
+async def test_rows_of_another_form_are_left_to_the_journal(sqlite: Settings, tmp_path: Path) -> None:
+    await stored(sqlite, STARTED, goes("flying"))
     connection = sqlite3.connect(tmp_path / "crossfix.sqlite")
     with connection:
         connection.execute("UPDATE events SET form = ? WHERE seq = 1", [FORM - 1])
-    assert left_in_flight(settings) is None
+    assert await left_in_flight(sqlite) is None
     connection.close()
 
 
@@ -85,17 +96,19 @@ async def test_facts_that_wait_in_the_spool_may_say_otherwise(settings: Settings
     await stored(settings, STARTED, goes("flying"))
     spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
     spool.append(b"anything")
-    assert left_in_flight(settings) is None
-    spool.clear()
-    assert left_in_flight(settings) is not None
     spool.close()
+    assert await left_in_flight(settings) is None
+    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
+    spool.clear()
+    spool.close()
+    assert await left_in_flight(settings) is not None
 
 
 async def test_the_vehicle_of_a_server_that_runs_is_left_alone(settings: Settings) -> None:
     await stored(settings, STARTED, goes("flying"))
     async with open_journal(settings, time.time):
-        assert left_in_flight(settings) is None
-    assert left_in_flight(settings) is not None
+        assert await left_in_flight(settings) is None
+    assert await left_in_flight(settings) is not None
 
 
 def test_its_rows_are_of_the_form_that_is_written_now() -> None:
@@ -107,7 +120,8 @@ def test_its_rows_are_of_the_form_that_is_written_now() -> None:
 BEFORE_THE_HOLD = """
 import sys
 import backend.cli.main, backend.cli.serve, backend.first_hold
-heavy = ("numba", "numpy", "scipy", "shapely", "sqlalchemy", "fastapi", "viser", "planner.belief")
+heavy = ("numba", "numpy", "scipy", "shapely", "sqlalchemy", "fastapi", "viser", "planner.belief",
+         "hardware.reasons.antenna", "hardware.reasons.pattern", "hardware.reasons.table")
 print(*(name for name in heavy if name in sys.modules))
 """
 

@@ -94,6 +94,7 @@ def chaos(scale: float, out: Path) -> list[Step]:
             ("fuzz_requests", "fuzz_messages", "fuzz_failures"),
             fuzz,
         ),
+        Step("1010 half-sent requests", ("tests.benchmarks.half_sent", *to), ("half_sent", "half_sent_lost")),
         Step("links, vehicle and replay", ("pytest", "-q", "-m", "system", *TESTED), ()),
     ]
 

@@ -24,6 +24,7 @@ from backend.search.localization import DOUBT, Localization, localization
 from backend.search.planning import base_policy_decision
 from backend.settings import Settings
 from backend.simulation.walls import walls
+from backend.spec import PlannerSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.heading_offset import heading_offset
@@ -176,7 +177,7 @@ def fly(seed: int, fault: Fault, pattern: AntennaPattern, finder: SparseDirectio
     """One mission of the suggested specification with the base policy."""
     home = HOME
     spec = suggested_mission(home)
-    spec = spec.model_copy(update={"planner": spec.planner.model_copy(update={"method": "base_policy"})})
+    spec = spec.model_copy(update={"planner": PlannerSpec(method="base_policy")})
     task = localization(spec, home)
     sky = make_sky(seed, fault, task.frame)
     bearings: list[Bearing] = []

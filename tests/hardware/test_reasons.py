@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from hardware.reasons import HardwareReason
 from hardware.reasons.channels import BandTooNarrow
+from hardware.reasons.union import HardwareReason
 from planner.reason import Reason, sentence_of
 from planner.reasons import PlannerReason
 from tests.reasons import assert_codes_differ, assert_well_said, classes_of, examples

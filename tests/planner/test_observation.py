@@ -5,7 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner.observation import cuts, hard_likelihood, inside_wedge, mixture_likelihood, wrap
+from planner.observation import (
+    cuts,
+    gaussian_likelihood,
+    hard_likelihood,
+    inside_wedge,
+    mean_likelihood,
+    mixture_likelihood,
+    wrap,
+)
 from planner.types import Bearing, Peak
 
 SIGMA = np.deg2rad(4.0)
@@ -35,6 +43,31 @@ def test_outside_the_widened_wedge_nothing_and_in_its_margin_the_edge():
     assert values[0] > values[1]
     assert values[2] == 0.0
     assert not inside_wedge(bearing, np.array([-10.0]), np.array([0.0]), margin=2.0)[0]
+
+
+@pytest.mark.parametrize(("r", "good_to"), [(4.0, 0.3), (8.0, 0.15), (15.0, 0.05), (40.0, 0.01), (150.0, 0.01)])
+def test_the_mean_over_a_cell_is_that_of_its_points(r, good_to):
+    h, off = 3.0, (np.arange(60) + 0.5) / 60 - 0.5
+    for sigmas in (0.0, 1.0, 2.0):
+        angle = 0.3 + sigmas * SIGMA
+        x, y = r * np.cos(angle), r * np.sin(angle)
+        px, py = (x + h * off)[None, :], (y + h * off)[:, None]
+        exact = float(gaussian_likelihood(np.arctan2(py, px) - 0.3, SIGMA).mean())
+        found = float(mean_likelihood(Bearing(0.0, 0.0, 0.3, SIGMA), np.array([x]), np.array([y]), h)[0])
+        assert found == pytest.approx(exact, rel=good_to)
+
+
+def test_far_from_the_sensor_and_on_a_fine_grid_the_mean_is_the_centres():
+    bearing, x, y = Bearing(0.0, 0.0, 0.0, SIGMA), np.full(5, 200.0), np.linspace(-20.0, 20.0, 5)
+    centre = hard_likelihood(bearing, x, y, margin=0.1 / np.sqrt(2.0))
+    assert mean_likelihood(bearing, x, y, 0.1) == pytest.approx(centre, rel=1e-4)
+
+
+def test_cells_that_the_wedge_misses_and_the_sensors_own_cell_hold_little():
+    bearing = Bearing(0.0, 0.0, 0.0, SIGMA)
+    found = mean_likelihood(bearing, np.array([-10.0, 50.0, 0.0]), np.array([0.0, 40.0, 0.0]), 3.0)
+    assert (found[:2] == 0.0).all()
+    assert 0.0 < found[2] < 0.2
 
 
 HERE = (np.array(100.0), np.array(20.0))

@@ -58,7 +58,8 @@ async def _fly(
     by_nobody: list[str],
 ) -> None:
     end_s = time.monotonic() + 60.0 * given.minutes
-    async with proxied(url) as proxy, piloted(proxy, given.flavour) as pilot:
+    rc = given.rc[number] if given.rc else None
+    async with proxied(url) as proxy, piloted(proxy, given.flavour, rc) as pilot:
         vehicle = await connect_vehicle(proxy.url, WallClock())
         field = Field(vehicle, proxy, pilot, random.Random(given.seed + number))
         try:
@@ -104,10 +105,21 @@ def _order(given: argparse.Namespace) -> list[Planned]:
     return rounds[: given.times]
 
 
+def address(text: str) -> tuple[str, int]:
+    """HOST:PORT. Raises ValueError for anything else."""
+    host, _, port = text.rpartition(":")
+    return host, int(port)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", nargs="+", help="its address, as `crossfix serve --vehicle` takes it")
     parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
+    parser.add_argument(
+        "--rc", nargs="+", type=address, default=[], metavar="HOST:PORT",
+        help="where ArduPilot's simulator listens for a transmitter (127.0.0.1:5501), one a vehicle, with FLTMODE4 17 "
+        "and FLTMODE5 5; else the pilot is a second ground station",
+    )  # fmt: skip
     parser.add_argument("--times", type=int, default=48)
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no takeover after so long")
     parser.add_argument("--delays", type=float, nargs="+", default=[0.0, 80.0, 250.0], help="ms each way")
@@ -118,6 +130,8 @@ def main() -> None:
     parser.add_argument("--record", type=Path, help="write what passed, a JSON line each")
     add_out(parser)
     given = parser.parse_args()
+    if given.rc and len(given.rc) != len(given.vehicle):
+        parser.error(f"--rc: {len(given.vehicle)} vehicles need as many transmitters, not {len(given.rc)}.")
     given.means = given.means or (["mode", "sticks"] if given.flavour == "px4" else ["mode"])
     if given.orders:
         given.scenes = [scene for scene in ORDERS if given.flavour == "ardupilot" or scene != "steering ordered"]

@@ -1,4 +1,4 @@
-"""The pilot of a real autopilot: mode switch and sticks, as a second ground station brings them to it.
+"""The pilot of a real autopilot: mode switch and sticks, as a transmitter or a second ground station bring them to it.
 
 The pilot's radio has no delay, so it is put in at the vehicle's end of the proxy.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -23,10 +24,12 @@ from tests.strikes.proxy import (
     COMMAND_LONG,
     CURRENT_MODE,
     HEARTBEAT,
+    RC_CHANNELS,
     STATUS_TEXT,
     Passed,
     Proxy,
 )
+from tests.strikes.transmitter import Switch, Transmitter
 
 PILOT_SYSTEM = 254
 NEUTRAL = (0, 0, 500, 0)
@@ -39,27 +42,31 @@ class Habits:
     """An autopilot's modes in which the pilot flies, and in which they give the vehicle back.
 
     flown, given_back: (custom mode as commanded, raw mode as reported). sticks_take: moving them ends an
-    automatic mode.
+    automatic mode. switch: of the transmitter, where it can be moved.
     """
 
     flown: tuple[tuple[float, float], int]
     given_back: tuple[tuple[float, float], int]
     sticks_take: bool
     sticks_text: str = ""
+    switch: Switch | None = None
 
 
 HABITS = {
     "px4": Habits(((3.0, 0.0), 3 << 16), ((4.0, 3.0), 4 << 16 | 3 << 24), True, "Pilot took over"),
-    "ardupilot": Habits(((5.0, 0.0), 5), ((17.0, 0.0), 17), False),
+    "ardupilot": Habits(((5.0, 0.0), 5), ((17.0, 0.0), 17), False, switch=Switch(5, 1685, 1555, 0.2)),
 }
-"""POSCTL and HOLD; LOITER and BRAKE."""
+"""POSCTL and HOLD; LOITER and BRAKE, on the switch with FLTMODE5 5 and FLTMODE4 17."""
+WITHIN_US = 50
+"""A pulse is heard as it was sent, but for the noise of a receiver."""
 
 
 class Pilot:
-    """flies: raw modes in which the pilot has the vehicle."""
+    """flies: raw mode in which the pilot has the vehicle. transmitter: None: they switch by a second ground station."""
 
-    def __init__(self, proxy: Proxy, habits: Habits) -> None:
+    def __init__(self, proxy: Proxy, habits: Habits, transmitter: Transmitter | None = None) -> None:
         self.habits = habits
+        self.transmitter = transmitter
         self.flies = habits.flown[1]
         self._proxy = proxy
         self._encoder = mavlink.MAVLink(None, PILOT_SYSTEM, 190)
@@ -67,6 +74,11 @@ class Pilot:
 
     def _send(self, message: Any) -> float:
         return self._proxy.put_in(bytes(message.pack(self._encoder)), message.get_msgId(), message.to_dict())
+
+    @property
+    def believed_s(self) -> float:
+        """From the pilot's hand at the mode switch until the autopilot changes its mode."""
+        return 0.0 if self.transmitter is None else self.transmitter.switch.believed_s
 
     def _switch(self, custom: tuple[float, float]) -> float:
         return self._send(
@@ -82,7 +94,10 @@ class Pilot:
 
     def take_by_mode(self) -> float:
         """When, by time.monotonic."""
-        return self._switch(self.habits.flown[0])
+        if self.transmitter is None:
+            return self._switch(self.habits.flown[0])
+        self.transmitter.take()
+        return time.monotonic()
 
     def take_by_sticks(self) -> float:
         """Push them; `release_sticks` ends it."""
@@ -94,7 +109,15 @@ class Pilot:
 
     def give_back(self) -> float:
         self.release_sticks()
-        return self._switch(self.habits.given_back[0])
+        if self.transmitter is None:
+            return self._switch(self.habits.given_back[0])
+        self.transmitter.give_back()
+        return time.monotonic()
+
+    def on_the_ground(self) -> None:
+        """Hands ready for a take-off."""
+        if self.transmitter is not None:
+            self.transmitter.throttle_down()
 
     def _move(self) -> float:
         return self._send(self._encoder.manual_control_encode(self._proxy.system, *self._sticks, 0))
@@ -106,8 +129,21 @@ class Pilot:
             await asyncio.sleep(0.05)
 
     def took(self, since_s: float) -> float | None:
-        """When the autopilot first said that the pilot has it (its answer, its text or its mode)."""
-        return next((passed.at_s for passed in self._proxy.since(since_s) if self._says_taken(passed)), None)
+        """When the autopilot first said that the pilot has it (its answer, its text or its mode).
+
+        A switch that it heard and obeyed without ever telling the mode: when it did, at the latest.
+        """
+        passed = self._proxy.since(since_s)
+        said = next((one.at_s for one in passed if self._says_taken(one)), None)
+        if said is not None or self.transmitter is None:
+            return said
+        moved = next((one.at_s for one in passed if self._says_moved(one, self.transmitter.switch)), None)
+        return None if moved is None else moved + self.believed_s
+
+    def _says_moved(self, passed: Passed, switch: Switch) -> bool:
+        if passed.way != "from" or passed.number != RC_CHANNELS:
+            return False
+        return abs(int(passed.fields.get(f"chan{switch.channel}_raw", 0)) - switch.flown_us) < WITHIN_US
 
     def _says_taken(self, passed: Passed) -> bool:
         fields = passed.fields
@@ -132,9 +168,10 @@ def mode_of(passed: Passed) -> int | None:
 
 
 @asynccontextmanager
-async def piloted(proxy: Proxy, flavour: str) -> AsyncIterator[Pilot]:
-    """A pilot with the transmitter in their hands, where that is read as MANUAL_CONTROL."""
-    pilot = Pilot(proxy, HABITS[flavour])
+async def piloted(proxy: Proxy, flavour: str, rc: tuple[str, int] | None = None) -> AsyncIterator[Pilot]:
+    """A pilot with the transmitter in their hands, where that is read as MANUAL_CONTROL or sent to `rc`."""
+    habits = HABITS[flavour]
+    pilot = Pilot(proxy, habits, None if rc is None or habits.switch is None else Transmitter(rc, habits.switch))
     hands = asyncio.create_task(pilot.hands_on()) if pilot.habits.sticks_take else None
     try:
         yield pilot
@@ -143,6 +180,8 @@ async def piloted(proxy: Proxy, flavour: str) -> AsyncIterator[Pilot]:
             hands.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await hands
+        if pilot.transmitter is not None:
+            pilot.transmitter.close()
 
 
 def reaching(proxy: Proxy, since_s: float, numbers: frozenset[int]) -> list[float]:

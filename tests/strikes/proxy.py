@@ -18,8 +18,10 @@ from tests.strikes.lane import Lane
 from tests.strikes.wire import Send, datagrams, vehicle_end
 
 HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE = 0, 1, 75, 76, 77, 253, 436
-ATTITUDE, GLOBAL_POSITION = 30, 33
-KEPT = frozenset({HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE})
+ATTITUDE, GLOBAL_POSITION, RC_CHANNELS = 30, 33, 65
+KEPT = frozenset(
+    {HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE, RC_CHANNELS}
+)
 """Numbers of the messages in the record, unless a proxy is given others."""
 
 

@@ -48,6 +48,8 @@ COMMANDS: dict[Scene, frozenset[int]] = {
 HEIGHT_M = 12.0
 SPEED_M_S = 5.0
 RATE_DEG_S = 30.0
+LOOP_S = 0.05
+"""Of an autopilot and its radio, and a little more."""
 
 
 @dataclass
@@ -74,6 +76,11 @@ class Field:
         if moment == "before":
             aim.after(0.0)
             await asyncio.sleep(self.chance.uniform(0.0, self.proxy.delay_s + REPORT_S))
+        elif moment == "crossing" and scene in ORDERS and self.pilot.believed_s:
+            # the order is to arrive when the switch is obeyed, or before the news of it can be here
+            aim.after(0.0)
+            lead_s = self.pilot.believed_s - self.proxy.delay_s
+            await asyncio.sleep(max(0.0, lead_s + self.chance.uniform(-LOOP_S, self.proxy.delay_s + LOOP_S)))
         elif moment == "crossing":
             aim.at_command(COMMANDS[scene], self.chance.randrange(4) if scene == "turn" else 0)
         doing = asyncio.create_task(self._do(scene))
@@ -95,6 +102,9 @@ class Field:
         telemetry = self.vehicle.telemetry
         self.pilot.release_sticks()
         if telemetry().authority.undone:  # it shows the waiting mode already: that gives nothing back
+            if self.pilot.believed_s:  # a switch that stays where it is selects nothing
+                self.pilot.give_back()
+                await asyncio.sleep(2.0 * self.pilot.believed_s)
             self.pilot.take_by_mode()
             await asyncio.sleep(2.0 * self.proxy.delay_s + 2.0)
         await asyncio.sleep(0.3)
@@ -110,8 +120,10 @@ class Field:
             if telemetry().in_air:
                 await self.vehicle.land()
                 await until(lambda: telemetry().armed is False, 120.0, "the landing")
+            self.pilot.on_the_ground()
             return
         if not telemetry().in_air:
+            self.pilot.on_the_ground()
             await self.vehicle.take_off(HEIGHT_M)
         match scene:
             case "hold ordered":

@@ -989,6 +989,10 @@ export const reasonsEn: ReasonTable = {
     text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
     remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
   },
+  return_meets_ground: {
+    text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}) and flies straight home: over the ground in between it needs {least_relative_m}.",
+    remedy: "Set {parameter} to at least {least_relative_m}, and the mission's ceiling no lower; or choose another home.",
+  },
   room_to_fly: {
     text: "There are {area_m2} to fly in.",
     remedy: "",
@@ -1332,6 +1336,14 @@ export const reasonsEn: ReasonTable = {
     text: "A request may have at most {most_bytes}.",
     remedy: "Simplify the geometry, or split the file.",
   },
+  body_too_rich: {
+    text: "A request may have at most {most_fields} named fields and {most_items} items in its lists.",
+    remedy: "Simplify the geometry.",
+  },
+  body_too_slow: {
+    text: "Nothing of the request arrived for {wait_s}.",
+    remedy: "Look at the network, then send it again.",
+  },
   unknown_host: {
     text: "This server does not go by the name {host}.",
     remedy: "Open it by its IP address or localhost, or name the host in CROSSFIX_ALLOWED_HOSTS.",
@@ -1563,6 +1575,11 @@ export const reasonsEn: ReasonTable = {
   disk_low: {
     text: "Only {free_bytes} are left on the disk.",
     remedy: "Free some space.",
+  },
+  stock_full: {
+    text: "There is no room for it: at most {most} {what?overlays=overlays|recordings=raw sweeps of recordings} and {most_bytes} of them are kept.",
+    remedy:
+      "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
   },
   nothing_stores: {
     text: "The database is away ({database}) and the spool cannot be written ({spool}).",

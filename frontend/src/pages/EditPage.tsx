@@ -10,6 +10,7 @@ import { EMITTER, firstEmitter } from "../edit/emitter";
 import { FormField, TextField } from "../edit/FormField";
 import { type NumberField, sections } from "../edit/fields";
 import { KindField } from "../edit/KindField";
+import { MovementField } from "../edit/MovementField";
 import { PreviewCard } from "../edit/PreviewCard";
 import { ProfileRow } from "../edit/ProfileRow";
 import { type PresetName, presetNames, presetOf, withPreset } from "../edit/presets";
@@ -70,6 +71,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
         </>
       )}
       <KindField />
+      <MovementField failed={failed} />
       <ProfileRow />
       {draft.value?.spec.sensor.bearing_errors === "joint" && <CompassCard />}
     </fieldset>

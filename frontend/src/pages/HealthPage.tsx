@@ -26,6 +26,19 @@ const Why = ({ reason }: { reason: Reason }) => (
   </p>
 );
 
+const megabytes = (bytes: number | null) => (bytes === null ? "?" : formatNumber(Math.round(bytes / 1e6)));
+
+function StockLine({ stock }: { stock: Health["stocks"][number] }) {
+  const number = stock.number === null ? "?" : formatNumber(stock.number);
+  const room = { most: formatNumber(stock.most), size: megabytes(stock.size_bytes), room: megabytes(stock.most_bytes) };
+  return (
+    <>
+      <p data-testid={`stock-${stock.what}`}>{t(`health.stock.${stock.what}`, { number, ...room })}</p>
+      {stock.full && <p class="refused">{t("health.stockFull")}</p>}
+    </>
+  );
+}
+
 function Parts({ health }: { health: Health }) {
   const { database } = health;
   return (
@@ -48,12 +61,15 @@ function Parts({ health }: { health: Health }) {
             : t("health.keepDays", { days: formatNumber(health.keep_sweeps_days) })}
         </p>
       </Part>
-      <Part name={t("health.disk")} good>
+      <Part name={t("health.disk")} good={!health.stocks.some((stock) => stock.full)}>
         <p>
           {health.disk_free_bytes === null
             ? t("health.diskUnknown")
             : t("health.diskFree", { size: `${formatNumber(health.disk_free_bytes / 1e9, 1)} GB` })}
         </p>
+        {health.stocks.map((stock) => (
+          <StockLine stock={stock} key={stock.what} />
+        ))}
       </Part>
       {health.vehicles.map((vehicle) => (
         <Part name={t("health.vehicle", { craft: vehicle.craft_id })} good={vehicle.connected} key={vehicle.craft_id}>

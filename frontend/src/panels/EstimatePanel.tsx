@@ -16,6 +16,7 @@ import { vehicle } from "../state/vehicle";
 import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength, formatNumber, signedDegrees } from "../units/quantities";
 import type { MissionEnded, SourceErrors } from "../wire";
+import { Claim } from "./Claim";
 import { copyText } from "./clipboard";
 import { WhichShown } from "./WhichShown";
 
@@ -170,6 +171,7 @@ export function EstimatePanel() {
         )}
       </h2>
       <WhichShown />
+      <Claim />
       {!fact && <p class="muted">{t("estimate.none")}</p>}
       {fact && !estimate && <p data-testid="inconsistent">{t("estimate.inconsistent")}</p>}
       {fact && estimate && fact.contradicting.length > 0 && (

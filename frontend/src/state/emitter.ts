@@ -26,6 +26,8 @@ export interface EmitterState {
   beliefs: readonly BeliefPoint[];
   /** What was told of its place after the flight, the last word. */
   truth: At<TruthNoted> | null;
+  /** The last belief that said localized: of an emitter that moves it stands for its moment. */
+  claim: At<BeliefUpdated> | null;
 }
 
 export const emptyEmitter = (emitterId: string): EmitterState => ({
@@ -35,6 +37,7 @@ export const emptyEmitter = (emitterId: string): EmitterState => ({
   belief: null,
   beliefs: [],
   truth: null,
+  claim: null,
 });
 
 /** `event` is one that speaks of this emitter. */
@@ -47,6 +50,7 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
     case "bearing_excluded":
       return {
         ...state,
+        claim: null,
         bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
       };
     case "truth_noted":
@@ -55,6 +59,7 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
       return {
         ...state,
         belief: { fact: event, seq, at },
+        claim: event.localized ? { fact: event, seq, at } : state.claim,
         beliefs: [...state.beliefs, { seq, at, bearings: event.bearings, expectedRmse: event.estimate?.expected_rmse_m ?? null }],
       };
     default:

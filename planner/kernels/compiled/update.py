@@ -43,7 +43,13 @@ def measure(
         cells = gather(
             weight, offset, low, high, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
         )
-        _weigh(work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell)
+        if rules.blur > 0.0:
+            _weigh_means(
+                work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell,
+                rules.blur * cell * cell, cell * cell / 6.0,
+            )  # fmt: skip
+        else:
+            _weigh(work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell)
         m0, ma, mb, maa, mab, mbb, heaviest = _moments(work.weight[now], work.along, work.across, cells)
         if m0 > 0.0:
             doubled = max(i1 - i0, j1 - j0) < COARSE_CELLS
@@ -105,6 +111,27 @@ def _weigh(weight, along, across, cells, likelihood, edge, ahead):
         root = root * root
         root = root * root
         weight[i] *= root * root
+
+
+@jit
+def _weigh_means(weight, along, across, cells, likelihood, edge, ahead, blurred, nearest):
+    """The same for the mean over a cell (reference.likelihood). blurred: h^2 / (12 sigma^2), nearest: h^2 / 6, m^2."""
+    p0, p1, p2, p3, p4, p5 = likelihood[0], likelihood[1], likelihood[2], likelihood[3], likelihood[4], likelihood[5]
+    for i in range(cells):
+        a, b = along[i], across[i]
+        b2 = b * b
+        r2 = a * a + b2
+        far2 = r2 if r2 > nearest else nearest
+        share = far2 / (far2 + blurred)
+        sin2 = b2 / r2
+        sin2 = sin2 if a > ahead else 1.0
+        u = sin2 * share
+        u = u if u < edge else edge
+        u2 = u * u
+        root = (p0 + u * p1) + u2 * ((p2 + u * p3) + u2 * (p4 + u * p5))
+        root = root * root
+        root = root * root
+        weight[i] *= root * root * np.sqrt(share)
 
 
 @jit

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from backend.api import guard
+from backend.api import bodies
 from backend.ports import TrackPoint
 from backend.settings import REPOSITORY
 from backend.store.digest import EPOCH
@@ -113,6 +113,6 @@ async def test_anything_else_is_refused(client, content, fault):
 
 
 async def test_a_mission_longer_than_any_is_refused_before_it_is_read(client, monkeypatch):
-    monkeypatch.setattr(guard, "EXPORT_BYTES", 1_000)
+    monkeypatch.setattr(bodies, "EXPORT_BYTES", 1_000)
     reply = await read(client, TODAY)
     assert (reply.status_code, reply.json()["reason"]["code"]) == (413, "body_too_large")

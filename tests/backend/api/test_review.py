@@ -163,7 +163,17 @@ async def test_a_long_mission_is_worked_on_in_a_process_of_its_own_and_comes_out
     monkeypatch.setattr(Workers, "run", counting(Workers.run, ran))
     assert [(await client.get(address)).content for address in asked] == before
     assert ran == ["belief_frame", "geojson", "journal_json"]
+    supposed = await client.post(f"{flown}/what-if", json={"bearings": 2, "sigma_deg": 9.0})
+    monkeypatch.setattr("backend.api.heavy.LONG_FACTS", 10_000)
+    here = await client.post(f"{flown}/what-if", json={"bearings": 2, "sigma_deg": 9.0})
+    assert ran[-1] == "what_if"
+    assert without_times(supposed.json()) == without_times(here.json())
     await services.desk.close()
+
+
+def without_times(answer):
+    """plan_ms is measured."""
+    return {**answer, "plan": answer["plan"] and {**answer["plan"], "plan_ms": 0}}
 
 
 def counting(run, ran):

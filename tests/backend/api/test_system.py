@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from backend.ports import Lesson, Said
 from backend.search.localization import localization
 from backend.spec import MissionSpec
@@ -48,6 +50,21 @@ async def test_the_suggested_mission_can_be_flown_from_home(client):
     assert math.isclose(x.min(), -x.max(), abs_tol=0.1)
     assert abs(y.min()) < 0.1
     assert (await client.post("/api/missions", json=defaults["spec"])).status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("sensor", "meant"),
+    [(None, "joint"), ({}, "joint"), ({"sigma_deg": 5.0}, "joint"), ({"bearing_errors": "independent"}, "independent")],
+)
+async def test_a_request_that_names_no_model_of_errors_has_them_estimated(client, sensor, meant):
+    spec = (await client.get("/api/defaults")).json()["spec"]
+    assert spec["sensor"]["bearing_errors"] == "joint"
+    asked = {**spec, "sensor": sensor} if sensor is not None else {k: v for k, v in spec.items() if k != "sensor"}
+    drafted = (await client.post("/api/missions", json=asked)).json()
+    assert drafted["spec"]["sensor"]["bearing_errors"] == meant
+    edited = await client.put(f"/api/missions/{drafted['mission_id']}/spec", json=asked)
+    assert edited.json()["spec"]["sensor"]["bearing_errors"] == meant
+    assert edited.json()["spec"]["sensor"].get("sigma_deg") == (sensor or {}).get("sigma_deg", 7.0)
 
 
 async def test_without_a_vehicle_the_area_lies_around_the_configured_place(client, vehicle, settings):
@@ -97,7 +114,6 @@ async def test_what_was_learned_of_a_compass_is_shown_and_forgotten(client, serv
     assert known["bias_deg"] == 6.0
     assert known["expected_bias_deg"] < 2.0
     joint = (await client.get("/api/defaults")).json()["spec"]
-    joint["sensor"]["bearing_errors"] = "joint"
     drafted = (await client.post("/api/missions", json=joint)).json()["spec"]
     assert (joint["sensor"]["learned"], drafted["sensor"]["learned"]["flights"]) == (None, 2)
     gone = (await client.delete("/api/crafts/craft-1/compass")).json()

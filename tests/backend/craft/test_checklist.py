@@ -173,3 +173,29 @@ async def test_a_home_that_terrain_and_autopilot_put_elsewhere_is_a_caution() ->
     assert isinstance(covers.reason, terrain_reasons.TerrainCovers)
     assert differs.reason == terrain_reasons.HomeHeightDiffers(130.0, 100.0)
     assert (differs.ok, differs.blocking) == (False, False)
+
+
+async def return_line(found: Terrain | None, altitude_m: float) -> CheckFact:
+    stage = Stage()
+    stage.vehicle.returns_at = ReturnAltitude("RTL_ALT", altitude_m)
+    lines, _ = await checklist(spec(), stage.craft(), None, grounds=Known(found))
+    (line,) = [
+        line for line in lines if isinstance(line.reason, checks.ReturnAltitudeChecked | checks.ReturnMeetsGround)
+    ]
+    return line
+
+
+async def test_the_autopilots_own_return_clears_the_ground_between_the_area_and_home() -> None:
+    ridge = terrain(hill(0.0, 60.0, 50.0, wide_m=15.0))  # 30 m below it, beside it the mission flies at 40 m
+    low, high = await return_line(ridge, 60.0), await return_line(ridge, 75.0)
+
+    assert (low.ok, low.blocking) == (False, True)
+    assert isinstance(low.reason, checks.ReturnMeetsGround)
+    assert low.reason.least_relative_m == pytest.approx(70.0, abs=2.0)
+    assert "RTL_ALT" in remedy_of(low.reason)
+    assert high.ok
+
+
+@pytest.mark.parametrize("found", [None, terrain(level()), terrain(hill(0.0, 300.0, 60.0, wide_m=120.0))])
+async def test_where_the_ground_only_rises_away_from_home_any_return_altitude_will_do(found: Terrain | None) -> None:
+    assert (await return_line(found, 0.0)).ok

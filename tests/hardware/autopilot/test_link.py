@@ -1,13 +1,18 @@
 from __future__ import annotations
 
 import asyncio
+import socket
+from functools import cache
 from threading import Event
 from typing import Any
 
 import pytest
 
+from hardware.autopilot import opening
 from hardware.autopilot.fence_items import FenceItem
-from hardware.autopilot.link import FenceTransferFailed, MavlinkLink, check_url
+from hardware.autopilot.link import FenceTransferFailed, MavlinkLink
+from hardware.autopilot.opening import check_url
+from hardware.ports import VehicleUnreachable
 from hardware.sim.autopilot.launch import Setting, launch_simulated
 
 
@@ -53,6 +58,21 @@ class SlowAutopilot:
 
     def destroy(self) -> None:
         self.done.append("destroyed")
+
+
+async def test_another_link_leaves_the_log_of_those_that_are_open_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    subscribed = list[object]()
+    monkeypatch.setattr(opening, "log_subscribe", subscribed.append)
+    monkeypatch.setattr(opening, "_take_log_over", cache(opening._take_log_over.__wrapped__))  # pyright: ignore
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        for _ in range(3):
+            link = MavlinkLink(f"udpin://127.0.0.1:{taken.getsockname()[1]}", (), lambda name, fields: None)
+            with pytest.raises(VehicleUnreachable):
+                await link.open(1.0)
+            await link.close()
+
+    assert len(subscribed) == 1
 
 
 async def test_what_waits_for_an_answer_ends_before_the_link_does(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,7 +74,9 @@ def random_case(seed: int):
         bearings.append(Bearing(x, y, float(angle), problem.sigma, float(rng.choice([0.0, 0.05]))))
     heading = None if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
     policy = str(rng.choice(["ellipse", "fisher", "dynamic_program"]))
-    return problem, bearings, tuple(rng.uniform(low, high)), policy, int(rng.choice([1, 2, 24])), heading
+    platform, horizon = tuple(rng.uniform(low, high)), int(rng.choice([1, 2, 24]))
+    problem = replace(problem, likelihood="mean" if rng.random() < 0.4 else "centre")
+    return problem, bearings, platform, policy, horizon, heading
 
 
 def made_up_table(problem, seed: int) -> ProgramTable:

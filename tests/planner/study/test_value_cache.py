@@ -1,5 +1,6 @@
 """Tables on disk: computed once, the same from memory, disk and afresh, and made again when a file is not whole."""
 
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -81,4 +82,40 @@ def test_preparing_waits_for_nobody_and_ends_with_the_table_kept():
     make = Maker()
     value_cache.prepare(PROBLEM, make).join(60)
     assert program_for(PROBLEM) is not None
+    assert make.made == [key_of(PROBLEM)]
+    assert value_cache.prepare(PROBLEM, make) is None
+
+
+def test_a_table_on_the_disk_is_at_hand_as_soon_as_it_is_asked_for():
+    kept = value_cache.ensure(PROBLEM, Maker())
+    forget()
+    assert value_cache.prepare(PROBLEM, Maker()) is None
+    assert (program_for(PROBLEM).after == kept.after).all()
+
+
+def test_of_many_drafts_only_the_first_and_the_last_are_computed():
+    begun, go_on, make = threading.Event(), threading.Event(), Maker()
+
+    def slow(key):
+        begun.set()
+        go_on.wait(60)
+        return make(key)
+
+    drafts = [replace(PROBLEM, threshold=threshold) for threshold in (4.0, 5.0, 6.0, 7.0)]
+    worker = value_cache.prepare(drafts[0], slow)
+    assert begun.wait(60)
+    for draft in drafts[1:]:
+        assert value_cache.prepare(draft, slow) is worker
+    go_on.set()
+    worker.join(60)
+    assert make.made == [key_of(drafts[0]), key_of(drafts[-1])]
+
+
+def test_a_table_that_cannot_be_computed_does_not_stop_the_next():
+    def broken(key):
+        raise MemoryError
+
+    make = Maker()
+    value_cache.prepare(PROBLEM, broken).join(60)
+    value_cache.prepare(PROBLEM, make).join(60)
     assert make.made == [key_of(PROBLEM)]

@@ -102,6 +102,11 @@ export const preflight = {
     remedy:
       "{parameter} so setzen, dass die eigene Rückkehr des Autopiloten nicht über die Höchsthöhe der Mission von {ceiling_relative_m} steigt, oder diese anheben.",
   },
+  return_meets_ground: {
+    text: "Die eigene Rückkehr des Autopiloten steigt auf {altitude_relative_m} ({parameter}) und fliegt geradeaus heim: Über dem Gelände dazwischen braucht sie {least_relative_m}.",
+    remedy:
+      "{parameter} auf mindestens {least_relative_m} setzen und die Höchsthöhe der Mission nicht niedriger; oder einen anderen Startplatz wählen.",
+  },
   return_altitude_unread: {
     text: "Wie hoch die eigene Rückkehr des Autopiloten steigt ({parameter}), war nicht zu lesen.",
     remedy:

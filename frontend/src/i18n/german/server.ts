@@ -27,6 +27,19 @@ export const server = {
     text: "Eine Anfrage darf höchstens {most_bytes} haben.",
     remedy: "Die Geometrie vereinfachen oder die Datei teilen.",
   },
+  stock_full: {
+    text: "Dafür ist kein Platz: Höchstens {most} {what?overlays=Überlagerungen|recordings=rohe Drehungen aus Aufnahmen} und {most_bytes} davon werden behalten.",
+    remedy:
+      "{what?overlays=Überlagerungen löschen, die nicht gebraucht werden, oder CROSSFIX_OVERLAYS_MAX und CROSSFIX_OVERLAYS_MAX_BYTES erhöhen|recordings=Rohe Drehungen alter Missionen löschen lassen (crossfix thin) oder CROSSFIX_RECORDINGS_MAX_SWEEPS und CROSSFIX_RECORDINGS_MAX_BYTES erhöhen}.",
+  },
+  body_too_rich: {
+    text: "Eine Anfrage darf höchstens {most_fields} benannte Felder und {most_items} Listeneinträge haben.",
+    remedy: "Die Geometrie vereinfachen.",
+  },
+  body_too_slow: {
+    text: "{wait_s} lang kam nichts von der Anfrage an.",
+    remedy: "Das Netz prüfen, dann noch einmal senden.",
+  },
   unknown_host: {
     text: "Dieser Server heißt nicht {host}.",
     remedy: "Ihn über seine IP-Adresse oder localhost öffnen oder den Namen in CROSSFIX_ALLOWED_HOSTS nennen.",

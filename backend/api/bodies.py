@@ -1,0 +1,150 @@
+"""What may come in the body of a request: how large, how slowly, and how much JSON.
+
+The event loop itself reads JSON and compares it with its model, and an abort waits meanwhile: a text of 8 MB with a
+million wrong fields takes it a minute and a half. What is longer or richer than any honest request is refused unread.
+"""
+
+from __future__ import annotations
+
+import asyncio
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from backend.api.problems import ApiProblem, respond
+from backend.reasons import request as reasons
+from backend.wire.problem import Problem, problem
+
+ENTERING_BYTES = 16 * 2**10
+"""What somebody may send who has not signed in."""
+JSON_BYTES = 256 * 2**10
+"""A mission with all its areas takes a tenth of it."""
+LARGE_JSON_BYTES = 2**21
+"""With the text of an antenna's pattern inside."""
+AREA_BYTES = 8 * 2**20
+"""With the text of a KML or GeoJSON file inside."""
+RECORDING_BYTES = 128 * 2**20
+"""A minute of IQ at the usual rates."""
+EXPORT_BYTES = 32 * 2**20
+"""Hours of a mission with some hundred sweeps."""
+
+ENTRANCES = ("/api/session", "/api/first-admin", "/api/recovery", "/api/invitation/")
+UPLOADS = ("/api/maps", "/api/overlays", "/api/terrain")
+"""Their bodies are files, under limits of their own."""
+READ_APART = ("/api/areas", "/api/recordings/read")
+"""Their JSON is read in a process of its own."""
+
+MOST_FIELDS = 2_000
+MOST_ITEMS = 20_000
+STALL_S = 20.0
+"""So long a body may stand still."""
+
+
+def most_bytes(path: str) -> int | None:
+    """Of the body of a request to this path; None: the endpoint has its own limit."""
+    if path.startswith(UPLOADS) and path != "/api/maps/coverage":
+        return None
+    if path.startswith(ENTRANCES):
+        return ENTERING_BYTES
+    if path == "/api/recordings/read":
+        return EXPORT_BYTES
+    if path == "/api/areas":
+        return AREA_BYTES
+    if path.startswith("/api/missions/") and path.endswith("/recordings"):
+        return RECORDING_BYTES
+    return LARGE_JSON_BYTES if path.endswith("/what-if") else JSON_BYTES
+
+
+def too_large(scope: Scope) -> Problem | None:
+    """By what it says of itself."""
+    length, most = Headers(scope=scope).get("content-length", "0"), most_bytes(scope["path"])
+    if most is None or not length.isdigit() or int(length) <= most:
+        return None
+    return problem(413, reasons.BodyTooLarge(most))
+
+
+def too_rich(text: bytes) -> bool:
+    """More fields or items than any request of ours has, whatever else is in it."""
+    if len(text) <= MOST_FIELDS:
+        return False
+    outside = text.replace(rb"\\", b"").replace(rb"\"", b"").split(b'"')[::2]
+    bare = b"".join(outside)
+    return bare.count(b":") > MOST_FIELDS or bare.count(b",") > MOST_ITEMS
+
+
+class Bodies:
+    """ASGI middleware, inside the gate: nothing is read for whoever may not make the call."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """The call gets a JSON body in one piece once it is known to be harmless, any other as it comes."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        arriving = _bounded(scope, receive)
+        if not _is_json(scope):
+            await self._app(scope, arriving, send)
+            return
+        try:
+            body = await _whole(arriving)
+        except ApiProblem as refused:
+            await respond(refused.problem, {"connection": "close"})(scope, receive, send)
+            return
+        if body is None:
+            return  # nobody waits for an answer
+        if scope["path"] not in READ_APART and too_rich(body):
+            found = problem(413, reasons.BodyTooRich(MOST_FIELDS, MOST_ITEMS))
+            await respond(found)(scope, receive, send)
+            return
+        given = False
+
+        async def at_once() -> Message:
+            nonlocal given
+            if given:
+                return await receive()
+            given = True
+            return {"type": "http.request", "body": body, "more_body": False}
+
+        await self._app(scope, at_once, send)
+
+
+def _is_json(scope: Scope) -> bool:
+    kind = Headers(scope=scope).get("content-type", "").partition(";")[0].strip().lower()
+    return kind == "application/json" or kind.endswith("+json")
+
+
+async def _whole(receive: Receive) -> bytes | None:
+    """None: the caller has gone."""
+    pieces: list[bytes] = []
+    while True:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            return None
+        pieces.append(message.get("body", b""))
+        if not message.get("more_body", False):
+            return b"".join(pieces)
+
+
+def _bounded(scope: Scope, receive: Receive) -> Receive:
+    """Raises ApiProblem, where the body is read, for one that is too large or stands still."""
+    most = most_bytes(scope["path"])
+    taken, more = 0, True
+
+    async def bounded() -> Message:
+        nonlocal taken, more
+        if not more:
+            return await receive()  # whether the caller is still there
+        try:
+            async with asyncio.timeout(STALL_S):
+                message = await receive()
+        except TimeoutError:
+            raise ApiProblem(408, reasons.BodyTooSlow(STALL_S), headers={"connection": "close"}) from None
+        taken += len(message.get("body", b""))
+        more = bool(message.get("more_body", False))
+        if most is not None and taken > most:
+            raise ApiProblem(413, reasons.BodyTooLarge(most))
+        return message
+
+    return bounded

@@ -1,0 +1,298 @@
+"""Whole searches in the field world: sweeps through the direction finder, beliefs and claims as in a mission.
+
+Only flying is simplified: a craft takes as long as the fitted movement model says (thesis 6.4.3), turns once around at
+every place, and settles. Mission k has the same world under every planner, and its n-th sweep the same chance.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from shapely import Point, Polygon
+
+from backend.api.suggestion import suggested_mission
+from backend.events import BearingMeasured, CraftSource
+from backend.search.localization import Localization, localization
+from backend.search.planning import decide, foreseen
+from backend.search.sweep_facts import Taken, sweep_fact
+from backend.simulation.field_world import Field, antenna_pattern, drawn_field
+from backend.spec import MissionSpec, PlannerSpec
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.readings import Place
+from planner.airspace import may_fly
+from planner.belief.estimate import confidence_region
+from planner.belief.grid import GridBelief
+from planner.geometry import bounds
+from planner.kernels.entropy import expected_entropies
+from planner.motion import flight_time, turn_between
+from planner.policy.actions import action_space
+from planner.policy.entropy import entpp
+from planner.policy.fisher import fisher
+from planner.sampling import equal_mass_points
+from planner.study.truth import wilson
+from planner.types import FloatArray, FullMotion, Problem
+
+HOME = Place(50.6234, 7.2046)
+SETTLE_S = 4.0
+"""After a turn, before the craft flies on."""
+HOVER_W = 250.0
+"""Of a multicopter of 2 kg; flown at 8 m/s it needs no less, so that energy is time."""
+FAR_M = 50.0
+"""Bearings from nearer do not count in the statistics of bearings, as in the thesis' (6.3.2)."""
+OUTLIER_DEG = 30.0
+STEP_M = 30.0
+"""Between the nine places that the greedy planner compares."""
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOptions:
+    """turn_rate_deg_s: of a sweep. compass_sd_deg: of the flights' heading errors."""
+
+    planner: str = "crossfix"
+    turn_rate_deg_s: float = 30.0
+    compass_sd_deg: float = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class FieldMission:
+    """What came of one. error_m, stated_m, in_c95: at the end. off_deg: of the accepted bearings from beyond FAR_M."""
+
+    seed: int
+    localized: bool
+    time_s: float
+    in_c95: bool
+    error_m: float
+    stated_m: float
+    bearings: int
+    rejected: int
+    turned_deg: float
+    off_deg: tuple[float, ...]
+
+    @property
+    def false_claim(self) -> bool:
+        """Said localized, and wrong by more than three times what it stated."""
+        return self.localized and self.error_m > 3.0 * self.stated_m
+
+
+Rival = Callable[[Problem, GridBelief, tuple[float, float], np.random.Generator], tuple[float, float]]
+"""A planner that a mission's specification does not name: the next place, m ENU."""
+
+
+def _entropy_of_nine(
+    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
+) -> tuple[float, float]:
+    """Stay, or one step in eight directions: the least expected entropy, averaged over eight bearings."""
+    steps = STEP_M * np.array([(0.0, 0.0), *((np.cos(a), np.sin(a)) for a in np.arange(8) * np.pi / 4)])
+    places = np.array(here) + steps
+    allowed = may_fly(problem, places)
+    places = places[allowed] if allowed.any() else action_space(problem, belief)
+    rows, columns = np.nonzero(belief.density > 1e-12 * belief.density.max())
+    x, y = belief.centres()
+    cells, mass = np.column_stack([x[columns], y[rows]]), belief.density[rows, columns]
+    found = expected_entropies(cells, mass, places, equal_mass_points(belief, 8), problem.sigma)
+    return _of(places, int(np.argmin(found)))
+
+
+def _random_walk(
+    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
+) -> tuple[float, float]:
+    places = action_space(problem, belief)
+    return _of(places, int(rng.integers(len(places))))
+
+
+def _of(places: FloatArray, index: int) -> tuple[float, float]:
+    return float(places[index, 0]), float(places[index, 1])
+
+
+def _fisher(
+    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
+) -> tuple[float, float]:
+    choice = fisher(problem, belief, here)
+    return choice.x, choice.y
+
+
+def _entpp(
+    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
+) -> tuple[float, float]:
+    choice = entpp(problem, belief, here)
+    return choice.x, choice.y
+
+
+RIVALS: Mapping[str, Rival] = {
+    "fisher": _fisher,
+    "entpp": _entpp,
+    "entropy_of_nine": _entropy_of_nine,
+    "random_walk": _random_walk,
+}
+OURS = ("crossfix", "rollout")
+"""The suggested mission's planner, and the specification's default: rollouts on the Fisher policy."""
+PLANNERS = (*OURS, *RIVALS)
+
+
+def mission_of(options: FieldOptions) -> MissionSpec:
+    """The suggested mission with a joint belief; all planners measure and claim alike."""
+    spec = suggested_mission(HOME)
+    sensor = spec.sensor.model_copy(
+        update={"bearing_errors": "joint", "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S}
+    )
+    own = spec.planner if options.planner == "crossfix" else PlannerSpec(estimator=spec.planner.estimator)
+    return spec.model_copy(update={"sensor": sensor, "planner": own})
+
+
+@dataclass(slots=True)
+class FieldStudy:
+    """Flies missions of one row."""
+
+    options: FieldOptions
+    spec: MissionSpec
+    task: Localization
+    pattern: AntennaPattern
+    finder: SparseDirectionFinder
+
+    @classmethod
+    def of(cls, options: FieldOptions, heading_sigma_deg: float) -> FieldStudy:
+        """heading_sigma_deg: what the craft states of its heading."""
+        spec = mission_of(options)
+        finder = SparseDirectionFinder(heading_sigma_deg=heading_sigma_deg)
+        return cls(options, spec, localization(spec, HOME), antenna_pattern(), finder)
+
+    def fly(self, seed: int) -> FieldMission:
+        """One mission, until it says localized or has taken its last bearing."""
+        task, rate = self.task, self.options.turn_rate_deg_s
+        field = drawn_field(seed, task.frame, bounds(task.problem.area), self.options.compass_sd_deg)
+        rng, motion = np.random.default_rng([seed, 3]), FullMotion()
+        measured: list[BearingMeasured] = []
+        here, heading, time_s = (0.0, 0.0), 0.0, 0.0
+        sweeps, retakes = 0, 0
+        fact, belief = task.belief_fact(measured)
+        while not fact.localized and sweeps < self.spec.localization.maximum_bearings:
+            place = self._choose(belief, measured, here, rng)
+            way = np.array(place) - np.array(here)
+            length = float(np.hypot(*way))
+            if length > 0.0:
+                direction = float(np.arctan2(way[1], way[0]))
+                time_s += float(flight_time(motion, length, turn_between(heading, direction)))
+                heading = direction
+            here = place
+            for _ in range(1 + self.spec.sensor.maximum_retakes):
+                found = self._measured(field, here, sweeps)
+                time_s += 360.0 / rate + SETTLE_S
+                sweeps += 1
+                if found is not None:
+                    measured.append(found)
+                    break
+                retakes += 1
+            fact, belief = task.belief_fact(measured)
+        estimate = fact.estimate
+        x, y = (math.nan, math.nan) if estimate is None else task.frame.to_enu(Place(estimate.lat, estimate.lon))
+        return FieldMission(
+            seed=seed,
+            localized=fact.localized,
+            time_s=time_s,
+            in_c95=bool(Polygon(confidence_region(belief)).covers(Point(field.truth))),
+            error_m=math.dist((x, y), field.truth),
+            stated_m=math.nan if estimate is None else estimate.expected_rmse_m,
+            bearings=len(measured),
+            rejected=retakes,
+            turned_deg=360.0 * sweeps,
+            off_deg=tuple(off for b in measured if (off := self._off_deg(field, b)) is not None),
+        )
+
+    def _choose(
+        self,
+        belief: GridBelief,
+        measured: Sequence[BearingMeasured],
+        here: tuple[float, float],
+        rng: np.random.Generator,
+    ) -> tuple[float, float]:
+        rival = RIVALS.get(self.options.planner)
+        if rival is not None:
+            return rival(foreseen(self.task.problem, measured, belief), belief, here, rng)
+        decision = decide(self.task, belief, measured, here)
+        return decision.x, decision.y
+
+    def _measured(self, field: Field, here: tuple[float, float], number: int) -> BearingMeasured | None:
+        sweep = field.sweep(*here, number, self.options.turn_rate_deg_s)
+        reading = self.finder.estimate(sweep, self.pattern)
+        taken = Taken(self.task.emitter_id, CraftSource(craft_id="craft-1"), f"sweep-{number}", number + 1, 1)
+        duration_s = 360.0 / self.options.turn_rate_deg_s + SETTLE_S
+        fact = sweep_fact(taken, self.spec.sensor, sweep, reading, duration_s)
+        return fact if isinstance(fact, BearingMeasured) else None
+
+    def _off_deg(self, field: Field, fact: BearingMeasured) -> float | None:
+        """What a bearing is off by, the compass' error taken out; None from nearer than FAR_M."""
+        x, y = self.task.frame.to_enu(fact.place)
+        east, north = field.truth[0] - x, field.truth[1] - y
+        if math.hypot(east, north) < FAR_M:
+            return None
+        seen = fact.bearing_deg + field.world.heading_error_deg
+        return math.remainder(seen - math.degrees(math.atan2(east, north)), 360.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FieldSummary:
+    """Of all missions of a row; *_ci95: half the 95 % interval. in_c95 and what follows: of those that claimed."""
+
+    options: FieldOptions
+    missions: int
+    localized: float
+    time_s: float
+    time_ci95_s: float
+    time_90_s: float
+    in_c95: float
+    in_c95_low: float
+    in_c95_high: float
+    false_claims: float
+    bearings: float
+    turned_deg: float
+    energy_kj: float
+    bearing_sd_deg: float
+    outliers: int
+    bearings_far: int
+
+    def as_json(self) -> dict[str, Any]:
+        """One flat object; None: no mission told."""
+        fields = dataclasses.asdict(self)
+        options = fields.pop("options")
+        return {name: _rounded(value) for name, value in {**options, **fields}.items()}
+
+
+def summary(options: FieldOptions, flown: Sequence[FieldMission]) -> FieldSummary:
+    """Of at least one mission."""
+    nothing = math.nan
+    claims = [m for m in flown if m.localized]
+    inside = sum(m.in_c95 for m in claims)
+    low, high = wilson(inside, len(claims)) if claims else (nothing, nothing)
+    times = np.array([m.time_s for m in flown])
+    off = np.array([value for m in flown for value in m.off_deg])
+    honest = off[np.abs(off) <= OUTLIER_DEG]
+    return FieldSummary(
+        options=options,
+        missions=len(flown),
+        localized=len(claims) / len(flown),
+        time_s=float(times.mean()),
+        time_ci95_s=float(1.96 * times.std(ddof=1) / math.sqrt(len(times))) if len(times) > 1 else nothing,
+        time_90_s=float(np.quantile(times, 0.9)),
+        in_c95=inside / len(claims) if claims else nothing,
+        in_c95_low=low,
+        in_c95_high=high,
+        false_claims=float(np.mean([m.false_claim for m in claims])) if claims else nothing,
+        bearings=float(np.mean([m.bearings for m in flown])),
+        turned_deg=float(np.mean([m.turned_deg for m in flown])),
+        energy_kj=float(HOVER_W * times.mean() / 1e3),
+        bearing_sd_deg=float(honest.std()) if len(honest) else nothing,
+        outliers=int((np.abs(off) > OUTLIER_DEG).sum()),
+        bearings_far=len(off),
+    )
+
+
+def _rounded(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return round(value, 4) if math.isfinite(value) else None

@@ -1,0 +1,77 @@
+"""`crossfix study run --scenario field-world`: rows of whole searches, mission k in the same world for all planners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+from backend.cli.edge import print_json, remark
+from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, FieldSummary, summary
+from planner.study.errors import StudyError
+
+REMARK_EVERY = 20
+HEADING_SIGMA_DEG = 4.0
+"""What the craft states of its heading."""
+COLUMNS = (
+    "planner",
+    "missions",
+    "time, s",
+    "90 %",
+    "localized",
+    "C95 at the claim",
+    "false claims",
+    "turned",
+    "energy",
+)
+
+
+def field_rows(
+    planners: Sequence[str], runs: int, seed: int, turn_rate_deg_s: float, compass_sd_deg: float, json_: bool
+) -> None:
+    """Flies and prints one row a planner. seed: of the first mission. Raises StudyError for what cannot be flown."""
+    if not 5.0 <= turn_rate_deg_s <= 90.0:
+        raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {turn_rate_deg_s:g}")
+    if not 0.0 <= compass_sd_deg <= 60.0:
+        raise StudyError(f"--compass-sd must be 0 to 60 degrees, got {compass_sd_deg:g}")
+    for planner in planners:
+        if planner not in PLANNERS:
+            raise StudyError(f"field-world has no planner {planner!r}: choose one of {', '.join(PLANNERS)}")
+    rows = [_row(FieldOptions(planner, turn_rate_deg_s, compass_sd_deg), runs, seed) for planner in planners]
+    if json_:
+        answers = [row.as_json() for row in rows]
+        print_json(answers[0] if len(answers) == 1 else answers)
+        return
+    typer.echo(" | ".join(COLUMNS))
+    for row in rows:
+        typer.echo(" | ".join(_cells(row)))
+
+
+def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
+    study = FieldStudy.of(options, HEADING_SIGMA_DEG)
+    flown: list[FieldMission] = []
+    for number in range(seed, seed + runs):
+        flown.append(study.fly(number))
+        if len(flown) % REMARK_EVERY == 0 and len(flown) < runs:
+            remark(f"{options.planner}: {len(flown)} of {runs} missions")
+    return summary(options, flown)
+
+
+def _cells(row: FieldSummary) -> tuple[str, ...]:
+    facts: dict[str, Any] = row.as_json()
+
+    def percent(name: str) -> str:
+        return "none" if facts[name] is None else f"{100.0 * facts[name]:.1f} %"
+
+    return (
+        row.options.planner,
+        str(row.missions),
+        f"{row.time_s:.1f} ± {row.time_ci95_s:.1f}",
+        f"{row.time_90_s:.0f}",
+        percent("localized"),
+        f"{percent('in_c95')} [{percent('in_c95_low')}, {percent('in_c95_high')}]",
+        percent("false_claims"),
+        f"{row.turned_deg:.0f}°",
+        f"{row.energy_kj:.0f} kJ",
+    )

@@ -1,0 +1,115 @@
+"""A field for studies of whole searches: what a sweep hears there is made from fields, not from any filter's model.
+
+A mission has an emitter anywhere in the suggested area, a compass that is wrong by one angle, an antenna on an airframe
+(hardware.sim.antenna), one or two reflectors that lose 4 to 10 dB, fading in time (Rician), and shadowing: the direct
+wave and every echo are weakened or strengthened with a standard deviation of 5 dB, each by a random field of its own
+that changes over 20 m.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.frame import LocalFrame
+from hardware.readings import Sweep
+from hardware.sim.propagation import Fading
+from hardware.sim.turn import turn_once
+from hardware.sim.turntable import simulated_antenna
+from hardware.sim.world import Emitter, RadioLink, Reflector, World
+
+FREQUENCY_HZ = 868_300_000.0
+HEIGHT_M = 40.0
+MARGIN_M = 10.0
+"""Between the emitter and the edge of its area."""
+REFLECTORS = (1, 2)
+LOSS_DB = (4.0, 10.0)
+AROUND_M = 60.0
+"""How far outside the area a reflector may stand."""
+SCATTERED = Fading(rician_k_db=9.0, coherence_s=0.35)
+SHADOW_DB, SHADOW_M = 5.0, 20.0
+WAVES = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Shadow:
+    """A Gaussian random field over places: standard deviation SHADOW_DB, correlation exp(-d^2 / (2 SHADOW_M^2)).
+
+    s(x) = SHADOW_DB sqrt(2 / n) sum_k cos(w_k . x + p_k), w_k ~ N(0, 1 / SHADOW_M^2) (Rahimi and Recht 2007).
+    waves: (n, 2) rad/m. phases: (n,) rad.
+    """
+
+    waves: NDArray[np.float64]
+    phases: NDArray[np.float64]
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator) -> Shadow:
+        """One realization."""
+        return cls(rng.standard_normal((WAVES, 2)) / SHADOW_M, rng.uniform(0.0, 2.0 * math.pi, WAVES))
+
+    def db(self, x: float, y: float) -> float:
+        """What is lost at (x, y), m ENU."""
+        return float(SHADOW_DB * math.sqrt(2.0 / WAVES) * np.cos(self.waves @ np.array([x, y]) + self.phases).sum())
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One mission's world. truth: m ENU. shadows: of the direct wave, then of each reflector's."""
+
+    world: World
+    frame: LocalFrame
+    truth: tuple[float, float]
+    shadows: tuple[Shadow, ...]
+    seed: int
+
+    def sweep(self, x: float, y: float, number: int, rate_deg_s: float) -> Sweep:
+        """A whole turn at (x, y). What chance there is depends on the seed and the number of the sweep alone."""
+        direct, *echoes = (shadow.db(x, y) for shadow in self.shadows)
+        world, rng = self.world, np.random.default_rng([self.seed, number, 2])
+        emitter = dataclasses.replace(world.emitters[0], power_dbm=world.emitters[0].power_dbm - direct)
+        reflectors = tuple(
+            dataclasses.replace(one, loss_db=one.loss_db + lost - direct)
+            for one, lost in zip(world.reflectors, echoes, strict=True)
+        )
+        here = dataclasses.replace(world, emitters=(emitter,), reflectors=reflectors, seed=int(rng.integers(2**31)))
+        place, start_deg = self.frame.to_geo(x, y), float(rng.uniform(0.0, 360.0))
+        link = RadioLink(here, FREQUENCY_HZ)
+        return turn_once(link, place, HEIGHT_M, start_deg=start_deg, rate_deg_s=rate_deg_s)
+
+
+def antenna_pattern() -> AntennaPattern:
+    """Of the antenna that is flown, as it was measured: what a direction finder works with."""
+    return simulated_antenna()
+
+
+def drawn_field(seed: int, frame: LocalFrame, area: tuple[float, float, float, float], compass_sd_deg: float) -> Field:
+    """area: x_min, y_min, x_max, y_max, m ENU. compass_sd_deg: of the flights' heading errors."""
+    rng = np.random.default_rng([seed, 1])
+    x_min, y_min, x_max, y_max = area
+    truth = (
+        float(rng.uniform(x_min + MARGIN_M, x_max - MARGIN_M)),
+        float(rng.uniform(y_min + MARGIN_M, y_max - MARGIN_M)),
+    )
+    reflectors = tuple(
+        Reflector(
+            frame.to_geo(
+                float(rng.uniform(x_min - AROUND_M, x_max + AROUND_M)),
+                float(rng.uniform(y_min - AROUND_M, y_max + AROUND_M)),
+            ),
+            loss_db=float(rng.uniform(*LOSS_DB)),
+            phase_rad=float(rng.uniform(0.0, 2.0 * math.pi)),
+        )
+        for _ in range(int(rng.integers(REFLECTORS[0], REFLECTORS[1] + 1)))
+    )
+    world = World(
+        (Emitter(frame.to_geo(*truth), FREQUENCY_HZ),),
+        fading=SCATTERED,
+        reflectors=reflectors,
+        heading_error_deg=float(compass_sd_deg * rng.standard_normal()),
+    )
+    return Field(world, frame, truth, tuple(Shadow.drawn(rng) for _ in range(1 + len(reflectors))), seed)

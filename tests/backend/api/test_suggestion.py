@@ -1,0 +1,39 @@
+"""The mission that is suggested to everybody: flown by our own planner, whose table nobody has to wait for."""
+
+from backend.api.suggestion import suggested_mission
+from backend.search.forecast import preview
+from backend.search.localization import localization
+from backend.search.planning import next_place_together
+from hardware.readings import Place
+from planner.options import CROSSFIX, FIELD
+from planner.policy.value_table import SHIPPED_KEY, key_of, program_for, shipped
+from planner.reasons import PlannedMeanwhile
+
+HOME = Place(lat=50.6, lon=7.2)
+
+
+def test_it_is_flown_by_the_planner_of_the_studies():
+    assert suggested_mission(HOME).planner.options == CROSSFIX
+
+
+def test_a_specification_that_names_no_planner_means_the_one_it_was_flown_with():
+    spec = suggested_mission(HOME)
+    stored = spec.model_dump(exclude={"planner"})
+    assert type(spec).model_validate(stored).planner.options == FIELD
+
+
+def test_its_table_comes_with_the_package_so_that_no_first_plan_is_made_meanwhile():
+    task = localization(suggested_mission(HOME), HOME)
+    assert key_of(task.problem) == SHIPPED_KEY
+    assert program_for(task.problem) is shipped()
+    assert not isinstance(preview(task, HOME, threads=1).reason, PlannedMeanwhile)
+
+
+def test_several_emitters_are_planned_for_with_it():
+    spec = suggested_mission(HOME)
+    first = spec.emitters[0]
+    second = first.model_copy(update={"emitter_id": "second", "frequency_hz": first.frequency_hz + 1e5})
+    spec = spec.model_copy(update={"emitters": [first, second]})
+    tasks = [localization(spec, HOME, emitter.emitter_id) for emitter in spec.emitters]
+    chosen = next_place_together([(task, ()) for task in tasks], (0.0, 0.0), 1, (), threads=1)
+    assert chosen.expected_time_s > 2 * spec.sensor.measurement_time_s
