@@ -1042,7 +1042,7 @@ export const de: Record<MessageKey, string> = {
   "report.took": "{time}",
   "report.print": "Drucke ihn, oder wähle „Als PDF sichern“ als Drucker.",
   "report.printNow": "Drucken",
-  "report.map": "Karte: Gebiet, Peilungen, 95-%-Gebiet, Schätzung und Fundort",
+  "report.picture": "Karte: Gebiet, Peilungen, 95-%-Gebiet, Schätzung und Fundort",
   "report.north": "Norden ist oben",
   "event.truth_noted": "Gefunden: Ort angegeben von {by}",
   "event.truth_nowhere": "Gesucht und nicht gefunden, sagt {by}",

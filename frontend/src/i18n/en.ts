@@ -1034,7 +1034,7 @@ export const en = {
   "report.took": "{time}",
   "report.print": "Print it, or choose “Save as PDF” as the printer.",
   "report.printNow": "Print",
-  "report.map": "Map: area, bearings, 95 % region, estimate and found place",
+  "report.picture": "Map: area, bearings, 95 % region, estimate and found place",
   "report.north": "North is up",
   "event.truth_noted": "Found: the place was told by {by}",
   "event.truth_nowhere": "Looked for and not found, says {by}",

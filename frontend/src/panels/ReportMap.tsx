@@ -40,7 +40,7 @@ export function ReportMap({ view }: { view: MissionView }) {
   const metre = (at([west, north])[1] - at([west, south])[1]) / -distanceM([west, south], [west, north]);
   const step = STEPS_M.findLast((s) => s * metre < WIDTH / 4) ?? STEPS_M[0]!;
   return (
-    <svg class="report-map" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={t("report.map")} data-testid="report-map">
+    <svg class="report-map" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={t("report.picture")} data-testid="report-map">
       {rings.map((ring, i) => (
         <path class="report-area" d={`${path(ring)}Z`} key={i} />
       ))}
