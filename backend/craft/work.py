@@ -150,7 +150,7 @@ class Work:
         if len(sought) > 1 and self.task.mission.planner.method == "rollout":
             wanted = [(self.task.emitters[e.emitter_id].without(closed), e.bearings) for e in sought]
             return next_place_together(wanted, platform, number, effect.avoid, threads, craft_id)
-        emitter = sought[0]
+        emitter = next(iter(sought))
         task = self.task.emitters[emitter.emitter_id].without(closed)
         belief = task.planning_belief(task.planner_bearings(emitter.bearings))
         return next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)

@@ -27,7 +27,7 @@ from backend.events import (
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.motion import fit_motion
-from planner.types import LinearConstantMotion, LinearMotion, PlannerError
+from planner.types import FloatArray, LinearConstantMotion, LinearMotion, PlannerError
 
 FACTS_NEEDED = (
     "mission_started",
@@ -270,5 +270,6 @@ def _motion(flights: Sequence[tuple[float, float]]) -> tuple[float | None, float
         case LinearConstantMotion(speed, constant):
             return round(speed, 2), round(constant, 1)
         case _:
-            slope, constant = np.polyfit(distances, times, 1)
-            return (round(1.0 / float(slope), 2), round(float(constant), 1)) if slope > 0 else (None, None)
+            line: FloatArray = np.asarray(np.polyfit(distances, times, 1), dtype=np.float64)
+            slope, constant = float(line[0]), float(line[1])
+            return (round(1.0 / slope, 2), round(constant, 1)) if slope > 0 else (None, None)

@@ -120,7 +120,7 @@ async def read_digest(connection: AsyncConnection, mission_id: str) -> MissionDi
     """None: no fact of it is stored."""
     rows = await connection.execute(select(missions).where(missions.c.mission_id == mission_id))
     found = rows.mappings().one_or_none()
-    return None if found is None else from_columns(found)
+    return None if found is None else from_columns(dict(found))
 
 
 @dataclass(frozen=True, slots=True)

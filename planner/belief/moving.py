@@ -239,12 +239,9 @@ class _Weighing:
         """(ny, nx) of the cells of `grid`, and the errors of each source."""
         rows, columns = np.nonzero(prior)
         x, y = (along[index] for along, index in zip(grid.centres(), (columns, rows), strict=True))
-        cells, sources = len(x), len(self.sources)
-        log, bias, square = np.empty(cells), np.empty((cells, sources)), np.empty((cells, sources))
-        moving_evidence(
-            np.ascontiguousarray(x), np.ascontiguousarray(y), self.seen, self.movement.speed,
-            self.movement.persistence, sources, self.scale, self.scale_weight, self.bias_sd, self.bias_weight,
-            log, bias, square,
+        log, bias, square = moving_evidence(
+            x, y, self.seen, self.movement.speed, self.movement.persistence, len(self.sources),
+            self.scale, self.scale_weight, self.bias_sd, self.bias_weight,
         )  # fmt: skip
         log += np.log(prior[rows, columns])
         mass = np.exp(log - log.max())

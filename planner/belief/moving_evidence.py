@@ -145,13 +145,33 @@ def _weigh(x, y, seen, speed, persistence, sources, scale, scale_weight, bias_sd
             bias_square[c, s] /= whole
 
 
-@entry
 def moving_evidence(
-    x, y, seen, speed, persistence, sources, scale, scale_weight, bias_sd, bias_weight, log, bias, bias_square
-):
+    x: FloatArray,
+    y: FloatArray,
+    seen: Sighted,
+    speed: float,
+    persistence: float,
+    sources: int,
+    scale: FloatArray,
+    scale_weight: FloatArray,
+    bias_sd: FloatArray,
+    bias_weight: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Of places x, y (c,) m: log (c,), and of each source the bias' first moments (c, sources), rad and rad^2.
 
     scale, scale_weight (k,): factors on the stated sigmas. bias_sd, bias_weight (t,): standard deviations, rad, that
     the sources' biases may have; all have the same.
     """
+    log, bias, square = np.empty(len(x)), np.empty((len(x), sources)), np.empty((len(x), sources))
+    _evidence(
+        np.ascontiguousarray(x), np.ascontiguousarray(y), seen, speed, persistence, sources,
+        scale, scale_weight, bias_sd, bias_weight, log, bias, square,
+    )  # fmt: skip
+    return log, bias, square
+
+
+@entry
+def _evidence(
+    x, y, seen, speed, persistence, sources, scale, scale_weight, bias_sd, bias_weight, log, bias, bias_square
+):
     _weigh(x, y, seen, speed, persistence, sources, scale, scale_weight, bias_sd, bias_weight, log, bias, bias_square)

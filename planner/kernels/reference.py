@@ -201,7 +201,8 @@ def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, h: fl
     if rules.blur > 0.0:
         distance2 = np.maximum(length2, h * h / 6.0)
         share = distance2 / (distance2 + rules.blur * h * h)
-    root = np.polynomial.polynomial.polyval(np.minimum(sin2 * share, rules.edge), rules.likelihood)
+    series = np.polynomial.Polynomial(rules.likelihood)
+    root = np.asarray(series(np.minimum(sin2 * share, rules.edge)), dtype=np.float64)
     return np.asarray(root**LIKELIHOOD_POWER * np.sqrt(share), dtype=np.float64)
 
 

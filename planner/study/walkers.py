@@ -6,6 +6,7 @@ is the walker's own. A drifter keeps its direction but for slow turns.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -48,5 +49,5 @@ class Walker:
 
 def walker(kind: Kind, start: FloatArray, speed: float, rng: np.random.Generator) -> Walker:
     """Of its kind, with a temper of its own."""
-    forgets = DRIFTS_S if kind == "drifter" else float(np.exp(rng.uniform(*np.log(FORGETS_S))))
+    forgets = DRIFTS_S if kind == "drifter" else math.exp(rng.uniform(math.log(FORGETS_S[0]), math.log(FORGETS_S[1])))
     return Walker(start, speed, forgets, rng)

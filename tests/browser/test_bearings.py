@@ -8,17 +8,19 @@ from uuid import uuid4
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Position, expect
 from screen import OpenScreen
 from served import Server
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
 
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True, "device_scale_factor": 2}
-LEFT, RIGHT, TOP = {"x": 70, "y": 250}, {"x": 290, "y": 250}, {"x": 180, "y": 90}
+LEFT: Position = {"x": 70, "y": 250}
+RIGHT: Position = {"x": 290, "y": 250}
+TOP: Position = {"x": 180, "y": 90}
 
 
-def hear(page: Page, stand: dict[str, int], towards: dict[str, int]) -> None:
+def hear(page: Page, stand: Position, towards: Position) -> None:
     """Tap where one stands, then where it comes from, then send."""
     page.get_by_test_id("report-mode-here").click()
     page.get_by_test_id("aim-map").click(position=stand)

@@ -49,4 +49,5 @@ def test_several_emitters_are_planned_for_with_it():
     spec = spec.model_copy(update={"emitters": [first, second]})
     tasks = [localization(spec, HOME, emitter.emitter_id) for emitter in spec.emitters]
     chosen = next_place_together([(task, ()) for task in tasks], (0.0, 0.0), 1, (), threads=1)
+    assert chosen.expected_time_s is not None
     assert chosen.expected_time_s > 2 * spec.sensor.measurement_time_s

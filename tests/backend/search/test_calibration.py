@@ -37,7 +37,7 @@ def test_sigma_offset_and_outliers_come_back() -> None:
     rng = np.random.default_rng(2)
     errors = rng.normal(6.0, 4.0, 60)
     places = rng.uniform([0.0, 0.0], [100.0, 100.0], (60, 2))
-    events = [seen_from(*place, error) for place, error in zip(places, errors, strict=True)]
+    events = [seen_from(x, y, error) for (x, y), error in zip(places, errors, strict=True)]
     wrong = [seen_from(10.0 * n, 0.0, 100.0) for n in range(3)]
     found = calibrate({"m": ("one", recorded(*events, *wrong, told()))}, "", "")
     assert found.suggested is not None

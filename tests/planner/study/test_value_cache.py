@@ -31,6 +31,11 @@ class Maker:
         return ProgramTable(key, after.astype(np.float32).astype(np.float64))
 
 
+def finished(worker: threading.Thread | None) -> None:
+    assert worker is not None
+    worker.join(60)
+
+
 def forget():
     value_table._kept.clear()
 
@@ -80,7 +85,7 @@ def test_a_disk_that_cannot_be_written_to_costs_nothing_but_time(monkeypatch, tm
 
 def test_preparing_waits_for_nobody_and_ends_with_the_table_kept():
     make = Maker()
-    value_cache.prepare(PROBLEM, make).join(60)
+    finished(value_cache.prepare(PROBLEM, make))
     assert program_for(PROBLEM) is not None
     assert make.made == [key_of(PROBLEM)]
     assert value_cache.prepare(PROBLEM, make) is None
@@ -90,7 +95,9 @@ def test_a_table_on_the_disk_is_at_hand_as_soon_as_it_is_asked_for():
     kept = value_cache.ensure(PROBLEM, Maker())
     forget()
     assert value_cache.prepare(PROBLEM, Maker()) is None
-    assert (program_for(PROBLEM).after == kept.after).all()
+    found = program_for(PROBLEM)
+    assert found is not None
+    assert (found.after == kept.after).all()
 
 
 def test_of_many_drafts_only_the_first_and_the_last_are_computed():
@@ -107,7 +114,7 @@ def test_of_many_drafts_only_the_first_and_the_last_are_computed():
     for draft in drafts[1:]:
         assert value_cache.prepare(draft, slow) is worker
     go_on.set()
-    worker.join(60)
+    finished(worker)
     assert make.made == [key_of(drafts[0]), key_of(drafts[-1])]
 
 
@@ -116,6 +123,6 @@ def test_a_table_that_cannot_be_computed_does_not_stop_the_next():
         raise MemoryError
 
     make = Maker()
-    value_cache.prepare(PROBLEM, broken).join(60)
-    value_cache.prepare(PROBLEM, make).join(60)
+    finished(value_cache.prepare(PROBLEM, broken))
+    finished(value_cache.prepare(PROBLEM, make))
     assert make.made == [key_of(PROBLEM)]
