@@ -52,12 +52,16 @@ def plain(path: Path, bearing_deg: float, seed: int) -> Path:
     return path
 
 
+PLACES = ((-120.0, 20.0), (130.0, 30.0), (0.0, 10.0), (-60.0, 180.0), (120.0, 170.0), (-40.0, 60.0))
+"""As many as a search needs that knows nothing of the compass, nor of outliers."""
+
+
 async def test_recordings_become_bearings_and_a_belief_of_a_draft(operator: Console, tmp_path: Path) -> None:
     home = Place(50.6234, 7.2046)
     frame, emitter = LocalFrame(home), (40.0, 110.0)
     mission_id = operator.mission_id
     answers = []
-    for k, (x, y) in enumerate(((-120.0, 20.0), (130.0, 30.0), (0.0, 10.0))):
+    for k, (x, y) in enumerate(PLACES):
         place = frame.to_geo(x, y)
         bearing = math.degrees(math.atan2(emitter[0] - x, emitter[1] - y)) % 360.0
         file = plain(tmp_path / f"turn{k}.csv", bearing, k)
@@ -68,15 +72,15 @@ async def test_recordings_become_bearings_and_a_belief_of_a_draft(operator: Cons
         assert answer.json()["sweeps"][0]["bearing_deg"] == pytest.approx(bearing, abs=3.0)
         assert [r["line"] for r in answer.json()["remarks"][:2]] == [92, 93]
     mission = (await operator.client.get(f"/api/missions/{mission_id}")).json()
-    assert (mission["phase"], mission["bearings"], mission["localized"]) == ("ready", 3, True)
+    assert (mission["phase"], mission["bearings"], mission["localized"]) == ("ready", len(PLACES), True)
     (estimate,) = [emitter["estimate"] for emitter in mission["found"]]
     found = frame.to_enu(Place(estimate["lat"], estimate["lon"]))
     assert math.dist(found, emitter) < 15.0
     told = await events(operator, mission_id)
     kinds = [e["event"]["kind"] for e in told]
     ours = kinds[kinds.index("recording_imported") :]
-    assert ours == ["recording_imported", "bearing_measured", "belief_updated"] * 3
-    await operator.until(lambda: len(operator.of("belief_updated")) == 3)
+    assert ours == ["recording_imported", "bearing_measured", "belief_updated"] * len(PLACES)
+    await operator.until(lambda: len(operator.of("belief_updated")) == len(PLACES))
     belief = await operator.client.get(f"/api/missions/{mission_id}/beliefs")
     assert belief.status_code == 200
     sweep_id = answers[1][2]["sweeps"][0]["sweep_id"]
