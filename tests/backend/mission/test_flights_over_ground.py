@@ -19,6 +19,7 @@ from backend.reasons import safety
 from backend.reasons.terrain import GroundNotKept
 from backend.spec import Place
 from backend.terrain import Terrain
+from hardware.readings import ReturnAltitude
 
 HILL = hill(0.0, 50.0, 35.0, 25.0)
 """In the middle of the field."""
@@ -57,6 +58,7 @@ async def over() -> AsyncIterator[Callable[[Terrain | None], Awaitable[tuple[Sta
     async def on_stage(found: Terrain | None) -> tuple[Stage, Shelf]:
         stage, shelf = Stage(), Shelf(found)
         stage.grounds = shelf
+        stage.vehicle.returns_at = ReturnAltitude("RTL_RETURN_ALT", 100.0)  # over every hill here
         stage.room = stage.new_room()
         made.append(stage)
         await stage.room.start_up()
@@ -126,6 +128,7 @@ async def test_before_the_return_the_vehicle_climbs_as_the_way_home_needs(over) 
 async def test_the_autopilots_own_return_begins_as_high_as_the_straight_way_needs(over) -> None:
     """It is what is left where our way cannot be flown: here the ground asks for more than the band allows."""
     stage, _ = await over(terrain(ridge, spacing_m=10.0))
+    stage.vehicle.returns_at = ReturnAltitude("RTL_RETURN_ALT", None)  # else the checklist says so
     mission_id = await flying(stage, "waiting", automatic=False, maximum_altitude_relative_m=60.0)
     stage.vehicle.state = replace(
         stage.vehicle.state, position=FRAME.to_geo(0.0, 99.0), altitude_amsl_m=110.0, altitude_relative_m=10.0
