@@ -1,5 +1,5 @@
 // Deutsch. Wörter der Arbeit, nie des Programms.
-import type { MessageKey } from "./en";
+import type { MessageKey } from ".";
 
 export const de: Record<MessageKey, string> = {
   "app.loading": "Die Konsole wird geladen …",

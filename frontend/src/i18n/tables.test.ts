@@ -1,7 +1,10 @@
 import { expect, it } from "vitest";
+import type { MessageKey } from ".";
 import { de } from "./de";
-import { en, type MessageKey } from "./en";
+import { en as bar } from "./en";
+import { pagesEn } from "./pages.en";
 
+const en: Record<MessageKey, string> = { ...bar, ...pagesEn };
 const places = (text: string) => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1]).toSorted();
 
 it("every translation has the same places to fill in", () => {

@@ -32,7 +32,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
     );
   };
   useEffect(() => {
-    replaces.value = true;
+    replaces.value = false;
     const kept = storedDraft(key);
     if (kept) update(kept);
     else load();

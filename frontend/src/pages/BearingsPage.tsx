@@ -13,6 +13,7 @@ import { me } from "../state/session";
 import { mission } from "../state/shown";
 import { formatBearing } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
+import "../style/report.css";
 
 /** Standard deviations of what a hand antenna tells, its compass included. */
 const SHARPNESS = { sharp: 8, usual: 12, vague: 25 } as const;

@@ -10,6 +10,7 @@ import { missionAddress } from "../state/route";
 import { settings } from "../state/settings";
 import { formatLength, formatNumber, signedDegrees } from "../units/quantities";
 import type { Problem } from "../wire";
+import "../style/review.css";
 
 type Share = Calibration["c95"];
 

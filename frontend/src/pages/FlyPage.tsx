@@ -15,6 +15,7 @@ import { Timeline } from "../panels/Timeline";
 import { TruthCard } from "../panels/TruthCard";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
+import "../style/review.css";
 
 const GAP_PX = 8;
 

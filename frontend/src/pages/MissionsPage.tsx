@@ -16,6 +16,7 @@ import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration } from "../units/quantities";
 import type { MissionSummary, Problem } from "../wire";
+import "../style/review.css";
 
 const REFRESH_MS = 5000;
 /** Until a name that is being typed is asked for. */

@@ -16,6 +16,7 @@ import { viewOf } from "../state/view";
 import { formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatClock, formatDuration, formatLength, formatNumber } from "../units/quantities";
 import type { Problem, Recorded } from "../wire";
+import "../style/review.css";
 
 interface Told {
   id: string;
@@ -165,7 +166,7 @@ export function ReportPage({ route }: { route: Extract<Route, { page: "report" }
     };
   }, [ids]);
   return (
-    <div class="report" data-testid="report" data-ready={told !== null}>
+    <div class="mission-report" data-testid="report" data-ready={told !== null}>
       <div class="no-print page-head">
         <span class="grow muted">{t("report.print")}</span>
         <button type="button" class="primary" data-testid="print" onClick={() => print()}>
