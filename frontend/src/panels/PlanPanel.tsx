@@ -243,6 +243,7 @@ export function PlanPanel() {
         </a>
       )}
       {cursor.value !== null && source.value?.keptByServer && <WhatIfPanel />}
+      {fact && fact.candidates.length > 0 && <CandidateTable plan={fact} />}
       {missionId && isLive && source.value?.keptByServer && (proposed || fact) && (
         <ProfileCard missionId={missionId} place={(proposed ?? fact!).place} />
       )}
@@ -260,7 +261,6 @@ export function PlanPanel() {
                 })}
             </span>
           </p>
-          {fact.candidates.length > 0 && <CandidateTable plan={fact} />}
           {isLive && !proposed && <p class="muted">{t("plan.dragHint")}</p>}
         </>
       )}

@@ -13,7 +13,7 @@ def test_every_file_that_decides_is_in_it_and_no_drawing():
     )
     assert all(PLANNER / name in deciding for name in named)
     assert PLANNER / "study/figures.py" not in deciding
-    assert {path.suffix for path in deciding if path.is_file()} == {".py", ".json"}
+    assert {path.suffix for path in deciding if path.is_file()} == {".py", ".json", ".npz"}
 
 
 def test_is_twelve_hex_digits_and_the_same_all_along():
