@@ -2967,7 +2967,7 @@ export interface components {
         /** @description value: as the autopilot has it; wanted: one that makes it act. */
         FailsafeParameter: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             value: number;
             wanted: number;
@@ -2988,7 +2988,7 @@ export interface components {
         };
         FailsafeUnread: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             wanted: number;
             /**
