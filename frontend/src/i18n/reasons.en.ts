@@ -1473,11 +1473,11 @@ export const reasonsEn: ReasonTable = {
     remedy: "Upload terrain for the whole fence, or remove the terrain: the ground then counts as level with home.",
   },
   clearance_short: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m:1} above the ground; {least_m:1} are needed.",
     remedy: "Choose another place, or allow more altitude above home.",
   },
   too_high_above_ground: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m:1} above the ground; {most_m:1} are allowed.",
     remedy: "Choose a nearer place: the ground falls away below one level way.",
   },
   area_empty: {
