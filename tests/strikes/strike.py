@@ -12,7 +12,7 @@ from typing import Literal
 from hardware.autopilot.vehicle import MavsdkVehicle
 from planner.reason import text_of
 from tests.strikes.pilot import Pilot, mode_of, reaching
-from tests.strikes.proxy import COMMAND_INT, COMMAND_LONG, Proxy
+from tests.strikes.proxy import COMMAND_INT, COMMAND_LONG, HEARTBEAT, Proxy
 
 Means = Literal["mode", "sticks"]
 Moment = Literal["crossing", "before", "under way"]
@@ -27,6 +27,8 @@ REPORT_S = 0.12
 """At most so long after a change the autopilot reports its mode (ten times a second)."""
 STICKS_S = 0.5
 READY_S = 120.0
+CRITICAL = 5
+"""MAV_STATE of a HEARTBEAT."""
 STALE_S = 0.15
 """A report of the mode that was under way inside the autopilot when the pilot took it may still be of before."""
 
@@ -38,7 +40,8 @@ class Outcome:
     took_s: until the autopilot said so; None: never, the switch did not take. back_to: the raw mode that undid it.
     told_s: until a report of that mode left the autopilot; None: none did. stalled_s: the longest that this process,
     with the program under test in it, did nothing at all meanwhile. held_up_s: by how much it delivered what the link
-    carries later than due, at most. known: what the program knew in the end.
+    carries later than due, at most. known: what the program knew in the end. failsafe: the autopilot said meanwhile
+    that a failsafe of its own acts.
     last_command_s: the last flight command that reached the vehicle, after the strike; 0 when none did.
     """
 
@@ -56,6 +59,7 @@ class Outcome:
     stalled_s: float = 0.0
     held_up_s: float = 0.0
     known: str = ""
+    failsafe: bool = False
 
     @property
     def counts(self) -> bool:
@@ -138,6 +142,10 @@ async def watch(
         stalled_s=stalled_s,
         held_up_s=proxy.held_up_s(),
         known=_known(vehicle),
+        failsafe=any(
+            passed.way == "from" and passed.number == HEARTBEAT and passed.fields.get("system_status") == CRITICAL
+            for passed in proxy.since(aim.at_s)
+        ),
     )
 
 

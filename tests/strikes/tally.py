@@ -35,9 +35,10 @@ def line(outcome: Outcome, flown: int) -> str:
 def _told(outcome: Outcome) -> str:
     """Why it was undone or noticed late: what the autopilot told, how long this process stood still, what we knew."""
     told = "the autopilot never told its mode" if outcome.told_s is None else f"told after {outcome.told_s:.2f} s"
+    failsafe = ", a failsafe of its own acted" if outcome.failsafe else ""
     return (
-        f"{told}, this process stood still for {outcome.stalled_s:.2f} s and delivered {outcome.held_up_s:.2f} s late "
-        f"at most, in the end: {outcome.known}"
+        f"{told}{failsafe}, this process stood still for {outcome.stalled_s:.2f} s and delivered "
+        f"{outcome.held_up_s:.2f} s late at most, in the end: {outcome.known}"
     )
 
 
