@@ -7,7 +7,7 @@ const LAYERS = ["relief-shade", "relief-lines", "relief-heights"] as const;
 
 const TILES = "/api/terrain/tiles/{z}/{x}/{y}";
 const [LOWEST_ZOOM, HIGHEST_ZOOM] = [8, 15];
-const SHADE = 0.35;
+const SHADE = 0.5;
 
 /** Adds nothing while no terrain is on the server. `below`: the lowest layer that stays above it. */
 export async function addRelief(map: GlMap, colours: Palette, below: string): Promise<void> {
