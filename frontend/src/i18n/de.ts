@@ -277,7 +277,7 @@ export const de: Record<MessageKey, string> = {
   "estimate.source.named": "Kompass, {name}",
   "estimate.source.import": "Kompass der Aufzeichnung",
   "estimate.bias": "{bias}° ± {error}°",
-  "estimate.biasUsed": "im Uhrzeigersinn, abgezogen; Fehler {scale} × Angabe",
+  "estimate.biasUsed": "abgezogen; Fehler {scale} × Angabe",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Peilung",

@@ -182,7 +182,7 @@ export const en = {
   "estimate.source.named": "compass, {name}",
   "estimate.source.import": "compass of the recording",
   "estimate.bias": "{bias}° ± {error}°",
-  "estimate.biasUsed": "clockwise, taken off; errors {scale} × as stated",
+  "estimate.biasUsed": "taken off; errors {scale} × stated",
   "estimate.axes": "{major} × {minor}, {bearing}",
 
   "sweep.title": "Bearing",
