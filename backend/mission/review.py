@@ -1,4 +1,4 @@
-"""After the flight: what is told of an emitter, a mission's labels, its deletion. Facts like all others."""
+"""After the flight: the ground truth of an emitter, a mission's labels, its deletion. Facts like all others."""
 
 from __future__ import annotations
 
