@@ -1752,6 +1752,7 @@ export interface components {
          *     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
          *     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
          *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+         *     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
          *     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
          *     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
          *     given nothing back.
@@ -1774,6 +1775,8 @@ export interface components {
             given_back: boolean;
             /** @default false */
             perhaps_failsafe: boolean;
+            /** @default false */
+            failsafe_landed: boolean;
             /** @default [] */
             under_way: number[];
             /** @default false */
@@ -2967,7 +2970,7 @@ export interface components {
         /** @description value: as the autopilot has it; wanted: one that makes it act. */
         FailsafeParameter: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             value: number;
             wanted: number;
@@ -2988,7 +2991,7 @@ export interface components {
         };
         FailsafeUnread: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             wanted: number;
             /**
