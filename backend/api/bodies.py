@@ -13,6 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from backend.api.problems import ApiProblem, respond
+from backend.live.connections import spread
 from backend.reasons import request as reasons
 from backend.wire.problem import Problem, problem
 
@@ -39,7 +40,7 @@ MOST_FIELDS = 2_000
 MOST_ITEMS = 20_000
 LET_PASS_BYTES = 64 * 2**20
 STALL_S = 20.0
-"""So long a body may stand still."""
+"""So long a body may stand still, at least."""
 
 
 def most_bytes(path: str) -> int | None:
@@ -152,7 +153,7 @@ def _bounded(scope: Scope, receive: Receive) -> Receive:
         if not more:
             return await receive()  # whether the caller is still there
         try:
-            async with asyncio.timeout(STALL_S):
+            async with asyncio.timeout(spread(STALL_S)):
                 message = await receive()
         except TimeoutError:
             raise ApiProblem(408, reasons.BodyTooSlow(STALL_S), headers={"connection": "close"}) from None
