@@ -8,17 +8,16 @@
 scale: share of the full effort. Figures that count effort itself (kills, requests, minutes) are wanted in this share,
 and marked so; everything else is wanted as it is. only: the steps whose name has one of these words.
 
-Beside each step stands what other programs took of the machine meanwhile. A missed time with a busy machine is no
-verdict on the server, and is marked so: measure it again when the machine is idle. A fact that was lost is a defect at
-any load. Ends with status 1 when a figure is missed or was not measured or a benchmark failed, with 3 when nothing but
-times on a busy machine was missed.
+Beside each step stands what other programs took of the machine before or after it. A missed time on a busy machine is
+no verdict on the server, and is marked so: measure it again when the machine is idle. A fact that was lost is a defect
+at any load. Ends with status 1 when a figure is missed or was not measured or a benchmark failed, with 3 when nothing
+but times on a busy machine was missed.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -40,6 +39,7 @@ TIMES = frozenset({"ms", "s"})
 """Units of what a busy machine makes worse."""
 BUSY_SHARE = 0.25
 """Of all cores, taken by other programs: above it, a time that is missed says nothing."""
+LOOK_S = 2.0
 SHORT_SCALE = 0.004
 DEFECT, UNDECIDED = 1, 3
 """Exit statuses."""
@@ -60,8 +60,8 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ran:
-    """How a step went. status: of its process; None: it hung and was ended. others_share: of all cores, taken by
-    programs that it did not start."""
+    """How a step went. status: of its process; None: it hung and was ended. others_share: of all cores, taken
+    by other programs, before or after it, whichever is more."""
 
     status: int | None
     seconds: float
@@ -156,7 +156,7 @@ SHORT_WITHIN_S = 600.0
 
 def run(step: Step, log: Path) -> Ran:
     """Its output goes to a file, and its own processes end with it."""
-    began, busy_s = time.monotonic(), _busy_s()
+    others_share, began = _busy_share(), time.monotonic()
     with log.open("wb") as said:
         process = subprocess.Popen(
             [sys.executable, "-m", *step.command],
@@ -165,7 +165,6 @@ def run(step: Step, log: Path) -> Ran:
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
-        own_s = _children_s()
         try:
             status: int | None = process.wait(step.within_s)
         except subprocess.TimeoutExpired:
@@ -175,22 +174,13 @@ def run(step: Step, log: Path) -> Ran:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
     seconds = time.monotonic() - began
-    others_s = (_busy_s() - busy_s) - (_children_s() - own_s)
-    return Ran(
-        status, seconds, max(0.0, others_s) / seconds / (psutil.cpu_count() or 1), log.read_text(errors="replace")
-    )
+    return Ran(status, seconds, max(others_share, _busy_share()), log.read_text(errors="replace"))
 
 
-def _busy_s() -> float:
-    """Of all cores, since the machine started; not what merely waits for a disk."""
-    times = psutil.cpu_times()
-    return sum(times) - times.idle - getattr(times, "iowait", 0.0) - getattr(times, "guest", 0.0)
-
-
-def _children_s() -> float:
-    """Of the processes that have ended: a step's, once it has."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+def _busy_share() -> float:
+    """Of all cores, now: a step's own processes cannot be told from others while it runs, since it kills some of them,
+    and the system counts those for nobody."""
+    return psutil.cpu_percent(LOOK_S) / 100.0
 
 
 @dataclass(frozen=True, slots=True)

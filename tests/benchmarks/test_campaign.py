@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from tests.benchmarks import campaign
 from tests.benchmarks.campaign import Ran, Step, of_failures, run, verdicts
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.reader import read_all
@@ -48,7 +49,8 @@ def test_a_benchmark_that_fails_is_a_defect_unless_its_figure_says_why(tmp_path)
     assert not of_failures([(step, Ran(0, 9.0, 0.0, ""))], met)
 
 
-def test_a_step_that_hangs_is_ended_with_all_that_it_started(tmp_path):
+def test_a_step_that_hangs_is_ended_with_all_that_it_started(tmp_path, monkeypatch):
+    monkeypatch.setattr(campaign, "LOOK_S", 0.05)
     child = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import time; time.sleep(600)'])"
     (tmp_path / "hangs.py").write_text(child)
     hangs = Step("hangs", ("hangs",), environment={"PYTHONPATH": str(tmp_path)}, within_s=0.5)
