@@ -210,7 +210,7 @@ class FieldStudy:
             for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
                 plan = self._turn(belief, measured, here, attempt)
                 swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
-                found, turned, looks = self._measured(field, here, sweeps, plan)
+                found, turned, looks = self.measured(field, here, sweeps, plan)
                 spent_s = turned / rate + (looks - 1) * LOOK_S + SETTLE_S
                 time_s += max(swing_s - flown_s, 0.0) + spent_s
                 turned_deg += turned + swing_s * rate
@@ -263,10 +263,10 @@ class FieldStudy:
             return whole_turn(because or "first")
         return planned_turn(expected_here(self.task, belief, measured, here))
 
-    def _measured(
+    def measured(
         self, field: Field, here: tuple[float, float], number: int, plan: TurnPlan
     ) -> tuple[BearingMeasured | None, float, int]:
-        """(the bearing, degrees turned, looks)."""
+        """(the bearing, degrees turned, looks) of one sweep. here: m ENU. number: of all sweeps of the mission."""
         offset = self.pattern.offset_to_nose_deg
         start = None if plan.begin_deg is None else plan.begin_deg - offset
         whole = field.sweep(*here, number, self.options.turn_rate_deg_s, start)

@@ -46,7 +46,7 @@ class Turned:
 
     def as_turned(self, sweep: Sweep) -> Sweep:
         """With what the direction finder must know of the turn."""
-        return replace(sweep, partial=self.turn is not None and self.turn.turned_deg < CIRCLE_DEG - TOLERANCE_DEG)
+        return replace(sweep, partial=self.turn is not None and self.turn.partial)
 
 
 async def turn_as_planned(

@@ -11,6 +11,8 @@ from backend.events.fact import Fact, Known
 from backend.reasons import Reason
 from backend.spec import Id, Place
 
+WHOLE_DEG = 355.0
+
 
 class AntennaFact(Fact):
     """relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
@@ -70,6 +72,11 @@ class TurnFact(Fact):
     planned_because: Reason
     went_on_because: list[Reason]
     stopped_because: Reason
+
+    @property
+    def partial(self) -> bool:
+        """Whether it left a part of the circle out; a vehicle stops a few degrees short of a whole one."""
+        return self.turned_deg < WHOLE_DEG
 
 
 class SweepRejected(Fact):

@@ -21,6 +21,7 @@ from typing import Literal
 import numpy as np
 
 from backend.events import BearingMeasured, TurnFact
+from backend.events.bearings import WHOLE_DEG
 from backend.reasons import carried
 from backend.reasons.turning import (
     BearingUncertain,
@@ -60,7 +61,7 @@ SURE_QUALITY = 0.8
 SURE_SIGMA_DEG = 3.5
 """Of a sweep alone: a whole turn's is seldom more, and another place costs more than the rest of the circle."""
 MOST_ELSEWHERE = 0.1
-TOLERANCE_DEG = 5.0
+TOLERANCE_DEG = CIRCLE_DEG - WHOLE_DEG
 """A vehicle stops this much short of what it was asked to turn."""
 
 WholeBecause = Literal["first", "again", "unsure", "wide", "several", "pulsed", "second_place"]
