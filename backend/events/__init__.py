@@ -33,6 +33,7 @@ from backend.events.bearings import (
     PersonSource,
     RecordingImported,
     SweepRejected,
+    TurnFact,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
@@ -158,6 +159,7 @@ __all__ = [
     "TookOff",
     "Topic",
     "TruthNoted",
+    "TurnFact",
 ]
 
 FORM = 2

@@ -188,6 +188,8 @@ export const en = {
   "sweep.title": "Bearing",
   "sweep.none": "No sweep yet. While the vehicle turns, received power is drawn here against heading.",
   "sweep.running": "Turning: {turned}° of 360°",
+  "sweep.runningSector": "Turning: {turned}° of a sector of {goal}°",
+  "sweep.turnedSector": "Turned {turned}° from {begin}",
   "sweep.place": "Place {number}",
   "sweep.attempt": "attempt {attempt}",
   "sweep.rejected": "Rejected: {reason}",

@@ -294,6 +294,8 @@ export const pagesEn = {
   "edit.turnRate": "Turn rate",
   "edit.quality": "Least quality of a sweep",
   "edit.retakes": "Take again at most",
+  "edit.sectorTurns": "turn only as far as the bearing needs",
+  "edit.wholeTurns": "places with a whole turn first",
   "edit.bearingErrors": "errors of bearings",
   "edit.bearingErrors.joint": "a common bias is estimated",
   "edit.bearingErrors.independent": "each has its own",

@@ -1667,6 +1667,42 @@ export const reasonsEn: ReasonTable = {
     text: "The terrain could not be stored with the mission: {detail}.",
     remedy: "Make room on the disk, then start again.",
   },
+  whole_turn: {
+    text: "A whole turn: {because?first=nothing was heard here or elsewhere before|again=the sweep before gave no bearing|unsure=the bearings so far contradict each other|wide=the emitter may be in almost any direction|several=several emitters are listened to|pulsed=a tag's pulses need every heading|second_place=the first places of this search hear all directions}.",
+    remedy: "",
+  },
+  sector_expected: {
+    text: "A sector of {width_deg}: it holds {share_percent} of the directions expected from here, and a margin.",
+    remedy: "",
+  },
+  maximum_seen: {
+    text: "Stopped after {turned_deg}: the maximum lies {inside_deg} within it, and another direction has a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  whole_circle_seen: {
+    text: "Stopped after the whole circle.",
+    remedy: "",
+  },
+  maximum_at_edge: {
+    text: "Turned {by_deg} further: the maximum lay at the sector's {edge?beginning=beginning|end=end}.",
+    remedy: "",
+  },
+  quality_poor: {
+    text: "Turned {by_deg} further: what was heard resembled the antenna's pattern by {quality:2} only.",
+    remedy: "",
+  },
+  elsewhere_possible: {
+    text: "Turned {by_deg} further: a direction not yet heard had a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  bearing_uncertain: {
+    text: "Turned {by_deg} further: the bearing was still uncertain by {sigma_deg:1}.",
+    remedy: "",
+  },
+  nothing_found_yet: {
+    text: "Turned {by_deg} further: what was heard gave no bearing yet.",
+    remedy: "",
+  },
   file_too_heavy: {
     text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",
     remedy: "Simplify it or divide it, and upload the parts.",
