@@ -3,9 +3,11 @@
 Where a bearing is a main peak and a sigma, a sweep says more: several peaks, a skew, directions of which it knows
 nothing. A scale s of the sensor's sigma, which a joint belief estimates, makes of the density p
 
-    p_s(phi) ~ p(phi)^(1 / s^2),
+    p_s ~ p^(1 / s^2)                            for s <= 1
+    p_s = p * N(0, (s^2 - 1) sigma_p^2)          for s > 1, convolved; sigma_p the width of its highest peak
 
-which is N(., (s sigma)^2) of a normal p, and leaves a flat one flat.
+Both make N(., (s sigma)^2) of a normal p and leave a flat one flat. A power below 1 would raise the flat foot that
+every sweep has, as if wider errors were more outliers: there is a rate of these besides.
 """
 
 from __future__ import annotations
@@ -37,8 +39,13 @@ def width(density: FloatArray) -> float:
 
 def scaled(density: FloatArray, scale: FloatArray) -> FloatArray:
     """(k, m): p_s for each of the (k,) scales, normalized like `density` (m,)."""
-    relative = density / density.max()
-    return np.array([_normalized(relative ** (1.0 / s**2)) for s in scale])
+    relative, sigma = density / density.max(), width(density)
+    return np.array(
+        [
+            _normalized(relative ** (1.0 / s**2)) if s <= 1.0 else _blurred(density, sigma * math.sqrt(s**2 - 1.0))
+            for s in scale
+        ]
+    )
 
 
 def at(density: FloatArray, angle: FloatArray) -> FloatArray:
