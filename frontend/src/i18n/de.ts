@@ -696,6 +696,9 @@ export const de: Record<MessageKey, string> = {
   "edit.bearingErrors": "Fehler der Peilungen",
   "edit.bearingErrors.joint": "gemeinsame Verdrehung wird geschätzt",
   "edit.bearingErrors.independent": "jede hat ihren eigenen",
+  "edit.sweepEvidence": "von einer Drehung (gemeinsame Verdrehung)",
+  "edit.sweepEvidence.peak": "zählen Peilung und Sigma",
+  "edit.sweepEvidence.whole": "zählen alle Richtungen",
   "edit.method": "Verfahren",
   "edit.method.rollout": "Policy Rollout",
   "edit.method.base_policy": "nur Grundregel",
@@ -742,6 +745,7 @@ export const de: Record<MessageKey, string> = {
   "compass.title": "Kompass und Antenne",
   "compass.unknown": "Noch nichts gelernt. Die ersten Flüge dauern länger, bis ihre Peilungen gezeigt haben, wie gut er ist.",
   "compass.bias": "Kompass {bias}° ± {spread}° mit „{antenna}“; gelernt aus Flügen: {flights} (Peilungen: {bearings})",
+  "compass.places": "Flüge, die am Fundort des Senders gemessen wurden: {places}",
   "compass.expects":
     "Die nächste Suche erwartet bis zu {bias}° Verdrehung, Fehler vom {scale}-Fachen der Angabe und {outliers} % falsche Peilungen.",
   "compass.forget": "Gelerntes vergessen",

@@ -396,6 +396,7 @@ export const en = {
   "compass.title": "Compass and antenna",
   "compass.unknown": "Nothing learned yet. Its first flights take longer, until their bearings have shown how good it is.",
   "compass.bias": "Compass {bias}° ± {spread}° with “{antenna}”; flights learned from: {flights} (bearings: {bearings})",
+  "compass.places": "Flights judged by the place where the emitter was found: {places}",
   "compass.expects": "The next search expects a turn of up to {bias}°, errors {scale} × as stated and {outliers} % wrong bearings.",
   "compass.forget": "Forget what was learned",
   "compass.forget.why": "After a calibration, or when the antenna was mounted again.",

@@ -139,7 +139,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   unusable_bearing: {
-    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak}.",
+    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak|profile=a finite likelihood in at least eight directions}.",
     remedy: "",
   },
   unusable_flights: {
