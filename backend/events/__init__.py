@@ -25,6 +25,7 @@ from backend.events.alerts import (
 from backend.events.bearings import (
     AntennaFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BearingSource,
     CraftSource,
@@ -32,6 +33,7 @@ from backend.events.bearings import (
     Peak,
     PersonSource,
     RecordingImported,
+    SourceMuteChanged,
     SweepRejected,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
@@ -97,6 +99,7 @@ __all__ = [
     "BatteryCountdownStarted",
     "BatteryCountdownStopped",
     "BearingExcluded",
+    "BearingIncluded",
     "BearingMeasured",
     "BearingSource",
     "BeliefUpdated",
@@ -153,6 +156,7 @@ __all__ = [
     "SafetyVetoed",
     "ServerRestarted",
     "SourceErrorsFact",
+    "SourceMuteChanged",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
@@ -186,6 +190,8 @@ Event = Annotated[
     | BearingMeasured
     | RecordingImported
     | BearingExcluded
+    | BearingIncluded
+    | SourceMuteChanged
     | BeliefUpdated
     | HoldOrdered
     | ResumeOrdered
