@@ -1252,6 +1252,22 @@ export const reasonsEn: ReasonTable = {
     text: "The bearing is excluded already.",
     remedy: "",
   },
+  bearing_counts_already: {
+    text: "The bearing was not left out.",
+    remedy: "",
+  },
+  left_out_by_another: {
+    text: "{by} left it out.",
+    remedy: "Ask {by}, or whoever controls the search, to count it again.",
+  },
+  no_such_source: {
+    text: "No bearing of this search comes from there.",
+    remedy: "Reload the page.",
+  },
+  muted_already: {
+    text: "The source is {muted?true=muted already|false=not muted}.",
+    remedy: "",
+  },
   no_such_alert: {
     text: "There is no such open alert.",
     remedy: "It may have cleared by itself.",
