@@ -123,6 +123,7 @@ ENDPOINTS: Mapping[str, Need] = {
     "GET /api/missions/{mission_id}/antenna": WATCH,
     "GET /api/missions/{mission_id}/profile": WATCH,
     "POST /api/recordings/read": WATCH,
+    "POST /api/bundles": PLAN,
     # maps and terrain
     "GET /api/maps": WATCH,
     "POST /api/maps": PLAN,

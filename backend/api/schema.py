@@ -16,6 +16,7 @@ from pydantic import JsonValue
 
 from backend.api import (
     advice,
+    bundles,
     compass,
     crafts,
     entering,
@@ -56,6 +57,7 @@ ROUTERS = (
     review.router,
     library.router,
     read_export.router,
+    bundles.router,
     planning.router,
     advice.router,
     maps.router,

@@ -78,7 +78,7 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
-from backend.events.review import MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
+from backend.events.review import MissionBroughtIn, MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
 from backend.spec import Model
 
 __all__ = [
@@ -122,6 +122,7 @@ __all__ = [
     "Link",
     "LinkLost",
     "LinkRestored",
+    "MissionBroughtIn",
     "MissionDeleted",
     "MissionDrafted",
     "MissionEdited",
@@ -215,7 +216,8 @@ Event = Annotated[
     | TruthNoted
     | MissionLabelled
     | MissionDeleted
-    | MissionRestored,
+    | MissionRestored
+    | MissionBroughtIn,
     Field(discriminator="kind"),
 ]
 

@@ -38,6 +38,17 @@ class MissionLabelled(Fact):
     by: str
 
 
+class MissionBroughtIn(Fact):
+    """All facts before this one are of another installation, brought in with a bundle.
+
+    software: that wrote the bundle, "" when it named none.
+    """
+
+    kind: Literal["mission_brought_in"] = "mission_brought_in"
+    software: Annotated[str, StringConstraints(max_length=80)]
+    by: str
+
+
 class MissionDeleted(Fact):
     """Out of the list; everything of it is kept for some days more."""
 

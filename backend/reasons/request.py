@@ -226,6 +226,29 @@ class ExportUnreadable:
 
 
 @dataclass(frozen=True, slots=True)
+class BundleUnreadable:
+    """What was sent cannot be brought in as a mission. name: of the file in it that is wrong, "" for the whole."""
+
+    fault: Literal["not_zip", "foreign", "too_large", "damaged", "not_exported", "later", "under_way", "differs"]
+    name: str
+    code: Literal["bundle_unreadable"] = "bundle_unreadable"
+    english: ClassVar[Words] = Words(
+        "{fault?not_zip=This is not a zip file"
+        "|foreign=The bundle has a file in it that Crossfix does not write: {name}"
+        "|too_large=The files in the bundle are larger than those of any mission"
+        "|damaged=The file {name} in the bundle is damaged"
+        "|not_exported=The file {name} in the bundle is not one that Crossfix exported"
+        "|later=A later Crossfix wrote this bundle"
+        "|under_way=The mission was still under way when the bundle was written"
+        "|differs=This installation has the same mission with other facts}.",
+        "{fault?later=Open it with that Crossfix."
+        "|under_way=Export it again after it has ended."
+        "|differs=Nothing was changed. Open the mission that is here."
+        "|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class UploadBrokeOff:
     code: Literal["upload_broke_off"] = "upload_broke_off"
     english: ClassVar[Words] = Words("The upload broke off; nothing was kept.", "Upload the file again.")
@@ -293,6 +316,7 @@ RequestReason = (
     | TooManyFiles
     | TwoRecordings
     | ExportUnreadable
+    | BundleUnreadable
     | UploadBrokeOff
     | NoPayloadExpected
     | UnknownToken

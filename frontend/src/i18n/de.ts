@@ -569,6 +569,8 @@ export const de: Record<MessageKey, string> = {
   "missions.rejected": "{count} verworfen",
   "missions.search": "Mission suchen",
   "missions.openFile": "Aufzeichnung öffnen …",
+  "missions.bringIn": "Bündel hereinholen …",
+  "missions.bringingIn": "Wird hereingeholt: {percent} %",
   "missions.recordingBroken": "{name} ist keine Aufzeichnung: {reason}",
 
   "phase.draft": "Entwurf",
@@ -1048,5 +1050,6 @@ export const de: Record<MessageKey, string> = {
   "event.truth_nowhere": "Gesucht und nicht gefunden, sagt {by}",
   "event.mission_labelled": "Beschriftung geändert von {by}",
   "event.mission_deleted": "Gelöscht von {by}",
+  "event.mission_brought_in": "Aus einer anderen Installation geholt von {by}",
   "event.mission_restored": "Zurückgeholt von {by}",
 };

@@ -195,6 +195,8 @@ export const pagesEn = {
   "missions.rejected": "{count} rejected",
   "missions.search": "Find a mission",
   "missions.openFile": "Open a recording …",
+  "missions.bringIn": "Bring in a bundle …",
+  "missions.bringingIn": "Bringing it in: {percent} %",
   "missions.recordingBroken": "{name} is not a recording: {reason}",
 
   "edit.titleNew": "New mission",

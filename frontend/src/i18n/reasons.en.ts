@@ -1372,6 +1372,11 @@ export const reasonsEn: ReasonTable = {
     text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
   },
+  bundle_unreadable: {
+    text: "{fault?not_zip=This is not a zip file|foreign=The bundle has a file in it that Crossfix does not write: {name}|too_large=The files in the bundle are larger than those of any mission|damaged=The file {name} in the bundle is damaged|not_exported=The file {name} in the bundle is not one that Crossfix exported|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
+    remedy:
+      "{fault?later=Open it with that Crossfix.|under_way=Export it again after it has ended.|differs=Nothing was changed. Open the mission that is here.|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+  },
   upload_broke_off: {
     text: "The upload broke off; nothing was kept.",
     remedy: "Upload the file again.",
