@@ -38,7 +38,7 @@ async def bring_in_bundle(
     try:
         new = await services.journal.bring_in(brought, principal.name)
     except JournalConflict as conflict:
-        raise ApiProblem(409, BundleUnreadable("differs", "")) from conflict
+        raise ApiProblem(409, BundleUnreadable("differs")) from conflict
     if not new:
         response.status_code = 200
     return MissionBrought(

@@ -78,7 +78,16 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
-from backend.events.review import MissionBroughtIn, MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
+from backend.events.review import (
+    MissionBroughtIn,
+    MissionDeleted,
+    MissionLabelled,
+    MissionRestored,
+    Supposition,
+    TruthNoted,
+    VariantDropped,
+    VariantKept,
+)
 from backend.spec import Model
 
 __all__ = [
@@ -154,17 +163,20 @@ __all__ = [
     "SafetyVetoed",
     "ServerRestarted",
     "SourceErrorsFact",
+    "Supposition",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
     "Topic",
     "TruthNoted",
+    "VariantDropped",
+    "VariantKept",
 ]
 
 FORM = 2
 """Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
 
-ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored
+ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
 
 Event = Annotated[
     MissionDrafted
@@ -217,7 +229,9 @@ Event = Annotated[
     | MissionLabelled
     | MissionDeleted
     | MissionRestored
-    | MissionBroughtIn,
+    | MissionBroughtIn
+    | VariantKept
+    | VariantDropped,
     Field(discriminator="kind"),
 ]
 

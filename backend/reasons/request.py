@@ -227,17 +227,13 @@ class ExportUnreadable:
 
 @dataclass(frozen=True, slots=True)
 class BundleUnreadable:
-    """What was sent cannot be brought in as a mission. name: of the file in it that is wrong, "" for the whole."""
+    """What was sent cannot be brought in as a mission."""
 
-    fault: Literal["not_zip", "foreign", "too_large", "damaged", "not_exported", "later", "under_way", "differs"]
-    name: str
+    fault: Literal["not_zip", "too_large", "later", "under_way", "differs"]
     code: Literal["bundle_unreadable"] = "bundle_unreadable"
     english: ClassVar[Words] = Words(
         "{fault?not_zip=This is not a zip file"
-        "|foreign=The bundle has a file in it that Crossfix does not write: {name}"
         "|too_large=The files in the bundle are larger than those of any mission"
-        "|damaged=The file {name} in the bundle is damaged"
-        "|not_exported=The file {name} in the bundle is not one that Crossfix exported"
         "|later=A later Crossfix wrote this bundle"
         "|under_way=The mission was still under way when the bundle was written"
         "|differs=This installation has the same mission with other facts}.",
@@ -245,6 +241,20 @@ class BundleUnreadable:
         "|under_way=Export it again after it has ended."
         "|differs=Nothing was changed. Open the mission that is here."
         "|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BundleFileWrong:
+    """name: of the file in the bundle that cannot be brought in, and the whole bundle with it."""
+
+    fault: Literal["foreign", "damaged", "not_exported"]
+    name: str
+    code: Literal["bundle_file_wrong"] = "bundle_file_wrong"
+    english: ClassVar[Words] = Words(
+        "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged"
+        "|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+        "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
     )
 
 
@@ -317,6 +327,7 @@ RequestReason = (
     | TwoRecordings
     | ExportUnreadable
     | BundleUnreadable
+    | BundleFileWrong
     | UploadBrokeOff
     | NoPayloadExpected
     | UnknownToken

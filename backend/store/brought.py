@@ -23,7 +23,7 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 from backend.events import FORM, MissionBroughtIn, Recorded
 from backend.mission.state import fold as fold_mission
 from backend.ports import JournalUnavailable, TrackPoint
-from backend.reasons.request import BundleUnreadable
+from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.reasons.storage import DatabaseSilent
 from backend.store.digest import MissionDigest, fold, to_columns
 from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
@@ -53,20 +53,23 @@ AT_ONCE = 500
 SWEEP = TypeAdapter(SweepEntry)
 TRACK = TypeAdapter(TrackEntry)
 
-Fault = Literal["not_zip", "foreign", "too_large", "damaged", "not_exported", "later", "under_way", "differs"]
+Whole = Literal["not_zip", "too_large", "later", "under_way"]
+InFile = Literal["foreign", "damaged", "not_exported"]
 
 
 class BundleRefused(ReasonedError):
     """It is no bundle that can be brought in."""
 
-    def __init__(self, fault: Fault, name: str = "") -> None:
-        super().__init__(BundleUnreadable(fault, name[:80]))
+    def __init__(self, reason: BundleUnreadable | BundleFileWrong) -> None:
+        super().__init__(reason)
 
-    def __reduce__(self) -> tuple[type[BundleRefused], tuple[Fault, str]]:
-        """From the worker to the server."""
-        told = self.reason
-        assert isinstance(told, BundleUnreadable)
-        return BundleRefused, (told.fault, told.name)
+
+def _refused(fault: Whole) -> BundleRefused:
+    return BundleRefused(BundleUnreadable(fault))
+
+
+def _wrong(fault: InFile, name: str) -> BundleRefused:
+    return BundleRefused(BundleFileWrong(fault, name[:80]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,15 +110,15 @@ def read_bundle(content: bytes) -> Brought:
     if TRACKS not in files:
         tracks = _thin_tracks(paths, mission_id)
     if sum(len(track.points) for track in tracks) > MOST_POINTS:
-        raise BundleRefused("too_large")
+        raise _refused("too_large")
     try:
         fold_mission(recorded)
         digest = fold(None, recorded)
         rows = tuple(to_row(record.seq, record.at_utc, record.event) for record in recorded)
     except (ValueError, LookupError, TypeError, OverflowError, ArithmeticError, AssertionError) as error:
-        raise BundleRefused("not_exported", JOURNAL) from error
+        raise _wrong("not_exported", JOURNAL) from error
     if digest.unfinished:
-        raise BundleRefused("under_way")
+        raise _refused("under_way")
     return Brought(mission_id, rows, digest, sweeps, tracks, software)
 
 
@@ -127,17 +130,17 @@ def _unpacked(content: bytes) -> dict[str, bytes]:
             names = [entry.filename for entry in entries]
             for name in names:
                 if name not in READ | BESIDE:
-                    raise BundleRefused("foreign", _spoken(name))
+                    raise _wrong("foreign", _spoken(name))
             if len(names) != len(set(names)) or len(names) > MOST_FILES:
-                raise BundleRefused("damaged", _spoken(names[-1]))
+                raise _wrong("damaged", _spoken(names[-1]))
             wanted = [entry for entry in entries if entry.filename in READ]
             if sum(entry.file_size for entry in wanted) > MOST_BYTES:
-                raise BundleRefused("too_large")
+                raise _refused("too_large")
             if JOURNAL not in names:
-                raise BundleRefused("not_exported", JOURNAL)
+                raise _wrong("not_exported", JOURNAL)
             return {entry.filename: _read(archive, entry) for entry in wanted}
     except zipfile.BadZipFile as error:
-        raise BundleRefused("not_zip") from error
+        raise _refused("not_zip") from error
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
@@ -146,7 +149,7 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         with archive.open(entry) as stream:
             return stream.read(MOST_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError) as error:
-        raise BundleRefused("damaged", entry.filename) from error
+        raise _wrong("damaged", entry.filename) from error
 
 
 def _spoken(name: str) -> str:
@@ -159,9 +162,9 @@ def _software(manifest: bytes | None) -> str:
         return ""
     told = _parsed(manifest, MANIFEST)
     if not isinstance(told, dict) or told.get("schema") != SCHEMA or not isinstance(told.get("version"), int):
-        raise BundleRefused("not_exported", MANIFEST)
+        raise _wrong("not_exported", MANIFEST)
     if told["version"] > SCHEMA_VERSION:
-        raise BundleRefused("later")
+        raise _refused("later")
     software = told.get("software", "")
     return _spoken(software)[:80] if isinstance(software, str) else ""
 
@@ -170,7 +173,7 @@ def _parsed(text: bytes, name: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise BundleRefused("damaged", name) from error
+        raise _wrong("damaged", name) from error
 
 
 def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
@@ -179,15 +182,15 @@ def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
         today = export_of_today(exported)
         recorded = RECORDED.validate_python(today["events"])
     except ExportedLater as error:
-        raise BundleRefused("later") from error
+        raise _refused("later") from error
     except (NotExported, ValidationError, RecursionError) as error:
-        raise BundleRefused("not_exported", JOURNAL) from error
+        raise _wrong("not_exported", JOURNAL) from error
     mission_id = today["mission_id"]
     if len(recorded) > MOST_EVENTS:
-        raise BundleRefused("too_large")
+        raise _refused("too_large")
     in_order = all(r.seq == seq and r.mission_id == mission_id for seq, r in enumerate(recorded, start=1))
     if not in_order or not _is_id(mission_id) or any(r.at_utc.tzinfo is None for r in recorded):
-        raise BundleRefused("not_exported", JOURNAL)
+        raise _wrong("not_exported", JOURNAL)
     return recorded, today["tracks"]
 
 
@@ -199,7 +202,7 @@ def _is_id(text: Any) -> bool:
 def _lines(files: Mapping[str, bytes], name: str, most: int) -> Iterable[tuple[bytes, str]]:
     lines = [line for line in files.get(name, b"").split(b"\n") if line]
     if len(lines) > most:
-        raise BundleRefused("too_large")
+        raise _refused("too_large")
     return ((line, name) for line in lines)
 
 
@@ -219,9 +222,9 @@ def _sweep(told: tuple[bytes, str], mission_id: str) -> SweepEntry:
             and all(number is None or math.isfinite(number) for number in numbers)
         )
     except (ValueError, LookupError, TypeError, RecursionError, zlib.error) as error:
-        raise BundleRefused("damaged", name) from error
+        raise _wrong("damaged", name) from error
     if not sound:
-        raise BundleRefused("damaged", name)
+        raise _wrong("damaged", name)
     return sweep
 
 
@@ -230,9 +233,9 @@ def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
     try:
         track = TRACK.validate_python(decode(line))
     except (ValueError, LookupError, TypeError, RecursionError) as error:
-        raise BundleRefused("damaged", name) from error
+        raise _wrong("damaged", name) from error
     if track.mission_id != mission_id or not _is_id(track.craft_id) or not all(map(_sound, track.points)):
-        raise BundleRefused("damaged", name)
+        raise _wrong("damaged", name)
     return track
 
 
@@ -255,10 +258,10 @@ def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry,
             ]
             entry = TRACK.validate_python(TrackEntry(mission_id, craft_id, tuple(points)))
             if not _is_id(craft_id) or not all(map(_sound, points)):
-                raise BundleRefused("not_exported", JOURNAL)
+                raise _wrong("not_exported", JOURNAL)
             found.append(entry)
     except (ValueError, TypeError, AttributeError, OverflowError) as error:
-        raise BundleRefused("not_exported", JOURNAL) from error
+        raise _wrong("not_exported", JOURNAL) from error
     return tuple(found)
 
 

@@ -1296,6 +1296,10 @@ export const reasonsEn: ReasonTable = {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
   },
+  too_many_variants: {
+    text: "This mission has {most} variants, the most it may.",
+    remedy: "Forget one of them first.",
+  },
   field_missing: {
     text: "It is missing.",
     remedy: "",
@@ -1373,9 +1377,13 @@ export const reasonsEn: ReasonTable = {
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
   },
   bundle_unreadable: {
-    text: "{fault?not_zip=This is not a zip file|foreign=The bundle has a file in it that Crossfix does not write: {name}|too_large=The files in the bundle are larger than those of any mission|damaged=The file {name} in the bundle is damaged|not_exported=The file {name} in the bundle is not one that Crossfix exported|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
+    text: "{fault?not_zip=This is not a zip file|too_large=The files in the bundle are larger than those of any mission|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
     remedy:
       "{fault?later=Open it with that Crossfix.|under_way=Export it again after it has ended.|differs=Nothing was changed. Open the mission that is here.|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+    remedy: "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   },
   upload_broke_off: {
     text: "The upload broke off; nothing was kept.",

@@ -98,6 +98,11 @@ function Row({ mission, editing, onEdit }: RowProperties) {
               {t("missions.report")}
             </a>
           )}
+          {mission.bearings > 0 && (
+            <a class="button" href={`#/compare/${encodeURIComponent(mission.mission_id)}`} data-testid="compare-mission">
+              {t("missions.compare")}
+            </a>
+          )}
           <button type="button" data-testid="label-mission" onClick={() => onEdit(editing ? null : mission.mission_id)}>
             {t("missions.label")}
           </button>

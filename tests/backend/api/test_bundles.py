@@ -19,7 +19,7 @@ import pytest
 
 from backend.events import BearingMeasured, MissionDrafted, MissionEnded, NetsNoted, TruthNoted
 from backend.ports import TrackPoint
-from backend.reasons.request import BundleUnreadable
+from backend.reasons.request import BundleFileWrong, BundleUnreadable
 from backend.settings import REPOSITORY
 from backend.store.brought import BundleRefused, raw_files, read_bundle
 from backend.store.entries import EventRow, sweep_entry, to_records
@@ -293,15 +293,23 @@ def still_flying(text: bytes) -> bytes:
 def test_a_hostile_bundle_is_refused_with_a_reason(spoil, fault):
     with pytest.raises(BundleRefused) as refused:
         read_bundle(spoil(SOUND))
-    assert isinstance(refused.value.reason, BundleUnreadable)
+    assert isinstance(refused.value.reason, BundleUnreadable | BundleFileWrong)
     assert refused.value.reason.fault == fault
 
 
-@pytest.mark.parametrize("spoil", [bomb, added("../../evil.sh"), changed("bundle.json", later_schema)])
-async def test_a_refused_bundle_leaves_nothing(client, spoil):
+@pytest.mark.parametrize(
+    ("spoil", "code"),
+    [
+        (bomb, "bundle_unreadable"),
+        (added("../../evil.sh"), "bundle_file_wrong"),
+        (changed("bundle.json", later_schema), "bundle_unreadable"),
+    ],
+)
+async def test_a_refused_bundle_leaves_nothing(client, spoil, code):
     reply = await client.post("/api/bundles", content=spoil(SOUND))
-    assert (reply.status_code, reply.json()["reason"]["code"]) == (422, "bundle_unreadable")
-    assert reply.json()["detail"].strip() and reply.json()["remedy"].strip()
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (422, code)
+    assert reply.json()["detail"].strip()
+    assert reply.json()["remedy"].strip()
     assert (await client.get("/api/missions")).json()["missions"] == []
 
 

@@ -57,9 +57,13 @@ export const server = {
     remedy: "{fault?later=Mit jenem Crossfix öffnen.|*=Die Datei mission.json einer ausgegebenen Mission wählen.}",
   },
   bundle_unreadable: {
-    text: "{fault?not_zip=Das ist keine ZIP-Datei|foreign=Im Bündel liegt eine Datei, die Crossfix nicht schreibt: {name}|too_large=Die Dateien im Bündel sind größer als die jeder Mission|damaged=Die Datei {name} im Bündel ist beschädigt|not_exported=Die Datei {name} im Bündel hat Crossfix nicht ausgegeben|later=Dieses Bündel hat ein neueres Crossfix geschrieben|under_way=Die Mission lief noch, als das Bündel geschrieben wurde|differs=Dieselbe Mission gibt es hier schon, mit anderen Ereignissen}.",
+    text: "{fault?not_zip=Das ist keine ZIP-Datei|too_large=Die Dateien im Bündel sind größer als die jeder Mission|later=Dieses Bündel hat ein neueres Crossfix geschrieben|under_way=Die Mission lief noch, als das Bündel geschrieben wurde|differs=Dieselbe Mission gibt es hier schon, mit anderen Ereignissen}.",
     remedy:
-      "{fault?later=Mit jenem Crossfix öffnen.|under_way=Nach ihrem Ende noch einmal ausgeben.|differs=Nichts wurde geändert. Die Mission öffnen, die hier ist.|*=Die ZIP-Datei „Alles“ einer Mission wählen, unverändert.}",
+      "{fault?later=Mit jenem Crossfix öffnen.|under_way=Nach ihrem Ende noch einmal mitnehmen.|differs=Nichts wurde geändert. Die Mission öffnen, die hier ist.|*=Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Eine solche Datei schreibt Crossfix nicht in ein Bündel|damaged=Eine Datei im Bündel ist beschädigt|not_exported=Eine Datei im Bündel stammt nicht von Crossfix}: {name}.",
+    remedy: "Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.",
   },
   upload_broke_off: {
     text: "Das Hochladen brach ab; nichts wurde behalten.",
