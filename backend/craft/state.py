@@ -15,6 +15,7 @@ from backend.events import (
     BatteryCountdownStarted,
     BatteryCountdownStopped,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     CraftSource,
     Event,
@@ -35,6 +36,7 @@ from backend.events import (
     PlanChosen,
     PlanVetoed,
     ServerRestarted,
+    SourceMuteChanged,
     SweepRejected,
     SweepStarted,
     TookOff,
@@ -195,7 +197,7 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
             return replace(state, chosen=None, accepted=False, avoid=())
-        case BearingExcluded() if state.phase == "waiting":
+        case BearingExcluded() | BearingIncluded() | SourceMuteChanged() if state.phase == "waiting":
             return replace(state, chosen=None)
         case _:
             return state

@@ -25,6 +25,7 @@ from backend.events.alerts import (
 from backend.events.bearings import (
     AntennaFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BearingSource,
     CraftSource,
@@ -32,7 +33,9 @@ from backend.events.bearings import (
     Peak,
     PersonSource,
     RecordingImported,
+    SourceMuteChanged,
     SweepRejected,
+    TurnFact,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
@@ -78,7 +81,16 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
-from backend.events.review import MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
+from backend.events.review import (
+    MissionBroughtIn,
+    MissionDeleted,
+    MissionLabelled,
+    MissionRestored,
+    Supposition,
+    TruthNoted,
+    VariantDropped,
+    VariantKept,
+)
 from backend.spec import Model
 
 __all__ = [
@@ -97,6 +109,7 @@ __all__ = [
     "BatteryCountdownStarted",
     "BatteryCountdownStopped",
     "BearingExcluded",
+    "BearingIncluded",
     "BearingMeasured",
     "BearingSource",
     "BeliefUpdated",
@@ -122,6 +135,7 @@ __all__ = [
     "Link",
     "LinkLost",
     "LinkRestored",
+    "MissionBroughtIn",
     "MissionDeleted",
     "MissionDrafted",
     "MissionEdited",
@@ -153,17 +167,22 @@ __all__ = [
     "SafetyVetoed",
     "ServerRestarted",
     "SourceErrorsFact",
+    "SourceMuteChanged",
+    "Supposition",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
     "Topic",
     "TruthNoted",
+    "TurnFact",
+    "VariantDropped",
+    "VariantKept",
 ]
 
 FORM = 2
 """Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
 
-ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored
+ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
 
 Event = Annotated[
     MissionDrafted
@@ -186,6 +205,8 @@ Event = Annotated[
     | BearingMeasured
     | RecordingImported
     | BearingExcluded
+    | BearingIncluded
+    | SourceMuteChanged
     | BeliefUpdated
     | HoldOrdered
     | ResumeOrdered
@@ -215,7 +236,10 @@ Event = Annotated[
     | TruthNoted
     | MissionLabelled
     | MissionDeleted
-    | MissionRestored,
+    | MissionRestored
+    | MissionBroughtIn
+    | VariantKept
+    | VariantDropped,
     Field(discriminator="kind"),
 ]
 

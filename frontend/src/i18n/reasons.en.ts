@@ -139,7 +139,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   unusable_bearing: {
-    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak}.",
+    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak|profile=a finite likelihood in at least eight directions}.",
     remedy: "",
   },
   unusable_flights: {
@@ -1252,6 +1252,22 @@ export const reasonsEn: ReasonTable = {
     text: "The bearing is excluded already.",
     remedy: "",
   },
+  bearing_counts_already: {
+    text: "The bearing was not left out.",
+    remedy: "",
+  },
+  left_out_by_another: {
+    text: "{by} left it out.",
+    remedy: "Ask {by}, or whoever controls the search, to count it again.",
+  },
+  no_such_source: {
+    text: "No bearing of this search comes from there.",
+    remedy: "Reload the page.",
+  },
+  muted_already: {
+    text: "The source is {muted?true=muted already|false=not muted}.",
+    remedy: "",
+  },
   no_such_alert: {
     text: "There is no such open alert.",
     remedy: "It may have cleared by itself.",
@@ -1295,6 +1311,10 @@ export const reasonsEn: ReasonTable = {
   server_is_ending: {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
+  },
+  too_many_variants: {
+    text: "This mission has {most} variants, the most it may.",
+    remedy: "Forget one of them first.",
   },
   field_missing: {
     text: "It is missing.",
@@ -1371,6 +1391,15 @@ export const reasonsEn: ReasonTable = {
   export_unreadable: {
     text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
+  },
+  bundle_unreadable: {
+    text: "{fault?not_zip=This is not a zip file|too_large=The files in the bundle are larger than those of any mission|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
+    remedy:
+      "{fault?later=Open it with that Crossfix.|under_way=Export it again after it has ended.|differs=Nothing was changed. Open the mission that is here.|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+    remedy: "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   },
   upload_broke_off: {
     text: "The upload broke off; nothing was kept.",
@@ -1666,6 +1695,42 @@ export const reasonsEn: ReasonTable = {
   ground_not_kept: {
     text: "The terrain could not be stored with the mission: {detail}.",
     remedy: "Make room on the disk, then start again.",
+  },
+  whole_turn: {
+    text: "A whole turn: {because?first=nothing was heard here or elsewhere before|again=the sweep before gave no bearing|unsure=the bearings so far contradict each other|wide=the emitter may be in almost any direction|several=several emitters are listened to|pulsed=a tag's pulses need every heading|second_place=the first places of this search hear all directions}.",
+    remedy: "",
+  },
+  sector_expected: {
+    text: "A sector of {width_deg}: it holds {share_percent} of the directions expected from here, and a margin.",
+    remedy: "",
+  },
+  maximum_seen: {
+    text: "Stopped after {turned_deg}: the maximum lies {inside_deg} within it, and another direction has a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  whole_circle_seen: {
+    text: "Stopped after the whole circle.",
+    remedy: "",
+  },
+  maximum_at_edge: {
+    text: "Turned {by_deg} further: the maximum lay at the sector's {edge?beginning=beginning|end=end}.",
+    remedy: "",
+  },
+  quality_poor: {
+    text: "Turned {by_deg} further: what was heard resembled the antenna's pattern by {quality:2} only.",
+    remedy: "",
+  },
+  elsewhere_possible: {
+    text: "Turned {by_deg} further: a direction not yet heard had a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  bearing_uncertain: {
+    text: "Turned {by_deg} further: the bearing was still uncertain by {sigma_deg:1}.",
+    remedy: "",
+  },
+  nothing_found_yet: {
+    text: "Turned {by_deg} further: what was heard gave no bearing yet.",
+    remedy: "",
   },
   file_too_heavy: {
     text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",
