@@ -1451,16 +1451,19 @@ export interface components {
             expected_time_s: number | null;
             time_90_s: number | null;
             reason: components["schemas"]["Reason"] | null;
+            hop: components["schemas"]["HopAnswer"] | null;
         };
         /**
          * @description place: where whoever asks is. speed_m_s: how fast they get on, on foot or in a car. emitter_id None: the first
-         *     that is not localized.
+         *     that is not localized. hops: with a craft carried along, which is flown straight up at each place and turned once.
          */
         AdviceRequest: {
             place: components["schemas"]["Place"];
             /** @default 1.3 */
             speed_m_s: number;
             emitter_id?: string | null;
+            /** @default false */
+            hops: boolean;
         };
         /** @description Somebody has seen it; it stays open until it is cleared. */
         AlertAcknowledged: {
@@ -3679,6 +3682,13 @@ export interface components {
              * @enum {string}
              */
             code: "home_set";
+        };
+        /** @description At the place: straight up to altitude_m above the ground there, one turn, straight down. */
+        HopAnswer: {
+            altitude_m: number;
+            up_s: number;
+            turn_s: number;
+            down_s: number;
         };
         /** @description phrase: the status in words, in English. */
         HttpRefused: {
