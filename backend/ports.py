@@ -39,6 +39,16 @@ class TrackPoint:
     mode: str | None
 
 
+@dataclass(frozen=True, slots=True)
+class SectorShown:
+    """Of the circle, what a running turn goes through as decided so far: goal_deg clockwise from the antenna heading
+    begin_deg. because: why that far."""
+
+    begin_deg: float
+    goal_deg: float
+    because: Reason | None
+
+
 class JournalUnavailable(ReasonedError, RuntimeError):
     """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
 
@@ -131,7 +141,8 @@ class Said:
 class Lesson:
     """What one flight taught of the errors of its craft's bearings. bias_deg: clockwise. spread_deg: standard
     deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers. together:
-    log evidence of every combination of these values, the rates running fastest; empty in older lessons."""
+    log evidence of every combination of these values, the rates running fastest; empty in older lessons. place_known:
+    somebody told where the emitter was, so that the bearings were judged by that."""
 
     mission_id: str
     bearings: int
@@ -141,6 +152,7 @@ class Lesson:
     scale: tuple[Said, ...]
     rate: tuple[Said, ...]
     together: tuple[float, ...] = ()
+    place_known: bool = False
 
 
 class Lessons(Protocol):
@@ -231,8 +243,9 @@ class Publisher(Protocol):
         heading_deg: list[float],
         power_db: list[float],
         turned_deg: float,
+        sector: SectorShown | None = None,
     ) -> None:
-        """heading_deg, power_db: all samples of the turn so far. turned_deg: of 360."""
+        """heading_deg, power_db: all samples of the turn so far. turned_deg: of 360, or of the sector."""
         ...
 
     def belief(

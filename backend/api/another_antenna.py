@@ -41,9 +41,9 @@ class AnotherAntenna:
             return flown  # of power that could not be made into a sweep
         if entry is None:
             raise MissionConflict(SamplesNotStored(flown.place_number))
-        sweep = entry.sweep()
+        sweep = replace(entry.sweep(), partial=flown.turn is not None and flown.turn.partial)
         reading = self.finder.estimate(sweep, self.pattern)
-        taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt)
+        taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt, flown.turn)
         heard = sweep_fact(taken, mission.sensor, sweep, reading, None)
         if isinstance(heard, BearingMeasured) and isinstance(flown, BearingMeasured):
             return heard.model_copy(update={"bearing_id": flown.bearing_id})

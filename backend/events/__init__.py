@@ -35,6 +35,7 @@ from backend.events.bearings import (
     RecordingImported,
     SourceMuteChanged,
     SweepRejected,
+    TurnFact,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
@@ -162,6 +163,7 @@ __all__ = [
     "TookOff",
     "Topic",
     "TruthNoted",
+    "TurnFact",
 ]
 
 FORM = 2

@@ -127,7 +127,7 @@ def _arrived(step: SearchStep, facts: tuple[Event, ...]) -> None:
 
 
 def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
-    """What is in the air is in the list; what is told of an emitter changes no belief."""
+    """What is in the air is in the list; its ground truth changes no belief."""
     if isinstance(fact, TruthNoted) and fact.emitter_id not in step.state.emitters:
         raise Refused(refusals.NoSuchEmitter(fact.emitter_id))
     if isinstance(fact, MissionDeleted) and step.state.stage == "open":

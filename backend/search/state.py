@@ -29,6 +29,7 @@ from backend.events import (
     ServerRestarted,
     SourceMuteChanged,
     Topic,
+    TruthNoted,
 )
 from backend.reasons import Reason
 from backend.spec import MissionSpec, Place
@@ -56,7 +57,8 @@ class EmitterState:
     muted: sources whose bearings do not count, as those in `excluded` do not.
 
     belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
-    epoch seconds at which the belief was first good enough, None when it is not.
+    epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
+    really was; no belief about it depends on that.
     """
 
     emitter_id: str
@@ -68,6 +70,7 @@ class EmitterState:
     localized_at_s: float | None = None
     claim: BeliefUpdated | None = None
     claimed_at_s: float | None = None
+    truth: TruthNoted | None = None
 
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
@@ -232,6 +235,9 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
         case ServerRestarted():
             return _each(state, lambda emitter: replace(emitter, belief_current=False))
+        case TruthNoted(emitter_id=name) if name in state.emitters:
+            told = replace(state.emitters[name], truth=event)
+            return replace(state, emitters={**state.emitters, name: told})
         case MissionEnded(outcome=outcome, reason=reason):
             return replace(state, outcome=outcome, outcome_reason=reason)
         case _:

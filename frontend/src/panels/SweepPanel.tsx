@@ -24,6 +24,26 @@ function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] 
   ].toSorted((a, b) => b.seq - a.seq);
 }
 
+type Turn = NonNullable<BearingMeasured["turn"]>;
+
+const sectorOf = (turn: Turn | null): PolarData["sector"] =>
+  turn && turn.turned_deg < 355 ? { beginDeg: turn.begin_deg, turnedDeg: turn.turned_deg, goalDeg: turn.turned_deg } : null;
+
+/** How far the craft turned for this sweep, and why: one line a decision. */
+function TurnWords({ turn }: { turn: Turn }) {
+  const whys = [turn.planned_because, ...turn.went_on_because, turn.stopped_because];
+  return (
+    <>
+      <div>{t("sweep.turnedSector", { turned: Math.round(turn.turned_deg), begin: formatBearing(turn.begin_deg) })}</div>
+      <ol class="sweep-turn" data-testid="sweep-turn">
+        {whys.map((why, i) => (
+          <li key={`${i} ${why.code}`}>{reasonText(why)}</li>
+        ))}
+      </ol>
+    </>
+  );
+}
+
 function polarOf({ fact, excluded }: Sweep): PolarData {
   const measured = fact.kind === "bearing_measured" ? fact : null;
   return {
@@ -33,23 +53,36 @@ function polarOf({ fact, excluded }: Sweep): PolarData {
     bearing: measured && { deg: measured.bearing_deg, sigmaDeg: measured.sigma_deg, quality: measured.quality },
     peaks: measured?.peaks.map((p) => ({ deg: p.bearing_deg, weight: p.weight })) ?? [],
     rejected: excluded || !measured,
+    sector: sectorOf(fact.turn),
   };
 }
 
 function progressPolar(running: SweepProgress): PolarData {
   const samples = running.heading_deg.map((headingDeg, i) => ({ headingDeg, db: running.power_db[i] ?? NaN }));
-  return { binnedDb: [], fittedDb: [], samples, bearing: null, peaks: [], rejected: false };
+  const sector = running.sector && {
+    beginDeg: running.sector.begin_deg,
+    turnedDeg: running.turned_deg,
+    goalDeg: running.sector.goal_deg,
+  };
+  return { binnedDb: [], fittedDb: [], samples, bearing: null, peaks: [], rejected: false, sector };
 }
 
 function Running({ running, attempt }: { running: SweepProgress; attempt: number }) {
+  const turned = Math.round(running.turned_deg);
+  const goal = running.sector?.goal_deg ?? 360;
   return (
     <div class="sweep-body">
       <PolarPlot data={progressPolar(running)} />
       <div class="sweep-facts" data-testid="sweep-running">
         <strong>{t("sweep.place", { number: running.place_number })}</strong>
         {attempt > 1 && <div>{t("sweep.attempt", { attempt })}</div>}
-        <div>{t("sweep.running", { turned: Math.min(360, Math.round(running.turned_deg)) })}</div>
-        <progress max={360} value={running.turned_deg} aria-label={t("sweep.title")} />
+        <div>
+          {running.sector
+            ? t("sweep.runningSector", { turned, goal: Math.round(goal) })
+            : t("sweep.running", { turned: Math.min(360, turned) })}
+        </div>
+        <progress max={goal} value={running.turned_deg} aria-label={t("sweep.title")} />
+        {running.sector?.because && <div class="muted">{reasonText(running.sector.because)}</div>}
       </div>
     </div>
   );
@@ -113,6 +146,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
+        {fact.turn && <TurnWords turn={fact.turn} />}
       </div>
     );
   }
@@ -137,6 +171,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
           })}
         </div>
       )}
+      {fact.turn && <TurnWords turn={fact.turn} />}
       {fact.remarks.map((remark) => (
         <div class="refused" data-testid="sweep-remark" key={remark.code}>
           {reasonText(remark)}

@@ -2500,15 +2500,17 @@ export interface components {
         /**
          * @description What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
          *
-         *     flights, bearings: that were learned from. bias_deg: mean of the flights, clockwise, and bias_spread_deg: its
-         *     standard deviation from flight to flight; None without a flight. expected_bias_deg: standard deviation of the next
-         *     flight's bias. sigma_scale: factor on the stated sigmas. outlier_rate: share of bearings.
+         *     flights, bearings: that were learned from; places_known: flights whose emitter was found. bias_deg: mean of the
+         *     flights, clockwise, and bias_spread_deg: its standard deviation from flight to flight; None without a flight.
+         *     expected_bias_deg: standard deviation of the next flight's bias. sigma_scale: factor on the stated sigmas.
+         *     outlier_rate: share of bearings.
          */
         CompassKnown: {
             craft_id: string;
             antenna: string;
             flights: number;
             bearings: number;
+            places_known: number;
             bias_deg: number | null;
             bias_spread_deg: number | null;
             expected_bias_deg: number;
@@ -6889,7 +6891,8 @@ export interface components {
          *
          *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
-         *     taught; the server writes it down when a mission is drafted, edited and started.
+         *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
+         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6912,13 +6915,19 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned: components["schemas"]["LearnedErrors"] | null;
+            /**
+             * @default peak
+             * @enum {string}
+             */
+            sweep_evidence: "peak" | "whole";
         };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
          *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
-         *     taught; the server writes it down when a mission is drafted, edited and started.
+         *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
+         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -6941,6 +6950,11 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned?: components["schemas"]["LearnedErrors"] | null;
+            /**
+             * @default peak
+             * @enum {string}
+             */
+            sweep_evidence: "peak" | "whole";
         };
         /** @description incident: the same id is in the server's log. */
         ServerBroke: {
@@ -7928,7 +7942,7 @@ export interface components {
         /** @description flaw: what about it cannot be used in a likelihood. */
         UnusableBearing: {
             /** @enum {string} */
-            flaw: "not_finite" | "sigma" | "outlier_probability" | "peak";
+            flaw: "not_finite" | "sigma" | "outlier_probability" | "peak" | "profile";
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
