@@ -46,8 +46,8 @@ def heard(task: Localization, number: int, place: Place, emitter: Place, error_d
 
 def test_no_turn_is_taken_twice_at_one_place_and_all_are_localized() -> None:
     """A craft that took its bearings to be independent stayed where it was until twenty places were used."""
-    mission = suggested_mission(HOME).model_copy(update={"emitters": sought(CARRIER, 4)})
-    mission = mission.model_copy(update={"planner": mission.planner.model_copy(update={"budget": 250})})
+    mission = suggested_mission(HOME).model_copy(update={"emitters": sought(CARRIER, 3)})
+    mission = mission.model_copy(update={"planner": mission.planner.model_copy(update={"budget": 100})})
     truth, rng = emitter_places(SEED, HOME, simulated(mission.emitters)), np.random.default_rng(SEED)
     tasks = [localization(mission, HOME, emitter.emitter_id) for emitter in mission.emitters]
     measured: dict[str, list[BearingMeasured]] = {task.emitter_id: [] for task in tasks}
