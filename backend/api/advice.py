@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from datetime import UTC, datetime
 
 from fastapi import APIRouter
@@ -17,11 +18,22 @@ router = APIRouter(prefix="/api/missions/{mission_id}", tags=["planning"], respo
 
 class AdviceRequest(Model):
     """place: where whoever asks is. speed_m_s: how fast they get on, on foot or in a car. emitter_id None: the first
-    that is not localized."""
+    that is not localized. hops: with a craft carried along, which is flown straight up at each place and
+    turned once."""
 
     place: Place
     speed_m_s: float = Field(default=1.3, ge=0.2, le=30, allow_inf_nan=False)
     emitter_id: Id | None = None
+    hops: bool = False
+
+
+class HopAnswer(Model):
+    """At the place: straight up to altitude_m above the ground there, one turn, straight down."""
+
+    altitude_m: float
+    up_s: float
+    turn_s: float
+    down_s: float
 
 
 class AdviceAnswer(Model):
@@ -45,6 +57,7 @@ class AdviceAnswer(Model):
     expected_time_s: float | None = None
     time_90_s: float | None = None
     reason: Reason | None = None
+    hop: HopAnswer | None = None
 
 
 @router.post("/advice")
@@ -52,7 +65,7 @@ async def ask_advice(mission_id: MissionId, request: AdviceRequest, services: Se
     """Where to listen next with an antenna in the hand. Nothing is recorded, and no craft flies for it."""
     async with services.planning:
         emitter_id, bearings, found = await services.missions.questions.advise(
-            mission_id, request.place, request.speed_m_s, request.emitter_id
+            mission_id, request.place, request.speed_m_s, request.emitter_id, request.hops
         )
     now = datetime.fromtimestamp(services.now(), UTC)
     if found is None:
@@ -71,4 +84,5 @@ async def ask_advice(mission_id: MissionId, request: AdviceRequest, services: Se
         expected_time_s=found.mean_s,
         time_90_s=found.p90_s,
         reason=found.reason,
+        hop=None if found.hop is None else HopAnswer.model_validate(asdict(found.hop)),
     )

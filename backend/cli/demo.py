@@ -154,6 +154,7 @@ async def _demo(
     changes: Mapping[str, Any] = {
         "emitters": [emitter.model_dump(mode="json") for emitter in emitters],
         "sensor": TAG_SENSOR if tag else {},
+        "localization": {"follow": any(emitter.movement.kind != "still" for emitter in emitters)},
     }
     async with running_server(settings, emitters=simulated(emitters)) as running:
         if not headless:

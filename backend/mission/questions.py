@@ -71,7 +71,7 @@ class Questions:
         return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
 
     async def advise(
-        self, mission_id: str, here: Place, speed_m_s: float, emitter_id: str | None
+        self, mission_id: str, here: Place, speed_m_s: float, emitter_id: str | None, hops: bool = False
     ) -> tuple[str, int, Advice | None]:
         """The emitter, the bearings that count, and where to listen for it next; None once it is localized.
 
@@ -93,7 +93,7 @@ class Questions:
         return (
             emitter.emitter_id,
             len(emitter.bearings),
-            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s),
+            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s, hops),
         )
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:

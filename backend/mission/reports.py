@@ -69,8 +69,7 @@ class Reports:
                 return
 
             def left_out(event: Event) -> str | None:
-                ours = isinstance(event, BearingExcluded) and event.bearing_id == bearing_id
-                return event.by if ours else None
+                return event.by if isinstance(event, BearingExcluded) and event.bearing_id == bearing_id else None
 
             await self._by_the_same(mission_id, left_out, by, "bearing_id")
             await self._give(mission_id, SearchOrdered(by, IncludeBearing(bearing_id=bearing_id)))

@@ -1,7 +1,9 @@
 """Where somebody on foot or in a car listens next, and what that would bring. Synchronous and pure; call in a thread.
 
 The same planner as a craft's, with another mover: it goes as slowly as it says, turns an antenna by hand, and may stand
-outside the fence, which is the craft's; what may not be flown over is kept off all the same.
+outside the fence, which is the craft's; what may not be flown over is kept off all the same. Who hops carries a craft
+along, flies it straight up at each place, turns it once and takes it down again: then the craft's antenna listens, the
+climb takes time, and the place is inside the fence.
 """
 
 from __future__ import annotations
@@ -11,7 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from shapely import MultiPoint, Point
+from shapely import MultiPoint, Point, Polygon
+from shapely.ops import nearest_points
 
 from backend.events import BearingMeasured
 from backend.reasons import Reason, carried
@@ -21,9 +24,10 @@ from backend.search.planning import in_nine_of_ten
 from backend.spec import Place
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
+from planner.geometry import contains
 from planner.options import PlannerOptions
 from planner.plan import plan
-from planner.types import LinearConstantMotion, Problem
+from planner.types import LinearConstantMotion, Problem, Region
 
 HAND_SIGMA_RAD = math.radians(12.0)
 """Of a hand-held antenna and a phone's compass: what a reported bearing has unless its reporter says otherwise."""
@@ -34,9 +38,28 @@ AROUND_M = 100.0
 """Somebody may stand this far outside the area."""
 FARTHEST_M = 20_000.0
 """From the area: who is further away is not advised."""
+CLIMB_M_S, SINK_M_S = 2.5, 1.5
+"""Of a craft that is flown straight up and down by hand."""
+ENTERED_M = 1.0
+"""Somebody who came into the fence stands this far inside."""
 COARSEST_PLACES = 24
 """Places along the longer side: a person is not sent to the metre."""
 OPTIONS = PlannerOptions(base_policy="fisher", budget=300)
+
+
+@dataclass(frozen=True, slots=True)
+class Hop:
+    """Straight up to altitude_m above the ground there, one turn of turn_s, straight down."""
+
+    altitude_m: float
+    up_s: float
+    turn_s: float
+    down_s: float
+
+    @property
+    def time_s(self) -> float:
+        """From leaving the ground to standing on it again."""
+        return self.up_s + self.turn_s + self.down_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +68,7 @@ class Advice:
 
     error_now_m: expected error of the belief, error_then_m: about what is left of it after one bearing from there.
     mean_s, p90_s: until localized if every advice is followed; None: not known. bearings: that the advice knows of.
+    hop: what to do there with a craft, None: listen with the antenna in one's hand.
     """
 
     place: Place
@@ -57,15 +81,21 @@ class Advice:
     p90_s: float | None
     reason: Reason
     bearings: int
+    hop: Hop | None = None
 
 
-def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place, speed_m_s: float) -> Advice:
-    """For one emitter. Raises PlannerError when there is nowhere to go."""
+def advise(
+    task: Localization, measured: Sequence[BearingMeasured], here: Place, speed_m_s: float, hops: bool = False
+) -> Advice:
+    """For one emitter. hops: with a craft that is flown up at each place. Raises PlannerError when there is nowhere to
+    go."""
     start = task.frame.to_enu(here)
     bearings = task.planner_bearings(measured)
     belief = task.planning_belief(bearings)
-    problem = _for_people(task, start, speed_m_s)
-    decision = plan(problem, belief, bearings, start, OPTIONS, threads=1)
+    hop = _hop(task) if hops else None
+    problem = _for_people(task, start, speed_m_s, hop)
+    entering = start if hop is None else _into(problem.flight_area, start)
+    decision = plan(problem, belief, bearings, entering, OPTIONS, threads=1)
     east, north = decision.x - start[0], decision.y - start[1]
     away = math.hypot(east, north)
     now = estimate(belief, problem.estimator).expected_rmse
@@ -80,7 +110,22 @@ def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place,
         p90_s=in_nine_of_ten(decision.times),
         reason=carried(decision.reason),
         bearings=len(bearings),
+        hop=hop,
     )
+
+
+def _hop(task: Localization) -> Hop:
+    altitude = task.mission.flight.altitude_relative_m
+    return Hop(altitude, altitude / CLIMB_M_S, task.problem.measurement_time, altitude / SINK_M_S)
+
+
+def _into(fence: Region | None, start: tuple[float, float]) -> tuple[float, float]:
+    """Where somebody who stands outside the fence comes into it: at the nearest point of its first ring; m ENU."""
+    if fence is None or contains(fence, np.array([start]))[0]:
+        return start
+    ground = Polygon(fence[0]).buffer(-ENTERED_M)
+    nearest = nearest_points(ground, Point(start))[0]
+    return (nearest.x, nearest.y)
 
 
 def from_area_m(task: Localization, here: Place) -> float:
@@ -89,18 +134,19 @@ def from_area_m(task: Localization, here: Place) -> float:
     return float(ring.distance(Point(task.frame.to_enu(here))))
 
 
-def _for_people(task: Localization, start: tuple[float, float], speed_m_s: float) -> Problem:
+def _for_people(task: Localization, start: tuple[float, float], speed_m_s: float, hop: Hop | None) -> Problem:
     problem = task.problem
     corners = MultiPoint(np.concatenate(problem.area))
     around = corners.convex_hull.buffer(AROUND_M, join_style="mitre").union(Point(start)).convex_hull
     x_min, y_min, x_max, y_max = around.bounds
     spacing = max(problem.action_spacing or 0.0, max(x_max - x_min, y_max - y_min) / COARSEST_PLACES)
+    fence = problem.flight_area if hop is not None else None
     return replace(
         problem,
-        sigma=HAND_SIGMA_RAD,
-        measurement_time=HAND_TURN_S,
+        sigma=HAND_SIGMA_RAD if hop is None else problem.sigma,
+        measurement_time=HAND_TURN_S if hop is None else hop.time_s,
         motion=LinearConstantMotion(speed_m_s, SET_OUT_S),
-        flight_area=area.region(around.buffer(1.0)),
+        flight_area=fence or area.region(around.buffer(1.0)),
         action_spacing=spacing,
     )
 

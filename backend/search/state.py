@@ -226,7 +226,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
         case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated():
             return _evolve_emitter(state, event, at_s)
         case SourceMuteChanged(source=source, muted=muted):
-            sources = state.muted | {source} if muted else state.muted - {source}
+            sources = state.muted.union((source,)) if muted else state.muted.difference((source,))
             return _each(replace(state, muted=sources), lambda emitter: _muting(emitter, source, sources))
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))

@@ -18,19 +18,21 @@ from functools import partial
 
 import numpy as np
 
+from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
+from planner.belief.joint import JointBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, PlannerOptions
 from planner.policy.actions import action_space
 from planner.policy.dynamic_program import stands_on
-from planner.policy.fisher import fisher
-from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, SELECTIONS
+from planner.policy.fisher import fisher, gain_beside_bias
+from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, SELECTIONS, TELLING_SHARE
 from planner.policy.simulation import Simulation, simulate
 from planner.reasons import BudgetTooSmall, EveryPlaceRefused, NoPlaceInReach, SoonestTogether
 from planner.sampling import deterministic_paths, random_paths
 from planner.selection.types import Selection, SelectionResult
 from planner.selection.uniform import uniform
-from planner.types import Candidate, Decision, FloatArray, IntArray, PlannerError, Problem
+from planner.types import BoolArray, Candidate, Decision, FloatArray, IntArray, PlannerError, Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +46,8 @@ class Wanted:
 @dataclass(slots=True)
 class _Member:
     """One emitter's rollouts. detour: its Fisher place, flown to after a place that tells nothing of it. near: m, from
-    within which a bearing is taken to tell nothing."""
+    within which a bearing is taken to tell nothing. telling: (a,) which places tell anything beside what the bearings
+    have in common."""
 
     wanted: Wanted
     simulation: Simulation
@@ -53,13 +56,14 @@ class _Member:
     near: float
     rng: np.random.Generator
     paths: Paths
+    telling: BoolArray
     without: FloatArray = field(default_factory=lambda: np.empty(0))
 
     def costs(self, chosen: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s until this emitter is localized.
 
-        On a path whose target lies too near to the place the bearing tells nothing: the cost is that of the place, and
-        then of the search without it.
+        From a place that repeats the sensor's bias, and on a path whose target lies too near to the place, the bearing
+        tells nothing: the cost is that of the place, and then of the search without it.
         """
         self._reach(path_to)
         count = path_to - path_from
@@ -69,7 +73,7 @@ class _Member:
         way = self.actions.places[chosen][:, None, :] - self.paths.targets[path][None, :, :]
         near = np.hypot(way[..., 0], way[..., 1]) < self.near
         wasted = self.actions.costs[chosen][:, None] + self.without[path][None, :]
-        return np.where(near, wasted, costs)
+        return np.where(near | ~self.telling[chosen][:, None], wasted, costs)
 
     def _reach(self, count: int) -> None:
         """Paths and what they cost without the first place, so that path j is the same for every action."""
@@ -125,6 +129,8 @@ def plan_several(
     """
     simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
     places = _places(wanted, simulations[0], without)
+    # what tells nothing of any of them is no next place, however soon it is reached
+    places = places[np.any([telling_beside_bias(one.problem, one.belief, places) for one in wanted], axis=0)]
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
     budget, count = paths_among(options.budget, len(wanted)), 0
     if options.sampling == "deterministic":
@@ -186,7 +192,22 @@ def _member(
     horizon = simulation.rules.horizon
     none = Paths(np.empty((0, 2)), np.empty((0, horizon)))
     paths = deterministic_paths(wanted.belief, deterministic, horizon) if deterministic else none
-    return _Member(wanted, simulation, simulation.first_actions(places), detour, near, rng, paths)
+    telling = telling_beside_bias(wanted.problem, wanted.belief, places)
+    return _Member(wanted, simulation, simulation.first_actions(places), detour, near, rng, paths, telling)
+
+
+def telling_beside_bias(problem: Problem, belief: GridBelief, places: FloatArray) -> BoolArray:
+    """(n,) which places (n, 2) tell the bias of the bearings from the place of the emitter.
+
+    Rollouts take the bearings to come as independent, so that a craft which stays where it is would seem to halve an
+    error that it only measures again. The bias is that of the source with the most bearings.
+    """
+    if not isinstance(belief, JointBelief) or not belief.errors:
+        return np.ones(len(places), dtype=bool)
+    errors = max(belief.errors, key=lambda one: one.bearings)
+    estimated = estimate(belief, problem.estimator)
+    gains = gain_beside_bias(estimated, places, errors, problem.sigma, nearest=belief.h)
+    return np.asarray(gains >= TELLING_SHARE * gains.max())
 
 
 FEWEST_PATHS = 250

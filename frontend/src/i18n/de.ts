@@ -248,6 +248,8 @@ export const de: Record<MessageKey, string> = {
   "advice.needsPlace": "Wohin als Nächstes? Erst sagen, wo Sie stehen.",
   "advice.walking": "zu Fuß",
   "advice.driving": "mit dem Auto",
+  "advice.hopping": "Auto und Drohne",
+  "advice.hop": "Dort: auf {altitude} steigen, eine Drehung, landen und weiterfahren ({time}).",
   "advice.go": "{length} in Richtung {bearing}: {time}.",
   "advice.brings": "Eine Peilung von dort senkt den erwarteten Fehler von {now} auf etwa {later}.",
   "advice.until": "Lokalisiert in etwa {time}, wenn es so weitergeht.",

@@ -90,6 +90,8 @@ export const pagesEn = {
   "advice.needsPlace": "Where next? Say first where you stand.",
   "advice.walking": "on foot",
   "advice.driving": "by car",
+  "advice.hopping": "car and drone",
+  "advice.hop": "There: up to {altitude}, one turn, down, and drive on ({time}).",
   "advice.go": "Go {length} towards {bearing}: {time}.",
   "advice.brings": "A bearing from there brings the expected error from {now} to about {later}.",
   "advice.until": "Localized in about {time} if you go on like this.",

@@ -12,7 +12,7 @@ import type { LonLat } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
 
 /** m/s */
-const SPEED = { walking: 1.3, driving: 9 } as const;
+const SPEED = { walking: 1.3, driving: 9, hopping: 9 } as const;
 type Going = keyof typeof SPEED;
 
 function Said() {
@@ -33,6 +33,14 @@ function Said() {
           })}
         </strong>
       </p>
+      {given.hop && (
+        <p data-testid="advice-hop">
+          {t("advice.hop", {
+            altitude: formatLength(given.hop.altitude_m, units),
+            time: formatDuration(given.hop.up_s + given.hop.turn_s + given.hop.down_s),
+          })}
+        </p>
+      )}
       <p>
         {t("advice.brings", {
           now: formatLength(given.error_now_m ?? 0, units),
@@ -54,7 +62,7 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
     setBusy(true);
     setProblem(null);
     try {
-      advice.value = await askAdvice(missionId, { lon: here[0], lat: here[1] }, SPEED[going], null);
+      advice.value = await askAdvice(missionId, { lon: here[0], lat: here[1] }, SPEED[going], null, going === "hopping");
     } catch (error) {
       setProblem(asProblem(error));
     } finally {
@@ -70,6 +78,9 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
         </button>
         <button type="button" data-testid="advice-driving" disabled={!here || busy} onClick={() => void ask("driving")}>
           {t("advice.driving")}
+        </button>
+        <button type="button" data-testid="advice-hopping" disabled={!here || busy} onClick={() => void ask("hopping")}>
+          {t("advice.hopping")}
         </button>
       </div>
       {problem && <ProblemBox problem={problem} />}

@@ -15,6 +15,7 @@ const given = {
   expected_time_s: 900,
   time_90_s: 1500,
   reason: null,
+  hop: null,
 };
 const later = (seconds: number) => Date.parse(given.given_at_utc) + 1000 * seconds;
 

@@ -8,12 +8,20 @@ import httpx
 import pytest
 
 from backend.api.suggestion import suggested_mission
-from backend.spec import EmitterSpec
+from backend.spec import EmitterSpec, Polygon
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
 HOME = Place(50.6, 7.2)
 FRAME = LocalFrame(HOME)
+
+
+SQUARE = ((-100.0, 0.0), (100.0, 0.0), (100.0, 200.0), (-100.0, 200.0), (-100.0, 0.0))
+
+
+def lon_lat(east: float, north: float) -> tuple[float, float]:
+    found = FRAME.to_geo(east, north)
+    return found.lon, found.lat
 
 
 def place(east: float, north: float) -> dict:
@@ -66,6 +74,28 @@ async def test_a_car_is_sent_further_than_a_walker_thinks_worth_it(client: httpx
     ]
     assert by_car["expected_time_s"] < on_foot["expected_time_s"]
     assert by_car["away_m"] >= 0.8 * on_foot["away_m"]
+
+
+async def test_who_hops_is_sent_inside_the_fence_and_told_up_turn_and_down(client: httpx.AsyncClient) -> None:
+    """By car from 180 m outside; a place where the craft may not leave the ground is no place, though it would bring
+    as much, and a craft's climbs make each bearing dearer than a hand's."""
+    ring = [lon_lat(e, n) for e, n in ((-110, -10), (110, -10), (110, 210), (-110, 210), (-110, -10))]
+    suggested = suggested_mission(HOME)
+    area = Polygon(coordinates=[[lon_lat(e, n) for e, n in SQUARE]])
+    flight = suggested.flight.model_copy(update={"fence": Polygon(coordinates=[ring]), "altitude_relative_m": 60.0})
+    mission = await drafted(client, area=area, flight=flight)
+    here, asked = (-290.0, 100.0), {"speed_m_s": 9.0, "hops": True}
+    for number in range(3):
+        reply = await client.post(f"/api/missions/{mission}/advice", json={"place": place(*here), **asked})
+        assert reply.status_code == 200, reply.text
+        told = reply.json()
+        east, north = FRAME.to_enu(Place(told["place"]["lat"], told["place"]["lon"]))
+        assert (abs(east) <= 110.0, -10.0 <= north <= 210.0) == (True, True), (east, north)
+        assert told["hop"] == {"altitude_m": 60.0, "up_s": 24.0, "turn_s": 30.0, "down_s": 40.0}
+        here = (east, north)
+        await hear(client, mission, number, here)
+    by_hand = await client.post(f"/api/missions/{mission}/advice", json={"place": place(*here)})
+    assert by_hand.json()["hop"] is None
 
 
 async def test_what_cannot_be_advised_is_refused(client: httpx.AsyncClient) -> None:
