@@ -159,7 +159,8 @@ COMPOSE ?= docker compose
 HTTPS_PORT ?= 443
 containers: setup-dev ## build the image, fly one mission in the containers of docker-compose.yml, take them down again
 	SPEEDUP=5 HTTPS_PORT=$(HTTPS_PORT) $(COMPOSE) --profile simulated up --build --detach
-	code=$$($(COMPOSE) logs server | grep -oE '[0-9A-Z]{4}(-[0-9A-Z]{4}){3}' | tail -1); \
+	for second in $$(seq 1 5 600); do \
+	  code=$$($(COMPOSE) logs server 2>/dev/null | grep -oE '[0-9A-Z]{4}(-[0-9A-Z]{4}){3}' | tail -1); [ -n "$$code" ] && break; sleep 5; done; \
 	$(BIN)/python -m tests.containers.fly https://localhost:$(HTTPS_PORT) "$$code"; flown=$$?; $(COMPOSE) --profile simulated down; exit $$flown
 
 wheel: setup-dev build ## dist/crossfix-VERSION.whl with the page inside: pipx install it, then crossfix serve

@@ -66,7 +66,7 @@ def test_a_wheel_holds_what_the_server_reads_and_no_tests(wheel: Path) -> None:
         "migrations/versions/0001_journal.py",
     ):
         assert needed in names
-    rooms = (REPOSITORY / room for room in ("planner", "hardware", "backend", "migrations"))
+    rooms = (REPOSITORY / room for room in ("planner", "hardware", "backend"))
     kept = [path for room in rooms for path in room.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
     assert not [name for path in kept if (name := path.relative_to(REPOSITORY).as_posix()) not in names]
     assert not [name for name in names if name.startswith(("tests/", "docs/"))]

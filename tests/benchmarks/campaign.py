@@ -174,6 +174,7 @@ def run(step: Step, log: Path) -> Ran:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
     seconds = time.monotonic() - began
+    time.sleep(LOOK_S)  # what it started and killed comes to its end
     return Ran(status, seconds, max(others_share, _busy_share()), log.read_text(errors="replace"))
 
 

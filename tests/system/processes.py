@@ -14,6 +14,8 @@ from typing import Any
 from hardware.sim.autopilot.launch import Setting, SimulatedAutopilot, launch_simulated
 
 SPEEDUP = 4.0
+START_PATIENCE_S = 240.0
+"""A whole start compiles the planner; on a busy machine that takes minutes."""
 
 
 @asynccontextmanager
@@ -26,7 +28,7 @@ async def serving(data_dir: Path, *more: str) -> AsyncIterator[tuple[str, asynci
     )  # fmt: skip
     assert process.stdout is not None
     try:
-        async with asyncio.timeout(90):
+        async with asyncio.timeout(START_PATIENCE_S):
             line = await process.stdout.readline()
         yield json.loads(line)["url"], process
     finally:
