@@ -11,7 +11,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 PUBLIC = Path(__file__).resolve().parents[1] / "public"
-SIZES = {"icon-192.png": 192, "icon-512.png": 512, "icon-touch.png": 180}
+SIZES = {"icon-192.png": 192, "icon-touch.png": 180}
 MASKABLE, MASKABLE_PX = "icon-maskable.png", 512
 SAFE = 0.72
 """Of the width: what lies outside the middle 80 % may be cut off by a launcher (W3C manifest, maskable icons)."""
