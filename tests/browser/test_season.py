@@ -146,6 +146,7 @@ def said_of(server: Server, open_screen: OpenScreen, folder: Path) -> list[dict[
 
 
 def test_the_page_opens_without_its_server_and_keeps_no_answer(server: Server, open_screen: OpenScreen) -> None:
+    server.draft()
     screen = open_screen(server)
     page = screen.page
     manifest = page.evaluate("fetch(document.querySelector('link[rel=manifest]').href).then((a) => a.json())")
