@@ -1,5 +1,6 @@
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
+import { serviceWorker } from "./pwa/plugin";
 
 const server = process.env.CROSSFIX_SERVER ?? "http://127.0.0.1:8600";
 
@@ -20,6 +21,7 @@ const builtFromSources = [
 
 export default defineConfig(({ command }) => ({
   base: "./",
+  plugins: [serviceWorker(here("public"))],
   worker: { format: "es" },
   resolve: { alias: command === "build" ? builtFromSources : [] },
   // MapLibre declares fields that its base classes fill

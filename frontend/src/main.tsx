@@ -23,5 +23,11 @@ watchKeys();
 watchAlerts();
 render(<App />, document.getElementById("app")!);
 if (new URLSearchParams(location.search).has("tour")) setTimeout(() => (overlay.value = "tour"), TOUR_AFTER_MS);
+/** After the safety bar and the flight's own data, which go first over a thin link. */
+const KEEP_AFTER_MS = 5000;
+if (import.meta.env.PROD && "serviceWorker" in navigator) {
+  // where a browser allows none (plain http to another machine) the page works all the same
+  setTimeout(() => navigator.serviceWorker.register("./sw.js").catch(() => undefined), KEEP_AFTER_MS);
+}
 followSession();
 followRoute();

@@ -249,7 +249,7 @@ export function MissionsPage() {
       {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
       {shown?.length === 0 && <p class="card">{t(filter !== ANY ? "missions.noneNamed" : "missions.empty")}</p>}
       {shown && shown.length > 0 && (
-        <table class="table">
+        <table class="table library-table">
           <thead>
             <tr>
               <th scope="col">

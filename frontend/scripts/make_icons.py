@@ -1,0 +1,41 @@
+"""Draw the icons of the installed page from `public/icon.svg`, with the installed Chromium.
+
+python frontend/scripts/make_icons.py
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+PUBLIC = Path(__file__).resolve().parents[1] / "public"
+SIZES = {"icon-192.png": 192, "icon-touch.png": 180}
+MASKABLE, MASKABLE_PX = "icon-maskable.png", 512
+SAFE = 0.72
+"""Of the width: what lies outside the middle 80 % may be cut off by a launcher (W3C manifest, maskable icons)."""
+GROUND = "#0047b3"
+
+
+def main() -> None:
+    drawing = (PUBLIC / "icon.svg").read_text()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        page = browser.new_page()
+
+        def draw(name: str, px: int, share: float, ground: str) -> None:
+            page.set_viewport_size({"width": px, "height": px})
+            style = f"margin:0;background:{ground};display:grid;place-items:center;height:100vh"
+            sized = drawing.replace("<svg ", f'<svg width="{px * share}" height="{px * share}" ', 1)
+            page.set_content(f'<body style="{style}">{sized}</body>')
+            page.screenshot(path=PUBLIC / name, omit_background=ground == "transparent")
+
+        for name, px in SIZES.items():
+            draw(name, px, 1.0, GROUND if name == "icon-touch.png" else "transparent")
+        draw(MASKABLE, MASKABLE_PX, SAFE, GROUND)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

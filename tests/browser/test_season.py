@@ -1,0 +1,173 @@
+"""After the flight: a mission brought in from elsewhere, found again, compared, printed, checked on a phone; and the
+page without its server."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+from screen import OpenScreen, Screen
+from served import REPOSITORY, Server
+
+from backend.store.brought import raw_files
+from backend.store.entries import EventRow, to_records
+from backend.store.upgrade import FIRST_FORM
+from backend.wire.bundle import bundle
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
+
+STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
+ID = STORED["mission_id"]
+FLOWN = to_records(ID, [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in STORED["rows"]])
+AXE = (REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js").read_text()
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True, "device_scale_factor": 2}
+SIZES = {"desktop": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
+
+
+def look(page: Page, name: str, folder: Path) -> None:
+    """No fault that axe calls serious in either theme, nothing wider than the screen; a picture of each size."""
+    page.evaluate(AXE)
+    for theme in ("indoor", "outdoor"):
+        page.evaluate(f"document.documentElement.dataset.theme = '{theme}'")
+        found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        serious = [
+            f"{v['id']}: {v['nodes'][0]['html'][:120]}"
+            for v in found["violations"]
+            if v["impact"] in ("serious", "critical")
+        ]
+        assert serious == [], f"{name}, {theme}"
+        for size, (width, height) in SIZES.items():
+            page.set_viewport_size({"width": width, "height": height})
+            page.screenshot(path=folder / f"{name}-{theme}-{size}.png")
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), f"{name}, {size}: too wide"
+    page.set_viewport_size({"width": 1280, "height": 800})
+
+
+def brought_in(screen: Screen, folder: Path) -> None:
+    """By the button of the library."""
+    path = folder / "mission.zip"
+    path.write_bytes(bundle(FLOWN, {}, raw_files(ID, (), {})))
+    screen.part("bring-in").set_input_files(path)
+    screen.page.wait_for_url(f"**#/mission/{ID}")
+
+
+def test_a_mission_from_elsewhere_is_found_compared_and_printed(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    screen = open_screen(server)
+    page, part = screen.page, screen.part
+    hostile = tmp_path / "hostile.zip"
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        archive.writestr("../../evil.sh", "#!/bin/sh")
+    hostile.write_bytes(stream.getvalue())
+    part("bring-in").set_input_files(hostile)
+    expect(page.get_by_text("Crossfix writes no such file into a bundle: ../../evil.sh")).to_be_visible()
+    brought_in(screen, tmp_path)
+    assert len(server.events(ID)) == len(FLOWN) + 1
+
+    # kept beside the mission, under a name
+    page.locator("[data-testid=event-row][data-kind=bearing_measured]").last.click()
+    part("what-if").locator("summary").click()
+    part("what-if-without").locator("input").first.check()
+    part("what-if-sigma").fill("14")
+    part("variant-name").fill("blunter, without the first")
+    part("keep-variant").click()
+    expect(page.get_by_text("The mission stays as it was flown.")).to_be_visible()
+    part("open-compare").click()
+    expect(part("compare-row")).to_have_count(2)
+    expect(part("compare-line")).to_have_count(2)
+    bearings = [int(row.locator("td").first.inner_text()) for row in part("compare-row").all()]
+    assert bearings[1] == bearings[0] - 1
+    look(page, "compare", tmp_path)
+    part("drop-variant").click()
+    expect(part("compare-row")).to_have_count(1)
+
+    # labelled, found by its tag, deleted, brought back
+    screen.go("#/")
+    row = page.locator(f"[data-mission='{ID}']")
+    row.get_by_test_id("label-mission").click()
+    part("label-name").fill("Owls by the river")
+    part("label-tags").fill("night, owls")
+    part("label-save").click()
+    page.get_by_role("searchbox").fill("owls")
+    expect(page.get_by_test_id("mission-row")).to_have_count(1)
+    expect(row).to_contain_text("Owls by the river")
+    look(page, "library", tmp_path)
+    row.get_by_test_id("label-mission").click()
+    part("delete-mission").click()
+    expect(row).to_have_count(0)
+    part("library-filter").locator("summary").click()
+    part("filter-deleted").check()
+    row.get_by_test_id("label-mission").click()
+    part("restore-mission").click()
+    expect(row).to_have_count(0)
+    part("filter-clear").click()
+    expect(row).to_be_visible()
+
+    # printed
+    screen.go(f"#/report/{ID}")
+    expect(part("report")).to_have_attribute("data-ready", "true")
+    expect(part("report-lead").first).to_be_visible()
+    look(page, "report", tmp_path)
+    sheet = page.pdf(path=tmp_path / "report.pdf", format="A4", print_background=True)
+    assert sheet.startswith(b"%PDF")
+
+
+def test_found_here_from_a_phone_is_in_the_calibration(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
+    estimate = next(
+        e["estimate"] for e in reversed(said_of(server, open_screen, tmp_path)) if e["kind"] == "belief_updated"
+    )
+    here = {"latitude": estimate["lat"], "longitude": estimate["lon"], "accuracy": 5}
+    phone = open_screen(server, f"#/mission/{ID}", geolocation=here, permissions=["geolocation"], **PHONE)
+    phone.part("truth").locator("summary").first.click()
+    phone.part("truth-here").click()
+    expect(phone.part("truth-error")).to_have_attribute("data-inside", "true")
+    told = [e for e in server.events(ID) if e["kind"] == "truth_noted"]
+    assert [(e["how"], e["accuracy_m"]) for e in told] == [("phone", 5.0)]
+    phone.page.screenshot(path=tmp_path / "found-here.png")
+
+    screen = open_screen(server, "#/calibration")
+    expect(screen.part("calibration-of")).to_be_visible()
+    expect(screen.part("reliability").first).not_to_have_attribute("data-of", "0")
+    look(screen.page, "calibration", tmp_path)
+
+
+def said_of(server: Server, open_screen: OpenScreen, folder: Path) -> list[dict[str, Any]]:
+    """The events of the mission, which is brought in if it is not here yet."""
+    brought_in(open_screen(server), folder)
+    return server.events(ID)
+
+
+def test_the_page_opens_without_its_server_and_keeps_no_answer(server: Server, open_screen: OpenScreen) -> None:
+    server.draft()
+    screen = open_screen(server)
+    page = screen.page
+    manifest = page.evaluate("fetch(document.querySelector('link[rel=manifest]').href).then((a) => a.json())")
+    assert manifest["display"] == "standalone"
+    width = "async (src) => (await createImageBitmap(await (await fetch(src)).blob())).width"
+    sizes = [page.evaluate(width, icon["src"]) for icon in manifest["icons"] if icon["type"] == "image/png"]
+    assert sizes == [192, 512]
+    page.evaluate("navigator.serviceWorker.ready.then(() => true)")
+    expect(screen.part("mission-row").first).to_be_visible()
+    held = page.evaluate(
+        """async () => (await Promise.all((await caches.keys()).map(async (name) =>
+            (await (await caches.open(name)).keys()).map((r) => new URL(r.url).pathname)))).flat()"""
+    )
+    assert "/index.html" in held
+    assert not [path for path in held if path.startswith(("/api", "/scene", "/health", "/metrics"))]
+    page.context.set_offline(True)
+    page.reload()
+    expect(screen.part("abort")).to_be_visible()
+    screen.go("#/compare/none")
+    expect(page.get_by_role("heading", name="Missions compared")).to_be_visible()
+    assert page.evaluate("fetch('/api/missions').then(() => 'answered', () => 'refused')") == "refused"
+    page.context.set_offline(False)
+    page.reload()
+    expect(screen.part("mission-row").or_(screen.part("compare")).first).to_be_visible()
