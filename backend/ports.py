@@ -141,7 +141,8 @@ class Said:
 class Lesson:
     """What one flight taught of the errors of its craft's bearings. bias_deg: clockwise. spread_deg: standard
     deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers. together:
-    log evidence of every combination of these values, the rates running fastest; empty in older lessons."""
+    log evidence of every combination of these values, the rates running fastest; empty in older lessons. place_known:
+    somebody told where the emitter was, so that the bearings were judged by that."""
 
     mission_id: str
     bearings: int
@@ -151,6 +152,7 @@ class Lesson:
     scale: tuple[Said, ...]
     rate: tuple[Said, ...]
     together: tuple[float, ...] = ()
+    place_known: bool = False
 
 
 class Lessons(Protocol):

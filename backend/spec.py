@@ -146,6 +146,9 @@ ErrorModel = Literal["independent", "joint"]
 """What is believed of the bearings' errors: each has its own, or those of a source have a bias, a scale of their sigmas
 and an outlier rate in common, which are estimated with the place (planner.belief.joint)."""
 
+SweepEvidence = Literal["peak", "whole"]
+"""What a joint belief takes of a sweep (planner.sweep_likelihood)."""
+
 
 Weights = Annotated[list[Annotated[float, Field(ge=0, le=1)]], Field(min_length=1, max_length=12)]
 """Of the values they stand beside; only their ratios count."""
@@ -187,7 +190,8 @@ class SensorSpec(Model):
 
     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
-    taught; the server writes it down when a mission is drafted, edited and started.
+    taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
+    what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
     """
@@ -205,6 +209,7 @@ class SensorSpec(Model):
     learned: LearnedErrors | None = None
     sector_turns: bool = False
     whole_turns: int = Field(default=1, ge=1, le=20)
+    sweep_evidence: SweepEvidence = "peak"
 
 
 class PlannerSpec(Model):

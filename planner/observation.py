@@ -13,6 +13,9 @@ from planner.types import Bearing, BoolArray, FloatArray, PlannerError
 WEDGE_SIGMAS = 4.0
 """A target lies within this many sigma of an honest bearing (spec 2)."""
 
+FEWEST_DIRECTIONS = 8
+"""Of a bearing's profile; a direction finder's has 360."""
+
 WIDEST_HARD_WEDGE = np.deg2rad(80.0)
 """Half angles above this are no usable wedge: the bearing only weighs, it does not cut."""
 
@@ -102,3 +105,5 @@ def validate_bearing(bearing: Bearing) -> None:
         raise PlannerError(UnusableBearing("outlier_probability"))
     if any(not np.isfinite([peak.angle, peak.weight]).all() or peak.weight <= 0 for peak in bearing.peaks):
         raise PlannerError(UnusableBearing("peak"))
+    if bearing.profile and (len(bearing.profile) < FEWEST_DIRECTIONS or not np.isfinite(bearing.profile).all()):
+        raise PlannerError(UnusableBearing("profile"))

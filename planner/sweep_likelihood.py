@@ -1,10 +1,13 @@
-"""What a sweep's whole likelihood over direction says of places: the update of a grid without main peak and sigma.
+"""A sweep's whole likelihood over direction, as a density that a belief weighs places with.
 
-    log L(x) = log( (1 - eps) p(dir(x) - s)  +  eps / (2 pi) )
+Where a bearing is a main peak and a sigma, a sweep says more: several peaks, a skew, directions of which it knows
+nothing. A scale s of the sensor's sigma, which a joint belief estimates, makes of the density p
 
-p is the sweep's likelihood as a density over direction, dir(x) = atan2(y - y_s, x - x_s) (4.2), eps the outlier rate.
-What the bearings of a flight share (compass, mounting) is s: either known, or of standard deviation `common_sigma`, and
-then p is convolved with its wrapped normal density (3.26 with the offset integrated out for this sweep alone).
+    p_s ~ p^(1 / s^2)                            for s <= 1
+    p_s = p * N(0, (s^2 - 1) sigma_p^2)          for s > 1, convolved; sigma_p the width of its highest peak
+
+Both make N(., (s sigma)^2) of a normal p and leave a flat one flat. A power below 1 would raise the flat foot that
+every sweep has, as if wider errors were more outliers: there is a rate of these besides.
 """
 
 from __future__ import annotations
@@ -15,48 +18,57 @@ import numpy as np
 
 from planner.types import FloatArray
 
-_LEAST = 1e-14
+EXCLUDED = -12.65
+"""Natural log below the likeliest: at that the direction finder cuts, so there is no telling how much lower it was."""
 
 
-def direction_density(log_likelihood: FloatArray, common_sigma: float) -> FloatArray:
-    """(m,) density a radian at the angles 2 pi k / m ccw from east, summing to m / (2 pi).
+def density(log_likelihood: tuple[float, ...], least_sigma: float) -> FloatArray:
+    """(m,) a radian at the angles 2 pi k / m ccw from east, summing to m / (2 pi).
 
-    log_likelihood: (m,) natural log there, any offset. common_sigma: rad, 0 for none.
+    log_likelihood: (m,) natural log there, any offset. One that is sharper than N(0, least_sigma^2) is convolved with
+    that; rad.
     """
-    count = log_likelihood.size
-    mass = np.exp(log_likelihood - np.max(log_likelihood))
-    if common_sigma > 0.0:
-        # the wrapped normal's Fourier coefficients: exp(-(n sigma)^2 / 2)
-        order = np.arange(count // 2 + 1)
-        mass = np.fft.irfft(np.fft.rfft(mass) * np.exp(-0.5 * (order * common_sigma) ** 2), count)
-    mass = np.maximum(mass, 0.0)
-    return np.asarray(mass / mass.sum() * count / (2.0 * math.pi), dtype=np.float64)
+    found = _normalized(_kept(log_likelihood))
+    return _blurred(found, least_sigma) if width(found) < least_sigma else found
 
 
-def log_update(
-    log_likelihood: FloatArray,
-    sensor: tuple[float, float],
-    x: FloatArray,
-    y: FloatArray,
-    *,
-    outlier_probability: float,
-    common_sigma: float = 0.0,
-    offset: float = 0.0,
-) -> FloatArray:
-    """Natural log of the sweep's likelihood at the places (x, y), of their shape; add it to the belief's log density.
+def width(density: FloatArray) -> float:
+    """rad, the standard deviation of the normal density that is as high as the highest of (m,) `density`."""
+    return 1.0 / (math.sqrt(2.0 * math.pi) * float(density.max()))
 
-    log_likelihood: (m,) at the angles 2 pi k / m, rad ccw from east. sensor: m ENU. offset: rad ccw that the flight's
-    bearings point beside the emitter, where that is known. A place at the sensor itself learns nothing.
-    """
-    density = direction_density(log_likelihood, common_sigma)
-    count = density.size
-    off_x, off_y = x - sensor[0], y - sensor[1]
-    at = ((np.arctan2(off_y, off_x) + offset) / (2.0 * math.pi) % 1.0) * count
-    low = np.floor(at).astype(np.int64) % count
-    part = at - np.floor(at)
-    log_density = np.log(np.maximum(density, _LEAST * density.max()))
-    found = np.exp(log_density[low] * (1.0 - part) + log_density[(low + 1) % count] * part)
-    uniform = 1.0 / (2.0 * math.pi)
-    mixed = (1.0 - outlier_probability) * found + outlier_probability * uniform
-    mixed = np.where((off_x == 0.0) & (off_y == 0.0), uniform, mixed)
-    return np.asarray(np.log(np.maximum(mixed, 1e-300)), dtype=np.float64)
+
+def scaled(density: FloatArray, scale: FloatArray) -> FloatArray:
+    """(k, m): p_s for each of the (k,) scales, normalized like `density` (m,)."""
+    relative, sigma = density / density.max(), width(density)
+    return np.array(
+        [
+            _normalized(relative ** (1.0 / s**2)) if s <= 1.0 else _blurred(density, sigma * math.sqrt(s**2 - 1.0))
+            for s in scale
+        ]
+    )
+
+
+def at(density: FloatArray, angle: FloatArray) -> FloatArray:
+    """The density at angles of any shape, rad ccw from east, linear between its directions."""
+    count = density.shape[-1]
+    place = (np.asarray(angle) / (2.0 * math.pi) % 1.0) * count
+    low = np.floor(place).astype(np.int64) % count
+    part = place - np.floor(place)
+    return np.asarray(density[low] * (1.0 - part) + density[(low + 1) % count] * part)
+
+
+def _kept(log_likelihood: tuple[float, ...]) -> FloatArray:
+    log = np.array(log_likelihood, dtype=np.float64)
+    log = log - log.max()
+    return np.where(log > EXCLUDED, np.exp(log), 0.0)
+
+
+def _normalized(mass: FloatArray) -> FloatArray:
+    return np.asarray(mass / mass.sum() * len(mass) / (2.0 * math.pi), dtype=np.float64)
+
+
+def _blurred(mass: FloatArray, sigma: float) -> FloatArray:
+    # the wrapped normal's Fourier coefficients: exp(-(n sigma)^2 / 2)
+    order = np.arange(mass.size // 2 + 1)
+    found = np.fft.irfft(np.fft.rfft(mass) * np.exp(-0.5 * (order * sigma) ** 2), mass.size)
+    return _normalized(np.maximum(found, 0.0))

@@ -58,7 +58,9 @@ class Bearing:
     x, y: sensor position, m ENU. angle, sigma: rad. `outlier_probability` eps mixes in a uniform likelihood,
     (1 - eps) * sum_i w_i N(angle_i, sigma) + eps / (2 pi); with eps = 0 the wedge is hard at +-4 sigma. source: who
     took it; a joint belief (planner.belief.joint) gives the bearings of one source one bias, scale and outlier rate.
-    taken_at: s on any clock; counts for emitters that move only.
+    taken_at: s on any clock; counts for emitters that move only. profile: natural log of what its sweep says of the
+    directions 2 pi k / m, ccw from east, any offset; empty: only angle, sigma and peaks are known. A joint belief takes
+    it in their place.
     """
 
     x: float
@@ -69,6 +71,7 @@ class Bearing:
     peaks: tuple[Peak, ...] = ()
     source: str = ""
     taken_at: float = 0.0
+    profile: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,7 @@ async def _known(services: Services, craft: CraftEquipment) -> CompassKnown:
         antenna=antenna,
         flights=len(lessons),
         bearings=sum(one.bearings for one in lessons),
+        places_known=sum(one.place_known for one in lessons),
         bias_deg=None if found is None else found[0],
         bias_spread_deg=None if found is None else found[1],
         expected_bias_deg=math.degrees(prior.bias_sd),

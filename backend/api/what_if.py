@@ -128,7 +128,7 @@ def _taken(
         if heard.kind == "bearing_measured":
             with_bearing.add(heard.place_number)
             if wanted.sigma_deg is not None:
-                heard = heard.model_copy(update={"sigma_deg": wanted.sigma_deg})
+                heard = heard.model_copy(update={"sigma_deg": wanted.sigma_deg, "likelihood": None})
         taken.append(heard)
     return taken
 

@@ -184,7 +184,7 @@ class Work:
         None: straight, else around what may not be crossed."""
         end, now = self.task.frame.to_enu(place), self.situation()
         points = [*(way or ()), end]
-        straight = place_vetoes(self.limits, now, place, self.level_altitude(points), way or ())
+        straight = place_vetoes(self.limits, now, place, self._level_altitude(now, points), way or ())
         around = safety.WayLeavesFence | safety.WayCrossesNoFly
         if self.task.ground.terrain is not None:
             around |= safety.ClearanceShort | safety.TooHighAboveGround | safety.AltitudeOutside
@@ -194,11 +194,14 @@ class Work:
             found = self._way(end)
         except PlannerError:
             return straight
-        return place_vetoes(self.limits, now, place, self.level_altitude(found), found[:-1])
+        return place_vetoes(self.limits, now, place, self._level_altitude(now, found), found[:-1])
 
     def level_altitude(self, way: Sequence[tuple[float, float]]) -> float:
         """Metres AMSL at which a way (m ENU) is flown from where the vehicle is now."""
-        position = self.situation().telemetry.position
+        return self._level_altitude(self.situation(), way)
+
+    def _level_altitude(self, now: Situation, way: Sequence[tuple[float, float]]) -> float:
+        position = now.telemetry.position
         before = [] if position is None else [self.task.frame.to_enu(position)]
         return self.task.level_altitude([*before, *way])
 

@@ -25,6 +25,7 @@ from backend.events.alerts import (
 from backend.events.bearings import (
     AntennaFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BearingSource,
     CraftSource,
@@ -32,6 +33,7 @@ from backend.events.bearings import (
     Peak,
     PersonSource,
     RecordingImported,
+    SourceMuteChanged,
     SweepRejected,
     TurnFact,
 )
@@ -98,6 +100,7 @@ __all__ = [
     "BatteryCountdownStarted",
     "BatteryCountdownStopped",
     "BearingExcluded",
+    "BearingIncluded",
     "BearingMeasured",
     "BearingSource",
     "BeliefUpdated",
@@ -154,6 +157,7 @@ __all__ = [
     "SafetyVetoed",
     "ServerRestarted",
     "SourceErrorsFact",
+    "SourceMuteChanged",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
@@ -188,6 +192,8 @@ Event = Annotated[
     | BearingMeasured
     | RecordingImported
     | BearingExcluded
+    | BearingIncluded
+    | SourceMuteChanged
     | BeliefUpdated
     | HoldOrdered
     | ResumeOrdered

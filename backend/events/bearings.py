@@ -163,3 +163,24 @@ class BearingExcluded(Fact):
     by: str
     reason: str
     """In the operator's own words."""
+
+
+class BearingIncluded(Fact):
+    """A bearing that was left out counts again, in its old place in the order."""
+
+    kind: Literal["bearing_included"] = "bearing_included"
+    emitter_id: Id
+    bearing_id: str
+    by: str
+
+
+class SourceMuteChanged(Fact):
+    """muted: the source's bearings, those to come too, are kept and count for nothing; False: they count again, but for
+    those that were left out one by one."""
+
+    kind: Literal["source_mute_changed"] = "source_mute_changed"
+    source: BearingSource
+    muted: bool
+    by: str
+    reason: str = ""
+    """In the operator's own words."""

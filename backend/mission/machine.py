@@ -17,8 +17,10 @@ from backend.commands import (
     ForCraft,
     GiveControl,
     Hold,
+    IncludeBearing,
     KeepControl,
     Land,
+    MuteSource,
     ReleaseControl,
     Return,
     Start,
@@ -32,6 +34,7 @@ from backend.events import (
     AreaChanged,
     AuthorFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BeliefUpdated,
     CommandAccepted,
@@ -43,6 +46,7 @@ from backend.events import (
     Event,
     MissionStarted,
     ServerRestarted,
+    SourceMuteChanged,
 )
 from backend.mission import control
 from backend.mission.effects import Effect, OfCraft, Reply
@@ -53,6 +57,9 @@ from backend.reasons.access import CommandIdReused
 from backend.search import machine as search_machine
 from backend.search.effects import Record, Refuse, SearchEffect, UpdateBelief
 from backend.search.inputs import SearchInput, SearchOrdered, SearchOver
+
+Recount = BearingExcluded | BearingIncluded | SourceMuteChanged
+"""What makes bearings count that did not, or the other way round."""
 
 FOR_ALL = (Hold, Return, Land, Abort)
 """Orders that name no craft are for every one."""
@@ -104,7 +111,7 @@ class _Transition:
     def react(self) -> None:
         """What the facts so far mean to the others: beliefs to fold, craft that waited for them."""
         facts, self.facts = self.facts, []
-        if any(isinstance(fact, BearingMeasured | BearingExcluded | AreaChanged | MissionStarted) for fact in facts):
+        if any(isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted) for fact in facts):
             self.update_beliefs()
         if any(_changes_the_search(fact) for fact in facts):
             for craft in self.state.engaged:
@@ -122,7 +129,7 @@ class _Transition:
 def _changes_the_search(fact: Event) -> bool:
     """A craft's own bearing is part of what it is doing already."""
     foreign = isinstance(fact, BearingMeasured) and not isinstance(fact.source, CraftSource)
-    return foreign or isinstance(fact, BeliefUpdated | BearingExcluded)
+    return foreign or isinstance(fact, BeliefUpdated | Recount)
 
 
 def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionState, tuple[Effect, ...]]:
@@ -183,7 +190,7 @@ def _carry_out(now: _Transition, given: Commanded) -> Reason | None:
             return None
         case AcknowledgeAlert(alert_id=alert_id) if alert_id not in open_alert_ids(state):
             return refusals.NoSuchAlert()
-        case ChangeArea() | ExcludeBearing() | AcknowledgeAlert():
+        case ChangeArea() | ExcludeBearing() | IncludeBearing() | MuteSource() | AcknowledgeAlert():
             held = all(craft.phase == "hold" and not craft.taken_over for craft in state.engaged)
             return now.to_search(SearchOrdered(given.author.name, command, given.search.objections, held))
         case _:

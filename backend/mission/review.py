@@ -1,4 +1,4 @@
-"""After the flight: what is told of an emitter, a mission's labels, its deletion. Facts like all others."""
+"""After the flight: the ground truth of an emitter, a mission's labels, its deletion. Facts like all others."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from backend.events import MissionDeleted, MissionLabelled, MissionRestored, ReviewFact, TruthNoted
 from backend.events.review import TruthWay
 from backend.mission.flights import Flights
+from backend.mission.learning import learn_from_truth
 from backend.mission.records import Records
 from backend.reasons import refusals
 from backend.reasons.search import WhichEmitter
@@ -31,7 +32,10 @@ class Review:
         how: TruthWay,
         by: str,
     ) -> None:
-        """place None: looked for and not found. Raises MissionInputError for an emitter that is not looked for."""
+        """place None: looked for and not found. What the flight taught of its compass is judged again by it.
+
+        Raises MissionInputError for an emitter that is not looked for.
+        """
         state, _ = await self.records.load(mission_id)
         emitters = tuple(state.search.emitters)
         if emitter_id is None and len(emitters) != 1:
@@ -40,6 +44,7 @@ class Review:
         if about not in emitters:
             raise MissionInputError(refusals.NoSuchEmitter(about), "emitter_id")
         await self._record(mission_id, TruthNoted(emitter_id=about, place=place, accuracy_m=accuracy_m, how=how, by=by))
+        await learn_from_truth(self.flights.equipment, mission_id, await self.records.read(mission_id))
 
     async def label(self, mission_id: str, name: str, tags: list[str], notes: str, by: str) -> None:
         """In the place of what was said before."""

@@ -1,27 +1,28 @@
 """What a flight taught of the errors of its craft's bearings, and what the flights so far say of the next one's.
 
 A lesson is the flight's evidence for each value that bias' spread, scale and outlier rate may have
-(planner.belief.learning). It needs no truth: the bearings agree or not. An antenna check before a known emitter tells
-of the bias besides.
+(planner.belief.learning). It needs no truth: the bearings agree or not. Where somebody told where the emitter was, they
+are judged by that. An antenna check before a known emitter tells of the bias besides.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from backend.events import AntennaChecked, BearingMeasured, CraftSource
+from backend.events import AntennaChecked, BearingMeasured, CraftSource, TruthNoted
 from backend.ports import Lesson, Said
 from backend.search.localization import Localization, source_name
 from backend.search.source_priors import learned_errors, unknown_errors
-from backend.search.state import SearchState
+from backend.search.state import EmitterState, SearchState
 from backend.search.task import SearchTask
 from backend.spec import LearnedErrors, MissionSpec, SensorSpec
 from hardware.reasons.antenna import AntennaAgrees
 from planner.belief.joint import JointBelief
-from planner.belief.learning import evidence_at, flight_evidence, learned
+from planner.belief.learning import bias_at, evidence_at, flight_evidence, learned
 from planner.belief.source_errors import ErrorPrior
 from planner.types import Bearing, FloatArray
 
@@ -33,9 +34,17 @@ LESSONS_KEPT = 100
 """The newest: what a compass was like a hundred flights ago says little of today's."""
 
 
+UNSAID_ACCURACY_M = 10.0
+"""Of a place whose teller said nothing of it."""
+LEAST_ACCURACY_M = 1.0
+ACCURACY_SIGMAS = 1.5
+"""Two thirds of the places are within the stated accuracy: 1.5 standard deviations of each coordinate."""
+
+
 def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str) -> Lesson | None:
-    """Of a mission that has flown, from the emitter of which the craft took most bearings: one bias turned them all, so
-    that two emitters are not two witnesses. None when the craft took none or errors were taken to be independent.
+    """Of a mission that has flown, from the emitter of which the craft took most bearings, one whose place was told
+    before all others: one bias turned them all, so that two emitters are not two witnesses. None when the craft took
+    none or errors were taken to be independent.
 
     Heavy (some tenths of a second): call it off the event loop.
     """
@@ -44,10 +53,35 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
     def taken(emitter_id: str) -> list[BearingMeasured]:
         return [b for b in search.emitters[emitter_id].bearings if source_name(b.source) == source]
 
-    most = max(search.emitters, key=lambda emitter_id: len(taken(emitter_id)), default=None)
-    if most is None or not taken(most) or most not in task.emitters:
+    heard = [name for name in search.emitters if name in task.emitters and taken(name)]
+    most = max(heard, key=lambda name: (found_at(search.emitters[name]) is not None, len(taken(name))), default=None)
+    if most is None:
         return None
-    return _lesson(mission_id, task.emitters[most], search.emitters[most].bearings, source)
+    emitter, localized = search.emitters[most], task.emitters[most]
+    if (found := found_at(emitter)) is not None:
+        return _lesson_at(mission_id, localized, taken(most), source, found)
+    return _lesson(mission_id, localized, emitter.bearings, source)
+
+
+def found_at(emitter: EmitterState) -> TruthNoted | None:
+    """Where somebody found it; None when nobody did, or it was looked for in vain."""
+    return None if emitter.truth is None or emitter.truth.place is None else emitter.truth
+
+
+def _lesson_at(
+    mission_id: str, task: Localization, taken: Sequence[BearingMeasured], source: str, found: TruthNoted
+) -> Lesson | None:
+    """taken: by the source. Other sources' bearings tell nothing that the place does not."""
+    belief = task.prior
+    if not isinstance(belief, JointBelief) or found.place is None:
+        return None
+    prior, bearings = belief.priors.get(source, belief.otherwise), task.planner_bearings(taken)
+    accuracy_m = UNSAID_ACCURACY_M if found.accuracy_m is None else max(found.accuracy_m, LEAST_ACCURACY_M)
+    at = task.frame.to_enu(found.place), accuracy_m / ACCURACY_SIGMAS
+    bias, bias_sd = bias_at(bearings, prior, *at)
+    log = evidence_at(bearings, prior, *at)
+    bias_deg = -math.degrees(bias), math.degrees(bias_sd)
+    return replace(_said_of(mission_id, len(bearings), bias_deg, prior, log), place_known=True)
 
 
 def _lesson(mission_id: str, task: Localization, measured: Sequence[BearingMeasured], source: str) -> Lesson | None:

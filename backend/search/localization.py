@@ -32,6 +32,7 @@ from backend.search.area import EDGE_TOLERANCE_M
 from backend.search.errors import MissionInputError
 from backend.search.source_priors import priors_of
 from backend.spec import MissionSpec
+from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
 from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import Place
@@ -65,6 +66,9 @@ DOUBT = 0.05
 
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
+
+EAST_DEG = 90
+"""Clockwise from north."""
 
 PERSISTENCE_S = {"animal": WALKING_S, "walking": PURPOSEFUL_S, "drifting": DRIFTING_S}
 """By the kind of movement."""
@@ -104,6 +108,11 @@ class Localization:
         """Whether the emitter may be elsewhere by the next bearing."""
         return isinstance(self.prior, MovingBelief)
 
+    @property
+    def _takes_whole_sweeps(self) -> bool:
+        """An emitter that moves is followed by peaks and sigmas: its Kalman filters know no other densities."""
+        return isinstance(self.prior, JointBelief) and self.mission.sensor.sweep_evidence == "whole"
+
     def without(self, closed: BaseGeometry | None) -> Localization:
         """The same with these places (m ENU) closed to the planner, too."""
         if closed is None:
@@ -126,6 +135,7 @@ class Localization:
             peaks=tuple(Peak(compass_to_angle(p.bearing_deg), p.weight) for p in fact.peaks),
             source=source_name(fact.source),
             taken_at=(fact.taken_at_s or 0.0) if self.moving else 0.0,
+            profile=_profile(fact) if self._takes_whole_sweeps else (),
         )
 
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
@@ -280,6 +290,20 @@ def localization(
 def own_sigma_deg(fact: BearingMeasured) -> float:
     """Of what differs from bearing to bearing: the shares of heading and pattern are the same for all of a source."""
     return math.sqrt(max(fact.sigma_deg**2 - fact.heading_sigma_deg**2 - fact.pattern_sigma_deg**2, 0.0))
+
+
+def _profile(fact: BearingMeasured) -> tuple[float, ...]:
+    """Natural log at the angles 0, 1, .. 359 degrees ccw from east; empty for a bearing whose sweep was not kept.
+
+    A likelihood that cannot be unpacked is none: the bearing counts by its peak and sigma.
+    """
+    if fact.likelihood is None:
+        return ()
+    try:
+        said = SweepLikelihood.unpacked(fact.likelihood).log_likelihood
+    except LikelihoodError:
+        return ()
+    return tuple(said[(EAST_DEG - np.arange(len(said))) % len(said)].tolist())
 
 
 def source_name(source: BearingSource) -> str:

@@ -12,7 +12,9 @@ from backend.events import (
     AntennaChecked,
     AreaChanged,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
+    BearingSource,
     BeliefUpdated,
     CheckFact,
     Event,
@@ -25,7 +27,9 @@ from backend.events import (
     PlanChosen,
     PreflightChecked,
     ServerRestarted,
+    SourceMuteChanged,
     Topic,
+    TruthNoted,
 )
 from backend.reasons import Reason
 from backend.spec import MissionSpec, Place
@@ -50,23 +54,32 @@ class EmitterState:
     claim, claimed_at_s: the last belief that said localized, and when (UTC epoch seconds): of an emitter that moves it
     stands for its moment, whatever is believed later.
 
+    muted: sources whose bearings do not count, as those in `excluded` do not.
+
     belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
-    epoch seconds at which the belief was first good enough, None when it is not.
+    epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
+    really was; no belief about it depends on that.
     """
 
     emitter_id: str
     measured: tuple[BearingMeasured, ...] = ()
     excluded: frozenset[str] = frozenset()
+    muted: frozenset[BearingSource] = frozenset()
     belief: BeliefUpdated | None = None
     belief_current: bool = False
     localized_at_s: float | None = None
     claim: BeliefUpdated | None = None
     claimed_at_s: float | None = None
+    truth: TruthNoted | None = None
 
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
         """The bearings that count, in the order they were taken."""
-        return tuple(b for b in self.measured if b.bearing_id not in self.excluded)
+        return tuple(b for b in self.measured if self.counts(b))
+
+    def counts(self, bearing: BearingMeasured) -> bool:
+        """Neither it nor its source was left out."""
+        return bearing.bearing_id not in self.excluded and bearing.source not in self.muted
 
     @property
     def bearing_ids(self) -> tuple[str, ...]:
@@ -89,6 +102,8 @@ class SearchState:
     """emitters: by id, in the specification's order. home: origin of the local frame, None until a craft started.
     ground: the terrain below, None while it is taken to be flat.
 
+    muted: sources whose bearings count for no emitter.
+
     place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds.
     """
 
@@ -100,6 +115,7 @@ class SearchState:
     ground: GroundFact | None = None
     started_at_s: float | None = None
     emitters: Mapping[str, EmitterState] = field(default_factory=dict[str, EmitterState])
+    muted: frozenset[BearingSource] = frozenset()
     place_number: int = 0
     open_alerts: tuple[OpenAlert, ...] = ()
     alerts_raised: int = 0
@@ -207,8 +223,11 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(begun, spec=spec, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
         case PlanChosen(place_number=number):
             return replace(state, place_number=max(state.place_number, number))
-        case BearingMeasured() | BearingExcluded() | BeliefUpdated():
+        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated():
             return _evolve_emitter(state, event, at_s)
+        case SourceMuteChanged(source=source, muted=muted):
+            sources = state.muted | {source} if muted else state.muted - {source}
+            return _each(replace(state, muted=sources), lambda emitter: _muting(emitter, source, sources))
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
@@ -216,6 +235,9 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
         case ServerRestarted():
             return _each(state, lambda emitter: replace(emitter, belief_current=False))
+        case TruthNoted(emitter_id=name) if name in state.emitters:
+            told = replace(state.emitters[name], truth=event)
+            return replace(state, emitters={**state.emitters, name: told})
         case MissionEnded(outcome=outcome, reason=reason):
             return replace(state, outcome=outcome, outcome_reason=reason)
         case _:
@@ -223,17 +245,18 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
 
 
 def _evolve_emitter(
-    state: SearchState, event: BearingMeasured | BearingExcluded | BeliefUpdated, at_s: float
+    state: SearchState, event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated, at_s: float
 ) -> SearchState:
-    emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id))
+    emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id, muted=state.muted))
     number = state.place_number
     match event:
         case BearingMeasured():
             emitter = replace(emitter, measured=(*emitter.measured, event), belief_current=False)
             number = max(number, event.place_number)
         case BearingExcluded(bearing_id=bearing_id):
-            excluded = emitter.excluded | {bearing_id}
-            emitter = replace(emitter, excluded=excluded, belief_current=False, claim=None, claimed_at_s=None)
+            emitter = _recounted(replace(emitter, excluded=emitter.excluded | {bearing_id}))
+        case BearingIncluded(bearing_id=bearing_id):
+            emitter = _recounted(replace(emitter, excluded=emitter.excluded - {bearing_id}))
         case BeliefUpdated(localized=localized):
             since = (emitter.localized_at_s or at_s) if localized else None
             emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
@@ -242,10 +265,23 @@ def _evolve_emitter(
     return replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
 
 
+def _muting(emitter: EmitterState, source: BearingSource, muted: frozenset[BearingSource]) -> EmitterState:
+    """An emitter that the source told nothing of keeps its belief."""
+    emitter = replace(emitter, muted=muted)
+    concerned = any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
+    return _recounted(emitter) if concerned else emitter
+
+
+def _recounted(emitter: EmitterState) -> EmitterState:
+    """What was claimed was claimed of other bearings."""
+    return replace(emitter, belief_current=False, claim=None, claimed_at_s=None)
+
+
 def _with_spec(state: SearchState, spec: MissionSpec) -> SearchState:
     """An emitter that is no longer looked for takes its bearings with it."""
     ids = [emitter.emitter_id for emitter in spec.emitters]
-    emitters = {name: replace(state.emitters.get(name, EmitterState(name)), belief_current=False) for name in ids}
+    unknown = {name: EmitterState(name, muted=state.muted) for name in ids}
+    emitters = {name: replace(state.emitters.get(name, unknown[name]), belief_current=False) for name in ids}
     return replace(state, spec=spec, emitters=emitters)
 
 

@@ -1,4 +1,4 @@
-"""The library of missions: small maps, labels, what is told of an emitter, and what many missions say together."""
+"""The library of missions: small maps, labels, the ground truth of an emitter, and what many missions say together."""
 
 from __future__ import annotations
 

@@ -323,14 +323,16 @@ class AntennaReview(Model):
 class CompassKnown(Model):
     """What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
 
-    flights, bearings: that were learned from. bias_deg: mean of the flights, clockwise, and bias_spread_deg: its
-    standard deviation from flight to flight; None without a flight. expected_bias_deg: standard deviation of the next
-    flight's bias. sigma_scale: factor on the stated sigmas. outlier_rate: share of bearings."""
+    flights, bearings: that were learned from; places_known: flights whose emitter was found. bias_deg: mean of the
+    flights, clockwise, and bias_spread_deg: its standard deviation from flight to flight; None without a flight.
+    expected_bias_deg: standard deviation of the next flight's bias. sigma_scale: factor on the stated sigmas.
+    outlier_rate: share of bearings."""
 
     craft_id: Id
     antenna: str
     flights: int
     bearings: int
+    places_known: int
     bias_deg: float | None
     bias_spread_deg: float | None
     expected_bias_deg: float

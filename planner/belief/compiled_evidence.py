@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner import sweep_likelihood
 from planner.belief.evidence import Evidence, Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, allocating, entry, jit
@@ -26,7 +27,10 @@ FAR_SIGMAS = 9.0
 
 def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evidence:
     """See evidence.evidence."""
-    cells = len(x)
+    cells, directions = len(x), seen.profile.shape[1]
+    profiles = np.empty((len(seen.profile), len(nodes.scale), directions))
+    for i, profile in enumerate(seen.profile):
+        profiles[i] = sweep_likelihood.scaled(profile, nodes.scale)
     out = Evidence(
         np.empty(cells),
         np.empty((cells, len(nodes.bias))),
@@ -37,6 +41,7 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
         np.ascontiguousarray(x, dtype=float),
         np.ascontiguousarray(y, dtype=float),
         seen,
+        profiles,
         nodes.bias,
         nodes.spacing,
         nodes.bias_weight,
@@ -58,6 +63,21 @@ def _tabulate(table, spacing, sigma):
         for n in range(columns):
             off = (f / STEPS - (n - middle)) * scaled
             table[f, n] = np.exp(-0.5 * off * off) if abs(off) < FAR_SIGMAS else 0.0
+
+
+@allocating
+def _tabulate_profile(table, spacing, profile, angle, unit):
+    """The same of a profile (m,) about `angle`, times `unit`."""
+    rows, columns = table.shape
+    middle, directions = columns // 2, len(profile)
+    for f in range(rows):
+        for n in range(columns):
+            turned = (angle - (f / STEPS - (n - middle)) * spacing) / (2.0 * np.pi)
+            place = (turned - np.floor(turned)) * directions
+            low = int(place)
+            part = place - low
+            between = profile[low % directions] * (1.0 - part) + profile[(low + 1) % directions] * part
+            table[f, n] = unit * between
 
 
 @jit
@@ -95,15 +115,18 @@ def _of_cell(x, y, seen, first, spacing, scale, rate, tables, middle, table, den
         for k in range(len(scale)):
             for b in range(len(density)):
                 density[b] = 0.0
-            for j in range(seen.first[i], seen.first[i + 1]):
+            # a profile was tabulated about its main peak and holds the others
+            last = seen.first[i] + 1 if seen.whole[i] >= 0 else seen.first[i + 1]
+            for j in range(seen.first[i], last):
+                share = 1.0 if seen.whole[i] >= 0 else seen.weight[j]
                 error = seen.angle[j] - direction
                 error -= 2.0 * np.pi * np.floor(error / (2.0 * np.pi) + 0.5)
                 at = (error - first) / spacing
                 nodes_past = np.floor(at)
                 fine = (at - nodes_past) * STEPS
                 f = int(fine)
-                above = seen.weight[j] * (fine - f)
-                _interpolated(density, tables, i, k, f, middle - int(nodes_past), seen.weight[j] - above, above)
+                above = share * (fine - f)
+                _interpolated(density, tables, i, k, f, middle - int(nodes_past), share - above, above)
             for e in range(len(rate)):
                 honest = (1.0 - rate[e]) / scale[k]
                 _weighed(table[k * len(rate) + e], density, honest, rate[e] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
@@ -134,14 +157,17 @@ def _sums(table, rates, bias, scale, rate):
 
 
 @entry
-def _evidence(x, y, seen, bias, spacing, bias_weight, scale, scale_weight, rate, rate_weight, out):
+def _evidence(x, y, seen, profiles, bias, spacing, bias_weight, scale, scale_weight, rate, rate_weight, out):
     _ = SOURCES
     scales, rates, count, bearings = len(scale), len(rate), len(bias), len(seen.x)
     middle = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
     tables = np.empty((bearings, scales, STEPS + 2, 2 * middle + 1))
     for i in range(bearings):
         for k in range(scales):
-            if i > 0 and seen.sigma[i] == seen.sigma[i - 1]:
+            if seen.whole[i] >= 0:
+                unit = scale[k] * seen.sigma[i] * np.sqrt(2.0 * np.pi)
+                _tabulate_profile(tables[i, k], spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
+            elif i > 0 and seen.whole[i - 1] < 0 and seen.sigma[i] == seen.sigma[i - 1]:
                 tables[i, k] = tables[i - 1, k]
             else:
                 _tabulate(tables[i, k], spacing, scale[k] * seen.sigma[i])

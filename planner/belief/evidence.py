@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from planner import sweep_likelihood
 from planner.belief.source_errors import Nodes
 from planner.observation import expected_bearing, wrap
 from planner.types import Bearing, FloatArray, IntArray
@@ -19,7 +20,8 @@ class Sightings(NamedTuple):
     """The bearings of one source as arrays. x, y: (n,) m. sigma: (n,) rad, of each bearing's own error.
 
     first: (n + 1,) where the peaks of each bearing begin in angle (p,) rad and weight (p,); a bearing's weights sum
-    to 1.
+    to 1. profile: (q, m) densities a radian over the directions 2 pi k / m, which count in the place of peaks and
+    sigma; whole: (n,) which of them is a bearing's, -1: none.
     """
 
     x: FloatArray
@@ -28,6 +30,8 @@ class Sightings(NamedTuple):
     first: IntArray
     angle: FloatArray
     weight: FloatArray
+    profile: FloatArray
+    whole: IntArray
 
 
 class Evidence(NamedTuple):
@@ -42,18 +46,30 @@ class Evidence(NamedTuple):
     rate: FloatArray
 
 
+SMALLEST_SIGMA = float(np.deg2rad(1.0))
+"""A source's bearings are never taken to be better than this: neither the position nor the pattern is."""
+
+
 def sightings(bearings: Sequence[Bearing]) -> Sightings:
-    """The bearings' outlier probability is not used: the source's rate stands for it."""
+    """The bearings' outlier probability is not used: the source's rate stands for it. Profiles have equally many
+    directions."""
     peaks = [[(b.angle, 1.0), *((peak.angle, peak.weight) for peak in b.peaks)] for b in bearings]
     first = np.concatenate([[0], np.cumsum([len(some) for some in peaks])]).astype(np.int64)
     weights = [w / sum(v for _, v in some) for some in peaks for _, w in some]
+    profiles = [sweep_likelihood.density(b.profile, SMALLEST_SIGMA) for b in bearings if b.profile]
+    has = np.array([bool(b.profile) for b in bearings])
+    whole = np.where(has, np.cumsum(has) - 1, -1).astype(np.int64)
+    sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in bearings], dtype=float)
+    sigma[has] = [sweep_likelihood.width(profile) for profile in profiles]
     return Sightings(
         np.array([b.x for b in bearings], dtype=float),
         np.array([b.y for b in bearings], dtype=float),
-        np.array([b.sigma for b in bearings], dtype=float),
+        sigma,
         first,
         np.array([angle for some in peaks for angle, _ in some], dtype=float),
         np.array(weights, dtype=float),
+        np.array(profiles, dtype=float).reshape(len(profiles), -1) if profiles else np.ones((0, 1)),
+        whole,
     )
 
 
@@ -61,7 +77,8 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
     """Of the places (c,) x, y, m ENU.
 
     p(z | x) = sum_b,s,e p(b) p(s) p(e) prod_i [(1 - e) sum_j w_ij N(z_ij - dir_i(x) - b; 0, (s sigma_i)^2) + e / 2 pi],
-    each bearing's density in units of that at the peak of N(0, sigma_i^2).
+    each bearing's density in units of that at the peak of N(0, sigma_i^2). Of a sweep's profile p_i instead of the sum
+    over peaks (1 - e) p_i,s(dir_i(x) + b), its scale as in planner.sweep_likelihood.
     """
     prior = nodes.scale_weight[:, None, None] * nodes.rate_weight[:, None] * nodes.bias_weight
     log = np.broadcast_to(np.log(prior), (len(x), *prior.shape)).copy()
@@ -69,9 +86,14 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
         direction = expected_bearing(seen.x[i], seen.y[i], x, y)
         sigma = nodes.scale * seen.sigma[i]
         density = np.zeros((len(x), len(sigma), len(nodes.bias)))
-        for j in range(seen.first[i], seen.first[i + 1]):
-            error = wrap(seen.angle[j] - direction)[:, None] - nodes.bias
-            density += seen.weight[j] * np.exp(-0.5 * (error[:, None, :] / sigma[:, None]) ** 2)
+        if seen.whole[i] >= 0:
+            for k, profile in enumerate(sweep_likelihood.scaled(seen.profile[seen.whole[i]], nodes.scale)):
+                towards = direction[:, None] + nodes.bias
+                density[:, k] = sigma[k] * np.sqrt(2.0 * np.pi) * sweep_likelihood.at(profile, towards)
+        else:
+            for j in range(seen.first[i], seen.first[i + 1]):
+                error = wrap(seen.angle[j] - direction)[:, None] - nodes.bias
+                density += seen.weight[j] * np.exp(-0.5 * (error[:, None, :] / sigma[:, None]) ** 2)
         honest = (1.0 - nodes.rate[:, None]) * density[:, :, None, :] / nodes.scale[:, None, None]
         log += np.log(honest + nodes.rate[:, None] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
     top = log.max(axis=(1, 2, 3), keepdims=True)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from planner.belief import compiled_evidence, evidence
-from planner.belief.evidence import Evidence, sightings
+from planner.belief.evidence import SMALLEST_SIGMA, Evidence, sightings
 from planner.belief.grid import (
     COARSE_CELLS,
     MOST_CELLS,
@@ -39,8 +39,6 @@ MANY_CELLS = 128 * 128
 COARSEST_CELLS = 12
 """Cells along the longer side of the 95 % region that any grid must have."""
 DEEPEST_REFINEMENT = 16
-SMALLEST_SIGMA = np.deg2rad(1.0)
-"""A source's bearings are never taken to be better than this: neither the position nor the pattern is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,10 +103,9 @@ def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     log = np.log(belief.prior[rows, columns])
     found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
     for source, taken in by_source(belief.folded).items():
-        honest = [replace(b, sigma=max(b.sigma, SMALLEST_SIGMA)) for b in taken]
-        prior = belief.priors.get(source, belief.otherwise)
-        grid = nodes(prior, min(b.sigma for b in honest), len(honest))
-        weighed = weighing(x, y, sightings(honest), grid)
+        seen, prior = sightings(taken), belief.priors.get(source, belief.otherwise)
+        grid = nodes(prior, float(seen.sigma.min()), len(taken))
+        weighed = weighing(x, y, seen, grid)
         log = log + weighed.log
         found.append((source, len(taken), prior, grid, weighed))
     mass = np.exp(log - log.max())
@@ -182,7 +179,7 @@ def _corrected(errors: SourceErrors | None, bearing: Bearing) -> Bearing:
         return bearing
     peaks = tuple(replace(peak, angle=peak.angle - errors.bias) for peak in bearing.peaks)
     sigma = float(np.hypot(errors.scale * max(bearing.sigma, SMALLEST_SIGMA), errors.bias_sd))
-    return replace(bearing, angle=bearing.angle - errors.bias, sigma=sigma, peaks=peaks)
+    return replace(bearing, angle=bearing.angle - errors.bias, sigma=sigma, peaks=peaks, profile=())
 
 
 reference_weighing: Weighing = evidence.evidence

@@ -18,11 +18,13 @@ from dataclasses import replace
 import numpy as np
 
 from planner.belief import compiled_evidence
-from planner.belief.evidence import sightings
-from planner.belief.joint import SMALLEST_SIGMA, JointBelief, by_source
+from planner.belief.evidence import Sightings, sightings
+from planner.belief.joint import JointBelief, by_source
 from planner.belief.source_errors import ErrorPrior, Nodes, bias_weights, nodes
 from planner.types import Bearing, FloatArray
 
+FOUND_SIGMAS = np.linspace(-2.5, 2.5, 9)
+"""Where an emitter is looked for about the place at which it was found, in standard deviations of that place."""
 SURPRISE = 0.02
 """Share of the prior that knows nothing, whatever was learned."""
 
@@ -38,23 +40,50 @@ def flight_evidence(belief: JointBelief, source: str) -> FloatArray:
     log = np.log(belief.prior[rows, columns])
     taken = by_source(belief.folded)
     for other in (name for name in taken if name != source):
-        prior, seen = belief.priors.get(other, belief.otherwise), _honest(taken[other])
-        log = log + compiled_evidence.evidence(x, y, sightings(seen), _nodes(prior, seen)).log
+        prior, seen = belief.priors.get(other, belief.otherwise), sightings(taken[other])
+        log = log + compiled_evidence.evidence(x, y, seen, _nodes(prior, seen)).log
     return _evidence(belief.priors.get(source, belief.otherwise), taken[source], x, y, log)
 
 
-def evidence_at(bearings: Sequence[Bearing], prior: ErrorPrior, place: tuple[float, float]) -> FloatArray:
-    """The same of one source's bearings of an emitter that is known to be at `place`, m ENU."""
-    x, y = (np.array([along]) for along in place)
-    return _evidence(prior, bearings, x, y, np.zeros(1))
+def evidence_at(
+    bearings: Sequence[Bearing], prior: ErrorPrior, place: tuple[float, float], accuracy: float = 0.0
+) -> FloatArray:
+    """The same of one source's bearings of an emitter that was found at `place`, m ENU, with that standard deviation in
+    each coordinate, m."""
+    x, y, log = _around(place, accuracy)
+    return _evidence(prior, bearings, x, y, log)
+
+
+def bias_at(
+    bearings: Sequence[Bearing], prior: ErrorPrior, place: tuple[float, float], accuracy: float = 0.0
+) -> tuple[float, float]:
+    """Expected value and standard deviation, rad, of the bias that these bearings had; place as in `evidence_at`."""
+    x, y, log = _around(place, accuracy)
+    seen = sightings(bearings)
+    grid = _nodes(prior, seen)
+    weighed = compiled_evidence.evidence(x, y, seen, grid)
+    log = log + weighed.log
+    mass = np.exp(log - log.max())
+    of_bias = mass @ weighed.bias / mass.sum()
+    mean = float(of_bias @ grid.bias)
+    return mean, float(np.sqrt(max(of_bias @ (grid.bias - mean) ** 2, 0.0)))
+
+
+def _around(place: tuple[float, float], accuracy: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, y (c,) of a lattice about the place, m, and the logarithm of their probability under N(place, accuracy^2)."""
+    if accuracy <= 0.0:
+        return np.array([place[0]]), np.array([place[1]]), np.zeros(1)
+    off_x, off_y = (off.ravel() for off in np.meshgrid(FOUND_SIGMAS, FOUND_SIGMAS))
+    log = -0.5 * (off_x**2 + off_y**2)
+    return place[0] + accuracy * off_x, place[1] + accuracy * off_y, log - np.log(np.exp(log).sum())
 
 
 def _evidence(
     prior: ErrorPrior, bearings: Sequence[Bearing], x: FloatArray, y: FloatArray, log: FloatArray
 ) -> FloatArray:
     """log: (c,) of the places' probability."""
-    seen = _honest(bearings)
-    grid, arrays, one = _nodes(prior, seen), sightings(seen), np.ones(1)
+    arrays, one = sightings(bearings), np.ones(1)
+    grid = _nodes(prior, arrays)
     by_spread = bias_weights(grid.bias, grid.spacing, prior.spread)
     found = np.empty((len(prior.spread), len(prior.scale), len(prior.rate)))
     for k, scale in enumerate(prior.scale):
@@ -69,12 +98,8 @@ def _evidence(
     return found - found.max()
 
 
-def _honest(bearings: Sequence[Bearing]) -> list[Bearing]:
-    return [replace(b, sigma=max(b.sigma, SMALLEST_SIGMA)) for b in bearings]
-
-
-def _nodes(prior: ErrorPrior, bearings: Sequence[Bearing]) -> Nodes:
-    return nodes(prior, min(b.sigma for b in bearings), len(bearings))
+def _nodes(prior: ErrorPrior, seen: Sightings) -> Nodes:
+    return nodes(prior, float(seen.sigma.min()), len(seen.x))
 
 
 def learned(flights: Iterable[FloatArray], unknown: ErrorPrior) -> ErrorPrior:

@@ -190,13 +190,14 @@ class MeanAtSensor:
 class UnusableBearing:
     """flaw: what about it cannot be used in a likelihood."""
 
-    flaw: Literal["not_finite", "sigma", "outlier_probability", "peak"]
+    flaw: Literal["not_finite", "sigma", "outlier_probability", "peak", "profile"]
     code: Literal["unusable_bearing"] = "unusable_bearing"
 
     english: ClassVar[Words] = Words(
         "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma"
         "|outlier_probability=an outlier probability of at least 0 and below 1"
-        "|peak=a finite angle and a positive weight for each further peak}."
+        "|peak=a finite angle and a positive weight for each further peak"
+        "|profile=a finite likelihood in at least eight directions}."
     )
 
 

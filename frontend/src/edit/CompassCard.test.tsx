@@ -13,13 +13,14 @@ const learned: CompassKnown = {
   antenna: "yagi",
   flights: 7,
   bearings: 25,
+  places_known: 2,
   bias_deg: 6.2,
   bias_spread_deg: 1.8,
   expected_bias_deg: 5,
   sigma_scale: 0.7,
   outlier_rate: 0.031,
 };
-const unknown: CompassKnown = { ...learned, flights: 0, bearings: 0, bias_deg: null, bias_spread_deg: null };
+const unknown: CompassKnown = { ...learned, flights: 0, bearings: 0, places_known: 0, bias_deg: null, bias_spread_deg: null };
 
 const part = (testId: string) => document.querySelector<HTMLElement>(`[data-testid=${testId}]`);
 const click = (testId: string) => act(() => part(testId)!.click());
@@ -45,6 +46,7 @@ it("says what was learned, from how many flights, and what the next search expec
   await shown();
   expect(api.compass).toHaveBeenCalledWith("craft-1");
   expect(part("compass-bias")!.textContent).toMatch(/\+6° ± 2° with “yagi”; flights learned from: 7 \(bearings: 25\)/);
+  expect(part("compass-places")!.textContent).toContain("found: 2");
   expect(part("compass")!.textContent).toContain("up to 10°, errors 0.7 × as stated and 3 % wrong bearings");
 });
 

@@ -22,6 +22,11 @@ function Known({ known, forget }: { known: CompassKnown; forget: () => void }) {
       <p data-testid="compass-bias" data-flights={flights}>
         {t("compass.bias", { bias: signedDegrees(bias_deg), spread: Math.max(1, Math.round(bias_spread_deg)), flights, bearings, antenna })}
       </p>
+      {known.places_known > 0 && (
+        <p class="muted" data-testid="compass-places">
+          {t("compass.places", { places: known.places_known })}
+        </p>
+      )}
       <p class="muted">
         {t("compass.expects", {
           bias: Math.max(1, Math.round(2 * known.expected_bias_deg)),

@@ -92,6 +92,16 @@ export const sections: readonly Section[] = [
         ],
         more: true,
       },
+      {
+        kind: "choice",
+        path: "sensor.sweep_evidence",
+        label: "edit.sweepEvidence",
+        options: [
+          { value: "peak", label: "edit.sweepEvidence.peak" },
+          { value: "whole", label: "edit.sweepEvidence.whole" },
+        ],
+        more: true,
+      },
     ],
   },
   {

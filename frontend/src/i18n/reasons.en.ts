@@ -139,7 +139,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   unusable_bearing: {
-    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak}.",
+    text: "A bearing needs {flaw?not_finite=a finite place, angle and sigma|sigma=a positive sigma|outlier_probability=an outlier probability of at least 0 and below 1|peak=a finite angle and a positive weight for each further peak|profile=a finite likelihood in at least eight directions}.",
     remedy: "",
   },
   unusable_flights: {
@@ -830,14 +830,14 @@ export const reasonsEn: ReasonTable = {
     remedy: "{who?failsafe=Let it land|*=Give control back with the transmitter, then resume}.",
   },
   failsafe_parameter: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} = {value}.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|station_time=Seconds until it takes a silent ground station for lost|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} = {value}.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
   failsafe_unread: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} could not be read.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|station_time=Seconds until it takes a silent ground station for lost|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} could not be read.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
   parameter_to_set: {
     text: "{parameter} goes from {before} to {after}.",
@@ -1252,6 +1252,22 @@ export const reasonsEn: ReasonTable = {
     text: "The bearing is excluded already.",
     remedy: "",
   },
+  bearing_counts_already: {
+    text: "The bearing was not left out.",
+    remedy: "",
+  },
+  left_out_by_another: {
+    text: "{by} left it out.",
+    remedy: "Ask {by}, or whoever controls the search, to count it again.",
+  },
+  no_such_source: {
+    text: "No bearing of this search comes from there.",
+    remedy: "Reload the page.",
+  },
+  muted_already: {
+    text: "The source is {muted?true=muted already|false=not muted}.",
+    remedy: "",
+  },
   no_such_alert: {
     text: "There is no such open alert.",
     remedy: "It may have cleared by itself.",
@@ -1473,11 +1489,11 @@ export const reasonsEn: ReasonTable = {
     remedy: "Upload terrain for the whole fence, or remove the terrain: the ground then counts as level with home.",
   },
   clearance_short: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m:1} above the ground; {least_m:1} are needed.",
     remedy: "Choose another place, or allow more altitude above home.",
   },
   too_high_above_ground: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m:1} above the ground; {most_m:1} are allowed.",
     remedy: "Choose a nearer place: the ground falls away below one level way.",
   },
   area_empty: {

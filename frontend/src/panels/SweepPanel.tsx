@@ -2,23 +2,25 @@
 import { useState } from "preact/hooks";
 import { send } from "../commands/send";
 import { reasonText, t } from "../i18n";
+import { sourceKey } from "../state/emitter";
 import { sweep as sweepHeard } from "../state/heard";
 import { cursor } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { supposedHere } from "../state/supposed";
 import type { MissionView } from "../state/view";
+import { sourceName } from "../state/words";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
-import type { BearingMeasured, SweepProgress, SweepRejected } from "../wire";
+import type { BearingMeasured, BearingSource, SweepProgress, SweepRejected } from "../wire";
 import { type PolarData, PolarPlot } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
 
-type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; excluded: boolean };
+type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; leftOut: boolean; excluded: boolean };
 
 function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] {
   return [
-    ...mission.bearings.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
-    ...mission.rejected.map(({ seq, fact }) => ({ seq, fact, excluded: false })),
+    ...mission.bearings.map(({ seq, fact, leftOut, excluded }) => ({ seq, fact, leftOut, excluded })),
+    ...mission.rejected.map(({ seq, fact }) => ({ seq, fact, leftOut: false, excluded: false })),
   ].toSorted((a, b) => b.seq - a.seq);
 }
 
@@ -86,8 +88,56 @@ function Running({ running, attempt }: { running: SweepProgress; attempt: number
   );
 }
 
+/** Places are counted for craft only. */
+const whereOf = ({ source, place_number: number }: BearingMeasured | SweepRejected): string =>
+  source.kind === "person" ? source.name : t("sweep.place", { number });
+
+/** A craft is not muted: it would go on measuring for nothing. */
+function mutableOf(source: BearingSource): { of: "person" | "import"; name: string } | null {
+  switch (source.kind) {
+    case "craft":
+      return null;
+    case "import":
+      return { of: "import", name: source.recording_id };
+    case "person":
+      return { of: "person", name: source.name };
+  }
+}
+
+/** Whether a bearing counts is an operator's wish, and can be undone. */
+function Counting({ id, fact, leftOut }: { id: string; fact: BearingMeasured; leftOut: boolean }) {
+  const { source, bearing_id } = fact;
+  const mutable = mutableOf(source);
+  const muted = mission.value.muted.has(sourceKey(source));
+  return (
+    <div class="sweep-counting">
+      <button
+        type="button"
+        class="small"
+        data-testid={leftOut ? "include" : "exclude"}
+        onClick={() =>
+          void send("sweep", id, leftOut ? { kind: "include_bearing", bearing_id } : { kind: "exclude_bearing", bearing_id, reason: "" })
+        }
+      >
+        {t(leftOut ? "sweep.include" : "sweep.exclude")}
+      </button>
+      {mutable && (
+        <button
+          type="button"
+          class="small"
+          data-testid="mute-source"
+          aria-pressed={muted}
+          onClick={() => void send("sweep", id, { ...mutable, kind: "mute_source", muted: !muted, reason: "" })}
+        >
+          {t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
+        </button>
+      )}
+    </div>
+  );
+}
+
 function Facts({ sweep }: { sweep: Sweep }) {
-  const { fact, excluded } = sweep;
+  const { fact, leftOut, excluded } = sweep;
   const id = mission.value.missionId;
   if (fact.kind === "sweep_rejected") {
     return (
@@ -103,8 +153,8 @@ function Facts({ sweep }: { sweep: Sweep }) {
   return (
     <div class="sweep-facts">
       <strong>
-        {t("sweep.place", { number: fact.place_number })}
-        {excluded && ` (${t("sweep.excluded")})`}
+        {whereOf(fact)}
+        {excluded && ` (${t(leftOut ? "sweep.excluded" : "sweep.muted")})`}
       </strong>
       <div class="sweep-bearing" data-testid="sweep-bearing" data-value={fact.bearing_deg}>
         {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) })}
@@ -127,16 +177,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
           {reasonText(remark)}
         </div>
       ))}
-      {!excluded && cursor.value === null && !mission.value.ended && id && (
-        <button
-          type="button"
-          class="small"
-          data-testid="exclude"
-          onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.bearing_id, reason: "" })}
-        >
-          {t("sweep.exclude")}
-        </button>
-      )}
+      {cursor.value === null && !mission.value.ended && id && <Counting id={id} fact={fact} leftOut={leftOut} />}
     </div>
   );
 }
@@ -162,7 +203,7 @@ export function SweepPanel() {
             <option value="">{t("sweep.latest")}</option>
             {sweeps.map((s) => (
               <option value={s.seq} key={s.seq}>
-                {t("sweep.place", { number: s.fact.place_number })}
+                {whereOf(s.fact)}
                 {s.fact.kind === "bearing_measured"
                   ? `, ${formatBearing(s.fact.bearing_deg)}`
                   : `, ${t("sweep.attempt", { attempt: s.fact.attempt })} ✕`}

@@ -26,6 +26,7 @@ export type PlanChosen = Schemas["PlanChosen"];
 export type CandidateFact = Schemas["CandidateFact"];
 export type CheckFact = Schemas["CheckFact"];
 export type BearingMeasured = Schemas["BearingMeasured"];
+export type BearingSource = BearingMeasured["source"];
 export type SweepRejected = Schemas["SweepRejected"];
 export type BeliefUpdated = Schemas["BeliefUpdated"];
 export type EstimateFact = Schemas["EstimateFact"];

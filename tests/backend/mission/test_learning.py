@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from equipment import PATTERN, spec
+from equipment import HOME, PATTERN, spec
 from flights import order
 from stage import Stage
 
@@ -29,7 +29,7 @@ class MemoryLessons:
         if self.full:
             raise OSError("no space left on device")
         assert (craft_id, antenna) == (FIRST_CRAFT, PATTERN.name)
-        self.kept.append(lesson)
+        self.kept = [*(one for one in self.kept if one.mission_id != lesson.mission_id), lesson]
 
     async def forget(self, craft_id: str, antenna: str) -> None:
         self.kept.clear()
@@ -68,6 +68,32 @@ async def test_a_flight_teaches_the_next_one_which_keeps_what_it_started_from() 
     assert [one.mission_id for one in lessons.kept] == early[:2]
     again = fold(await stage.journal.read(early[1]))
     assert again.search.mission.sensor.learned == second.learned
+
+
+async def test_where_the_emitter_was_found_teaches_in_the_place_of_what_the_bearings_alone_did() -> None:
+    stage, lessons = Stage(), MemoryLessons()
+    stage.lessons = lessons
+    stage.room = stage.new_room()
+    await stage.room.start_up()
+    mission_id = await stage.room.drafts.create(joint(), "anna")
+    truth = HOME
+    await stage.room.review.tell_truth(mission_id, None, truth, 5.0, "map", "anna")
+    assert lessons.tried == 0, "a draft has taught nothing yet"
+    await flown(stage, lessons, mission_id)
+    said: list[Lesson] = [*lessons.kept]
+    for place in (None, truth):
+        await stage.room.review.tell_truth(mission_id, None, place, 5.0, "map", "anna")
+        said += lessons.kept
+    assert [one.place_known for one in said] == [True, False, True]
+    assert said[0] == said[2] != said[1]
+    lessons.full = True
+    await stage.room.review.tell_truth(mission_id, None, None, None, "map", "anna")
+    assert lessons.kept == said[2:], "what cannot be kept stops nobody"
+    lessons.full = False
+    lessons.kept.clear()
+    await stage.room.review.tell_truth(mission_id, None, truth, 5.0, "map", "anna")
+    assert lessons.kept == [], "what was forgotten stays forgotten"
+    await stage.room.shut_down()
 
 
 async def test_a_mission_with_independent_errors_is_told_nothing_and_teaches_nothing() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 from ground import AREA, FRAME, HOME, towards
 
@@ -16,6 +17,7 @@ from backend.search.planning import foreseen
 from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState
 from backend.spec import MissionSpec, SensorSpec
+from hardware.direction_finding.circle import SweepLikelihood
 from hardware.readings import Place
 from planner.belief.joint import JointBelief
 
@@ -44,6 +46,33 @@ def test_a_mission_that_names_no_model_is_what_it_was() -> None:
     assert stored.sensor.bearing_errors == "independent"
     assert not isinstance(localization(stored, HOME).prior, JointBelief)
     assert json.loads(stored.model_dump_json())["sensor"]["bearing_errors"] == "independent"
+
+
+def with_echo(fact: BearingMeasured) -> BearingMeasured:
+    """The strongest peak is an echo 90 degrees clockwise; the sweep knows of the direct way."""
+    echo_deg = (fact.bearing_deg + 90.0) % 360.0
+    both = np.logaddexp(
+        SweepLikelihood.normal(echo_deg, 2.0).log_likelihood,
+        SweepLikelihood.normal(fact.bearing_deg, 2.0).log_likelihood - 0.1,
+    )
+    return fact.model_copy(update={"bearing_deg": echo_deg, "likelihood": SweepLikelihood.of(both).packed()})
+
+
+def test_a_mission_takes_of_a_sweep_what_its_specification_says() -> None:
+    """A stored one that does not say it: the peak, so that old journals fold to the same belief."""
+    seen = turned(0.0, 3)
+    echoed = [with_echo(seen[0]), *seen[1:]]
+    bare = [b.model_copy(update={"likelihood": None}) for b in echoed]
+    peak, whole = task(bearing_errors="joint"), task(bearing_errors="joint", sweep_evidence="whole")
+    assert SensorSpec.model_validate({"bearing_errors": "joint"}).sweep_evidence == "peak"
+    assert peak.belief_fact(echoed)[0].digest == peak.belief_fact(bare)[0].digest == whole.belief_fact(bare)[0].digest
+    (fact, _) = whole.belief_fact(echoed)
+    assert fact.estimate is not None
+    assert math.dist(FRAME.to_enu(Place(lat=fact.estimate.lat, lon=fact.estimate.lon)), TARGET) < 8.0
+    damaged = [echoed[0].model_copy(update={"likelihood": "no likelihood"}), *echoed[1:]]
+    assert whole.belief_fact(damaged)[0].digest == peak.belief_fact(bare)[0].digest
+    independent = task(sweep_evidence="whole")
+    assert independent.belief_fact(echoed)[0].digest == task().belief_fact(bare)[0].digest
 
 
 def test_a_turned_compass_is_found_used_and_said_clockwise() -> None:

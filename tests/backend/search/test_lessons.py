@@ -9,7 +9,7 @@ from functools import cache
 import pytest
 from ground import AREA, HOME, towards
 
-from backend.events import FIRST_CRAFT, AntennaChecked, BearingMeasured, CheckFact, PersonSource
+from backend.events import FIRST_CRAFT, AntennaChecked, BearingMeasured, CheckFact, PersonSource, TruthNoted
 from backend.ports import Lesson
 from backend.search.lessons import errors_now, knowing, lesson, lesson_of_check, mean_bias
 from backend.search.localization import localization
@@ -18,6 +18,7 @@ from backend.search.source_priors import prior_in, priors_of
 from backend.search.state import EmitterState, SearchState
 from backend.search.task import search_task
 from backend.spec import FIRST_EMITTER, LearnedErrors, MissionSpec, SensorSpec
+from hardware.frame import LocalFrame
 from hardware.reasons.antenna import AntennaAgrees
 
 TARGET = (120.0, 60.0)
@@ -122,6 +123,57 @@ def test_independent_errors_learn_nothing_and_are_told_nothing() -> None:
     plain = mission(SensorSpec())
     assert knowing(plain, lessons(0.0, 3), FIRST_CRAFT, ANTENNA) == plain
     assert taught("m1", bearings(0.0), plain) is None
+
+
+def told(place: tuple[float, float] | None, accuracy_m: float | None = 3.0) -> TruthNoted:
+    at = None if place is None else LocalFrame(HOME).to_geo(*place)
+    return TruthNoted(emitter_id=FIRST_EMITTER, place=at, accuracy_m=accuracy_m, how="map", by="anna")
+
+
+def taught_with(truth: TruthNoted | None, measured: tuple[BearingMeasured, ...]) -> Lesson:
+    spec = knowing(mission(), [], FIRST_CRAFT, ANTENNA)
+    emitter = EmitterState(FIRST_EMITTER, measured, truth=truth)
+    found = lesson(
+        "m1", search_task(spec, HOME, 0.0), SearchState(spec=spec, emitters={FIRST_EMITTER: emitter}), FIRST_CRAFT
+    )
+    assert found is not None
+    return found
+
+
+def test_where_the_emitter_was_found_tells_the_bias_that_bearings_from_one_side_leave_open() -> None:
+    one_side = bearings(9.0, 2)
+    alone, known = taught_with(None, one_side), taught_with(told(TARGET), one_side)
+    assert (alone.place_known, known.place_known) == (False, True)
+    assert known.bias_deg == pytest.approx(9.0, abs=2.0 * known.bias_std_error_deg)
+    assert known.bias_std_error_deg < 0.75 * alone.bias_std_error_deg
+    assert prior_in(now([known] * 10)).bias_sd > 1.2 * prior_in(now([alone] * 10)).bias_sd
+
+
+def test_a_place_that_is_known_badly_tells_less_and_one_that_was_not_found_tells_nothing() -> None:
+    close, unsaid, vague = (taught_with(told(TARGET, accuracy), bearings(9.0, 2)) for accuracy in (0.0, None, 60.0))
+    assert close.bias_std_error_deg < unsaid.bias_std_error_deg < vague.bias_std_error_deg
+    assert taught_with(told(None), bearings(9.0, 2)) == taught_with(None, bearings(9.0, 2))
+
+
+def test_outliers_show_at_the_place_where_the_emitter_was() -> None:
+    """Three bearings of which one is wrong leave open which; the place does not."""
+    honest = bearings(0.0, 3)
+    wrong = (*honest[:2], honest[2].model_copy(update={"bearing_deg": (honest[2].bearing_deg + 80.0) % 360.0}))
+    rates = [prior_in(now([taught_with(told(TARGET), some)] * 5)) for some in (honest, wrong)]
+    found = [float(prior.rate @ prior.rate_weight) for prior in rates]
+    assert found[1] > 2.0 * found[0]
+
+
+def test_of_several_emitters_the_one_that_was_found_teaches() -> None:
+    spec = knowing(mission(), [], FIRST_CRAFT, ANTENNA)
+    spec = spec.model_copy(
+        update={"emitters": [*spec.emitters, spec.emitters[0].model_copy(update={"emitter_id": "tag"})]}
+    )
+    found = EmitterState("tag", bearings(9.0, 2), truth=told(TARGET).model_copy(update={"emitter_id": "tag"}))
+    emitters = {FIRST_EMITTER: EmitterState(FIRST_EMITTER, bearings(0.0)), "tag": found}
+    said = lesson("m1", search_task(spec, HOME, 0.0), SearchState(spec=spec, emitters=emitters), FIRST_CRAFT)
+    assert said is not None
+    assert (said.place_known, said.bearings) == (True, 2)
 
 
 def check(measured: float, ok: bool = True) -> AntennaChecked:

@@ -45,6 +45,15 @@ def joint(bearings, problem=PROBLEM, **known):
     return belief
 
 
+def profile(angle, sigma, further=()):
+    """Log likelihood in 360 directions of a normal error, and of further peaks (angle, weight)."""
+    directions = 2.0 * np.pi * np.arange(360) / 360
+    peaks = [(angle, 1.0), *further]
+    return tuple(
+        np.logaddexp.reduce([np.log(w) - 0.5 * (wrap(directions - a) / sigma) ** 2 for a, w in peaks]).tolist()
+    )
+
+
 def random_bearings(rng, count):
     return [
         Bearing(
@@ -70,6 +79,47 @@ def test_the_compiled_evidence_is_that_of_the_readable_one(count):
         for ours, theirs in zip(fast[1:], plain[1:], strict=True):
             assert ours == pytest.approx(theirs, abs=1e-4 * count)
             assert ours.sum(axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_the_compiled_evidence_of_whole_sweeps_is_that_of_the_readable_one(count):
+    rng = np.random.default_rng(count)
+    bearings = [
+        replace(b, profile=profile(b.angle, b.sigma, [(peak.angle, peak.weight) for peak in b.peaks])) if k % 3 else b
+        for k, b in enumerate(random_bearings(rng, count + 1))
+    ]
+    seen = sightings(bearings)
+    x, y = rng.uniform(0.0, 300.0, (2, 40))
+    grid = nodes(ErrorPrior(), float(seen.sigma.min()), count)
+    fast, plain = compiled_evidence.evidence(x, y, seen, grid), evidence.evidence(x, y, seen, grid)
+    assert fast.log == pytest.approx(plain.log, abs=2e-3 * (count + 1))
+    for ours, theirs in zip(fast[1:], plain[1:], strict=True):
+        assert ours == pytest.approx(theirs, abs=2e-3 * (count + 1))
+
+
+def test_a_whole_sweep_that_says_no_more_than_its_bearing_makes_the_same_belief():
+    bearings = [toward(place, error) for place, error in zip(AROUND[:4], (5.0, 8.0, 3.0, 6.0), strict=True)]
+    whole = [replace(b, profile=profile(b.angle, b.sigma)) for b in bearings]
+    found, expected = (estimate(joint(some), "geometric_median") for some in (whole, bearings))
+    assert (found.x, found.y) == pytest.approx((expected.x, expected.y), abs=0.5)
+    assert found.expected_rmse == pytest.approx(expected.expected_rmse, rel=0.05)
+
+
+def test_a_second_peak_and_a_flat_sweep_count_for_what_they_tell():
+    true, echo = toward(AROUND[0]).angle, toward(AROUND[0], 90.0).angle
+    wrong = replace(toward(AROUND[0]), angle=echo, profile=profile(echo, SIGMA, [(true, 0.9)]))
+    others = [toward(AROUND[1], 1.0), toward(AROUND[2], -1.0)]
+    found = estimate(joint([wrong, *others]), "geometric_median")
+    assert np.hypot(found.x - TARGET[0], found.y - TARGET[1]) < 8.0
+    flat = replace(toward(AROUND[3], 60.0), profile=(0.0,) * 360)
+    without, with_it = (estimate(joint(some), "geometric_median") for some in (others, [*others, flat]))
+    assert with_it.expected_rmse == pytest.approx(without.expected_rmse, rel=0.02)
+
+
+@pytest.mark.parametrize("bad", [(0.0,) * 5, (*(0.0,) * 359, np.nan)])
+def test_a_profile_of_no_use_is_refused(bad):
+    with pytest.raises(PlannerError, match="eight directions"):
+        joint([toward(AROUND[0], profile=bad)])
 
 
 def test_evidence_is_the_integral_over_the_bias():

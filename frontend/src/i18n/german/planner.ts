@@ -132,7 +132,7 @@ export const planner = {
     remedy: "",
   },
   unusable_bearing: {
-    text: "Eine Peilung braucht {flaw?not_finite=einen endlichen Ort, Winkel und Fehler|sigma=einen Fehler größer als null|outlier_probability=einen Ausreißeranteil von mindestens 0 und unter 1|peak=für jede weitere Spitze einen endlichen Winkel und ein positives Gewicht}.",
+    text: "Eine Peilung braucht {flaw?not_finite=einen endlichen Ort, Winkel und Fehler|sigma=einen Fehler größer als null|outlier_probability=einen Ausreißeranteil von mindestens 0 und unter 1|peak=für jede weitere Spitze einen endlichen Winkel und ein positives Gewicht|profile=eine endliche Wahrscheinlichkeit in wenigstens acht Richtungen}.",
     remedy: "",
   },
   unusable_flights: {
