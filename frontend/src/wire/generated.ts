@@ -1792,6 +1792,7 @@ export interface components {
          *     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
          *     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
          *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+         *     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
          *     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
          *     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
          *     given nothing back.
@@ -1814,6 +1815,8 @@ export interface components {
             given_back: boolean;
             /** @default false */
             perhaps_failsafe: boolean;
+            /** @default false */
+            failsafe_landed: boolean;
             /** @default [] */
             under_way: number[];
             /** @default false */
@@ -2038,6 +2041,7 @@ export interface components {
          *     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
          *     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
          *     taken_at_s: UTC epoch seconds of the middle of the turn; None: nobody said (imported, or before it was kept).
+         *     turn: how far the craft turned and why; None: once all the way round, as in every mission without sector turns.
          */
         BearingMeasured: {
             /**
@@ -2070,6 +2074,7 @@ export interface components {
             /** @default 0 */
             samples_without_heading: number;
             taken_at_s: number | null;
+            turn: components["schemas"]["TurnFact"] | null;
         };
         /** @description A single wedge of +-4 sigma has no point inside the area. */
         BearingMissesArea: {
@@ -2128,6 +2133,16 @@ export interface components {
              * @enum {string}
              */
             code: "bearing_too_far";
+        };
+        /** @description sigma_deg: of this sweep alone. */
+        BearingUncertain: {
+            sigma_deg: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearing_uncertain";
         };
         /** @description All bearings of a source are turned by one angle, clockwise; the belief has taken it off. */
         BearingsCorrected: {
@@ -2801,6 +2816,16 @@ export interface components {
              */
             code: "does_not_hold";
         };
+        /** @description From what was heard and from what is believed. */
+        ElsewherePossible: {
+            elsewhere_percent: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "elsewhere_possible";
+        };
         /**
          * @description What is known of one emitter. `estimate`: of the last belief, None before the first bearing or when the bearings
          *     are inconsistent. `not_yet`: why "localized" is not said.
@@ -3027,7 +3052,7 @@ export interface components {
         /** @description value: as the autopilot has it; wanted: one that makes it act. */
         FailsafeParameter: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             value: number;
             wanted: number;
@@ -3048,7 +3073,7 @@ export interface components {
         };
         FailsafeUnread: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             wanted: number;
             /**
@@ -4219,6 +4244,28 @@ export interface components {
              */
             code: "map_unusable";
         };
+        /** @description edge: of the headings heard so far. */
+        MaximumAtEdge: {
+            /** @enum {string} */
+            edge: "beginning" | "end";
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "maximum_at_edge";
+        };
+        /** @description The bearing lies well within the headings heard, and little speaks for another direction. */
+        MaximumSeen: {
+            turned_deg: number;
+            inside_deg: number;
+            elsewhere_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "maximum_seen";
+        };
         /** @description Of a Gaussian belief. */
         MeanAtSensor: {
             /**
@@ -5208,6 +5255,14 @@ export interface components {
              * @enum {string}
              */
             code: "nothing_above_noise";
+        };
+        NothingFoundYet: {
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_found_yet";
         };
         NothingHeardInTurn: {
             /**
@@ -6276,6 +6331,15 @@ export interface components {
              */
             code: "put_by_hand";
         };
+        QualityPoor: {
+            quality: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "quality_poor";
+        };
         /** @description Cosine similarity of sweep and pattern, [0, 1]. */
         QualityTooLow: {
             quality: number;
@@ -6338,7 +6402,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -6876,6 +6940,25 @@ export interface components {
             fence_margin_m: number;
             no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
         };
+        /** @description share: of the directions expected from here. */
+        SectorExpected: {
+            width_deg: number;
+            share_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sector_expected";
+        };
+        /**
+         * @description What of the circle is turned through, as decided so far: clockwise from begin_deg (antenna heading, true).
+         *     because: why that far.
+         */
+        SectorMessage: {
+            begin_deg: number;
+            goal_deg: number;
+            because: components["schemas"]["Reason"] | null;
+        };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
@@ -6883,6 +6966,8 @@ export interface components {
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
+         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6905,6 +6990,10 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned: components["schemas"]["LearnedErrors"] | null;
+            /** @default false */
+            sector_turns: boolean;
+            /** @default 1 */
+            whole_turns: number;
             /**
              * @default peak
              * @enum {string}
@@ -6918,6 +7007,8 @@ export interface components {
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
+         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -6940,6 +7031,10 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned?: components["schemas"]["LearnedErrors"] | null;
+            /** @default false */
+            sector_turns: boolean;
+            /** @default 1 */
+            whole_turns: number;
             /**
              * @default peak
              * @enum {string}
@@ -7319,7 +7414,7 @@ export interface components {
         };
         /**
          * @description The running sweep of a craft: antenna heading (true) and power of one emitter's samples so far, thinned to at
-         *     most 360.
+         *     most 360. sector None: once all the way round.
          */
         SweepProgress: {
             /**
@@ -7334,6 +7429,7 @@ export interface components {
             heading_deg: number[];
             power_db: number[];
             turned_deg: number;
+            sector: components["schemas"]["SectorMessage"] | null;
         };
         /**
          * @description One raw sweep. at_s (since the first sample), heading_deg (the nose, true), power_db: one value a sample; None
@@ -7359,7 +7455,10 @@ export interface components {
             heading_deg: (number | null)[];
             power_db: (number | null)[];
         };
-        /** @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured. */
+        /**
+         * @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood, turn: as in
+         *     BearingMeasured.
+         */
         SweepRejected: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -7377,6 +7476,7 @@ export interface components {
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
             likelihood: string | null;
+            turn: components["schemas"]["TurnFact"] | null;
         };
         /** @description attempt: counts the turns at this place from 1. */
         SweepStarted: {
@@ -7840,6 +7940,20 @@ export interface components {
              */
             code: "tuned_elsewhere";
         };
+        /**
+         * @description How far a craft turned for a sweep. begin_deg: antenna heading at which it began, clockwise from true north.
+         *
+         *     planned_deg, turned_deg: clockwise from there. planned_because: why a sector of that width, or a whole turn.
+         *     went_on_because: one a look that was not enough. stopped_because: why the last one was.
+         */
+        TurnFact: {
+            begin_deg: number;
+            planned_deg: number;
+            turned_deg: number;
+            planned_because: components["schemas"]["Reason"];
+            went_on_because: components["schemas"]["Reason"][];
+            stopped_because: components["schemas"]["Reason"];
+        };
         TurnIncomplete: {
             heard_deg: number;
             /**
@@ -8174,6 +8288,23 @@ export interface components {
              * @enum {string}
              */
             code: "which_emitter";
+        };
+        WholeCircleSeen: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "whole_circle_seen";
+        };
+        /** @description A sector is not turned here. */
+        WholeTurn: {
+            /** @enum {string} */
+            because: "first" | "again" | "unsure" | "wide" | "several" | "pulsed" | "second_place";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "whole_turn";
         };
         /** @description Another writer has used the place of event `seq`, or left a gap before it. */
         WrittenElsewhere: {
