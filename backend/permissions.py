@@ -124,7 +124,11 @@ ENDPOINTS: Mapping[str, Need] = {
     "GET /api/missions/{mission_id}/export/{format}": EXPORT,
     "GET /api/missions/{mission_id}/antenna": WATCH,
     "GET /api/missions/{mission_id}/profile": WATCH,
+    "GET /api/missions/{mission_id}/courses": WATCH,
+    "PUT /api/missions/{mission_id}/variants/{name}": PLAN,
+    "DELETE /api/missions/{mission_id}/variants/{name}": PLAN,
     "POST /api/recordings/read": WATCH,
+    "POST /api/bundles": PLAN,
     # maps and terrain
     "GET /api/maps": WATCH,
     "POST /api/maps": PLAN,

@@ -49,7 +49,7 @@ def most_bytes(path: str) -> int | None:
         return None
     if path.startswith(ENTRANCES):
         return ENTERING_BYTES
-    if path == "/api/recordings/read":
+    if path in ("/api/recordings/read", "/api/bundles"):
         return EXPORT_BYTES
     if path == "/api/areas":
         return AREA_BYTES

@@ -81,7 +81,16 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
-from backend.events.review import MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
+from backend.events.review import (
+    MissionBroughtIn,
+    MissionDeleted,
+    MissionLabelled,
+    MissionRestored,
+    Supposition,
+    TruthNoted,
+    VariantDropped,
+    VariantKept,
+)
 from backend.spec import Model
 
 __all__ = [
@@ -126,6 +135,7 @@ __all__ = [
     "Link",
     "LinkLost",
     "LinkRestored",
+    "MissionBroughtIn",
     "MissionDeleted",
     "MissionDrafted",
     "MissionEdited",
@@ -158,18 +168,21 @@ __all__ = [
     "ServerRestarted",
     "SourceErrorsFact",
     "SourceMuteChanged",
+    "Supposition",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
     "Topic",
     "TruthNoted",
     "TurnFact",
+    "VariantDropped",
+    "VariantKept",
 ]
 
 FORM = 2
 """Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
 
-ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored
+ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
 
 Event = Annotated[
     MissionDrafted
@@ -223,7 +236,10 @@ Event = Annotated[
     | TruthNoted
     | MissionLabelled
     | MissionDeleted
-    | MissionRestored,
+    | MissionRestored
+    | MissionBroughtIn
+    | VariantKept
+    | VariantDropped,
     Field(discriminator="kind"),
 ]
 

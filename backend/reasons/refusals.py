@@ -186,6 +186,13 @@ class MissionFlies:
 
 
 @dataclass(frozen=True, slots=True)
+class TooManyVariants:
+    most: int
+    code: Literal["too_many_variants"] = "too_many_variants"
+    english: ClassVar[Words] = Words("This mission has {most} variants, the most it may.", "Forget one of them first.")
+
+
+@dataclass(frozen=True, slots=True)
 class ServerIsEnding:
     code: Literal["server_is_ending"] = "server_is_ending"
     english: ClassVar[Words] = Words(
@@ -229,4 +236,5 @@ RefusalReason = (
     | MissionFlies
     | MissionDoesNotFly
     | ServerIsEnding
+    | TooManyVariants
 )

@@ -30,6 +30,15 @@ class MissionLabels(Model):
     notes: Annotated[str, StringConstraints(max_length=4000)] = ""
 
 
+class MissionBrought(Model):
+    """A mission out of a bundle. already: it was here before, and nothing was changed."""
+
+    mission_id: str
+    already: bool
+    events: int
+    sweeps: int
+
+
 class TruthTold(Model):
     """Where the emitter was found; `place` None: it was looked for and not found. emitter_id None: the search's only
     one. accuracy_m: of the place, None when unknown."""

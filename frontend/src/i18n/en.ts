@@ -617,5 +617,8 @@ export const en = {
   "event.truth_nowhere": "Looked for and not found, says {by}",
   "event.mission_labelled": "Labels changed by {by}",
   "event.mission_deleted": "Deleted by {by}",
+  "event.variant_kept": "Variant “{name}” kept by {by}",
+  "event.variant_dropped": "Variant “{name}” forgotten by {by}",
+  "event.mission_brought_in": "Brought in from another installation by {by}",
   "event.mission_restored": "Restored by {by}",
 };

@@ -1312,6 +1312,10 @@ export const reasonsEn: ReasonTable = {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
   },
+  too_many_variants: {
+    text: "This mission has {most} variants, the most it may.",
+    remedy: "Forget one of them first.",
+  },
   field_missing: {
     text: "It is missing.",
     remedy: "",
@@ -1387,6 +1391,15 @@ export const reasonsEn: ReasonTable = {
   export_unreadable: {
     text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
+  },
+  bundle_unreadable: {
+    text: "{fault?not_zip=This is not a zip file|too_large=The files in the bundle are larger than those of any mission|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
+    remedy:
+      "{fault?later=Open it with that Crossfix.|under_way=Export it again after it has ended.|differs=Nothing was changed. Open the mission that is here.|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+    remedy: "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   },
   upload_broke_off: {
     text: "The upload broke off; nothing was kept.",

@@ -189,6 +189,12 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.mission_labelled", { by: event.by });
     case "mission_deleted":
       return t("event.mission_deleted", { by: event.by });
+    case "variant_kept":
+      return t("event.variant_kept", { name: event.name, by: event.by });
+    case "variant_dropped":
+      return t("event.variant_dropped", { name: event.name, by: event.by });
+    case "mission_brought_in":
+      return t("event.mission_brought_in", { by: event.by });
     case "mission_restored":
       return t("event.mission_restored", { by: event.by });
     case "mission_ended":

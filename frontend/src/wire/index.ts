@@ -57,6 +57,7 @@ export type CommandReply = Schemas["CommandReply"];
 export type Problem = Omit<Schemas["Problem"], "reason"> & { reason: Reason | null };
 export type CompassKnown = Schemas["CompassKnown"];
 export type Defaults = Schemas["Defaults"];
+export type MissionBrought = Schemas["MissionBrought"];
 export type MissionSummary = Schemas["MissionSummary"];
 export type Mission = Schemas["Mission"];
 export type MissionList = Schemas["MissionList"];

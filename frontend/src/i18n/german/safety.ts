@@ -90,6 +90,10 @@ export const safety = {
   no_such_alert: { text: "Diesen offenen Alarm gibt es nicht.", remedy: "Er ist vielleicht von selbst vorbei." },
   no_such_craft: { text: "Für diese Mission fliegt kein Fluggerät {craft_id}.", remedy: "Die Seite neu laden." },
   no_such_emitter: { text: "Diese Mission sucht keinen Sender {emitter_id}.", remedy: "Die Seite neu laden." },
+  too_many_variants: {
+    text: "Diese Mission hat {most} Varianten, mehr darf sie nicht haben.",
+    remedy: "Zuerst eine davon vergessen.",
+  },
   vehicle_unknown: {
     text: "Vom Fluggerät ist nichts bekannt.",
     remedy: "Das Fluggerät verbinden und noch einmal fragen.",
