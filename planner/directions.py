@@ -13,9 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.belief.grid import GridBelief
-from planner.types import FloatArray, IntArray
+from planner.types import FloatArray, IntArray, SectorTurns
 
 DIRECTIONS = 360
+COARSE = 72
+MOST_CELLS, LIGHT = 400, 0.01
+"""How finely places are compared by their turns: a few degrees of a sector are a tenth of a second."""
 SURPRISE = 0.1
 """Share of bearings that point anywhere: the outlier rate of a fielded system."""
 
@@ -58,3 +61,32 @@ def shortest_arc(mass: FloatArray, share: float) -> Arc:
     first = int(np.argmin(widths))
     step = 2.0 * math.pi / count
     return Arc((first - 0.5) * step % (2.0 * math.pi), float(widths[first]) * step)
+
+
+def turning_lead(rule: SectorTurns, belief: GridBelief, places: FloatArray, sigma: float) -> FloatArray:
+    """(n,) s by which the turn at each of the places (n, 2), m ENU, takes longer than at their mean; 0 before the first
+    bearing, when every turn is a whole one. sigma: rad."""
+    if belief.bearings == 0 or len(places) == 0:
+        return np.zeros(len(places))
+    cells, mass = _heaviest(belief)
+    off = cells[None, :, :] - places[:, None, :]
+    step = 2.0 * math.pi / COARSE
+    at = np.rint(np.arctan2(off[..., 1], off[..., 0]) / step).astype(np.int64) % COARSE
+    row = np.arange(len(places))[:, None] * COARSE
+    weight = np.broadcast_to(mass, at.shape)
+    found = np.bincount((row + at).ravel(), weight.ravel(), len(places) * COARSE).reshape(-1, COARSE)
+    order = np.arange(COARSE // 2 + 1)
+    found = np.fft.irfft(np.fft.rfft(found, axis=1) * np.exp(-0.5 * (order * sigma) ** 2), COARSE, axis=1)
+    found = np.maximum(found, 0.0)
+    found = found / found.sum(axis=1, keepdims=True)
+    widths = np.array([rule.width(shortest_arc(one, rule.share).width) for one in found])
+    return np.asarray((widths - widths.mean()) / rule.turn_rate, dtype=np.float64)
+
+
+def _heaviest(belief: GridBelief) -> tuple[FloatArray, FloatArray]:
+    """Centres (n, 2) and mass (n,) of at most MOST_CELLS cells, evenly taken from those that carry any."""
+    rows, columns = np.nonzero(belief.density > LIGHT * belief.density.max())
+    every = -(-len(rows) // MOST_CELLS)
+    rows, columns = rows[::every], columns[::every]
+    x, y = belief.centres()
+    return np.column_stack([x[columns], y[rows]]), belief.density[rows, columns]

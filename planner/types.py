@@ -130,6 +130,26 @@ Motion = LinearMotion | LinearConstantMotion | FullMotion
 
 
 @dataclass(frozen=True, slots=True)
+class SectorTurns:
+    """A measurement turns through the directions that are expected at its place, not through all of them.
+
+    turn_rate: rad/s. share: of the expected directions that the sector is laid around. margin: rad on either side.
+    narrowest, widest: rad; a wider one is turned as a whole circle.
+    """
+
+    turn_rate: float
+    share: float = 0.9
+    margin: float = np.deg2rad(45.0)
+    narrowest: float = np.deg2rad(160.0)
+    widest: float = np.deg2rad(270.0)
+
+    def width(self, arc: float) -> float:
+        """Rad to turn for expected directions within an arc of so many rad."""
+        wanted = max(arc + 2.0 * self.margin, self.narrowest)
+        return wanted if wanted <= self.widest else 2.0 * np.pi
+
+
+@dataclass(frozen=True, slots=True)
 class Problem:
     """One localization task, everything that does not change while it is flown.
 
@@ -138,7 +158,7 @@ class Problem:
     standoff: r_min, m: actions nearer than this to C95 are removed (0: unconstrained).
     action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
     the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
-    rollouts.
+    rollouts. sector_turns: None: a measurement takes as long everywhere.
     """
 
     area: Region
@@ -154,6 +174,7 @@ class Problem:
     estimator: Estimator = FIELD.estimator
     likelihood: CellLikelihood = "centre"
     prior: Prior = field(default_factory=UniformPrior)
+    sector_turns: SectorTurns | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,6 +58,7 @@ from planner.types import (
     Problem,
     Ring,
     RingPrior,
+    SectorTurns,
     UniformPrior,
 )
 
@@ -270,6 +271,7 @@ def localization(
         action_spacing=planner.action_spacing_m,
         estimator=planner.estimator,
         prior=_prior(emitter.prior, frame),
+        sector_turns=_sector_turns(mission),
     )
     if (walk := _walk(emitter.movement)) is not None:
         problem = replace(problem, threshold=walk.goal(wanted.expected_rmse_m, sensor.measurement_time_s))
@@ -285,6 +287,14 @@ def localization(
         index = mission.emitters.index(emitter)
         raise MissionInputError(carried(error.reason), f"emitters.{index}.prior") from error
     return Localization(mission, emitter.emitter_id, frame, problem, prior, rule)
+
+
+def _sector_turns(mission: MissionSpec) -> SectorTurns | None:
+    """None: every turn is a whole one, as it always is for several emitters and for tags."""
+    (emitter, *others) = mission.emitters
+    if others or emitter.kind == "pulsed" or not mission.sensor.sector_turns:
+        return None
+    return SectorTurns(math.radians(mission.sensor.turn_rate_deg_s))
 
 
 def own_sigma_deg(fact: BearingMeasured) -> float:

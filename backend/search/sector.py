@@ -43,16 +43,12 @@ from hardware.direction_finding.circle import SweepLikelihood
 from hardware.readings import BearingReading
 from planner.belief.grid import GridBelief
 from planner.directions import DIRECTIONS, SURPRISE, expected_directions, shortest_arc
-from planner.types import FloatArray
+from planner.types import FloatArray, SectorTurns
 
 CIRCLE_DEG = 360.0
-SHARE = 0.9
-"""Of the expected directions, that the sector is laid around."""
-MARGIN_DEG = 45.0
-"""On either side: half a beam and its flank, without which no maximum is seen."""
-WIDEST_DEG = 270.0
-"""A wider sector is turned as a whole circle: what it leaves out costs less than a second look."""
-NARROWEST_DEG = 160.0
+RULE = SectorTurns(turn_rate=1.0)
+"""Where the sector is laid, as the planner has it too; the margin is half a beam and its flank, without which no
+maximum is seen, and what a sector wider than the widest leaves out costs less than a second look."""
 STEP_DEG = 45.0
 NEARLY_DEG = 60.0
 """With less than this left of the circle it is turned whole."""
@@ -122,7 +118,13 @@ def must_be_whole(mission: MissionSpec, measured: Sequence[BearingMeasured], att
 
 def whole_places(measured: Sequence[BearingMeasured]) -> int:
     """From how many places all directions were heard."""
-    return len({fact.place_number for fact in measured if fact.turn is None or fact.turn.turned_deg >= WIDEST_DEG})
+    return len(
+        {
+            fact.place_number
+            for fact in measured
+            if fact.turn is None or fact.turn.turned_deg > math.degrees(RULE.widest)
+        }
+    )
 
 
 def expected_here(
@@ -137,12 +139,12 @@ def expected_here(
 
 def planned_turn(expected: FloatArray) -> TurnPlan:
     """The sector around the likeliest directions, or a whole turn when that would be nearly as long."""
-    arc = shortest_arc(expected, SHARE)
-    width = max(math.degrees(arc.width) + 2.0 * MARGIN_DEG, NARROWEST_DEG)
-    if width > WIDEST_DEG:
+    arc = shortest_arc(expected, RULE.share)
+    width = math.degrees(RULE.width(arc.width))
+    if width >= CIRCLE_DEG - TOLERANCE_DEG:
         return whole_turn("wide")
     middle = math.degrees(arc.begin + 0.5 * arc.width)
-    why = SectorExpected(width_deg=width, share_percent=100.0 * SHARE)
+    why = SectorExpected(width_deg=width, share_percent=100.0 * RULE.share)
     return TurnPlan((middle - 0.5 * width) % CIRCLE_DEG, width, why, expected)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from planner.airspace import may_fly
 from planner.belief.grid import GridBelief
+from planner.directions import turning_lead
 from planner.kernels import compiled, reference
 from planner.kernels.model import (
     DYNAMIC_PROGRAM,
@@ -63,7 +64,8 @@ UNKNOWN_TURN = np.pi / 2
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """Shared by the rollouts of one decision. platform: (2,) m. heading: rad or None. terminal: closes cut ones."""
+    """Shared by the rollouts of one decision. platform: (2,) m. heading: rad or None. terminal: closes cut ones.
+    belief: for what a turn takes at each place, None: as long everywhere."""
 
     problem: Problem
     start: Start
@@ -74,6 +76,7 @@ class Simulation:
     threads: int = 1
     kernel: KernelName = "compiled"
     terminal: TerminalValue | None = None
+    belief: GridBelief | None = None
 
     def first_actions(self, places: FloatArray) -> Actions:
         """(a, 2) m places as first actions: cost of flying there and measuring once (4.5); infinite without a way."""
@@ -86,6 +89,9 @@ class Simulation:
         directions = np.arctan2(flights[:, 1], flights[:, 0])
         turns = UNKNOWN_TURN if self.heading is None else turn_between(self.heading, directions)
         costs = flight_time(self.problem.motion, distances, turns) + self.problem.measurement_time
+        rule = self.problem.sector_turns
+        if rule is not None and self.belief is not None:
+            costs = costs + turning_lead(rule, self.belief, places, self.problem.sigma)
         return Actions(places, costs, directions, self._in_lattice(places))
 
     def _in_lattice(self, places: FloatArray) -> IntArray:
@@ -150,6 +156,7 @@ def simulate(
         threads,
         kernel,
         terminal,
+        belief,
     )
 
 

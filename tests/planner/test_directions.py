@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.belief.grid import GridBelief, prior_belief
-from planner.directions import DIRECTIONS, expected_directions, shortest_arc
-from planner.types import GaussianPrior, LinearMotion, Problem
+from planner.directions import DIRECTIONS, expected_directions, shortest_arc, turning_lead
+from planner.types import GaussianPrior, LinearMotion, Problem, SectorTurns
 
 SQUARE = np.array([[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0]])
 PROBLEM = Problem((SQUARE,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
@@ -61,3 +61,16 @@ def test_no_shorter_arc_holds_as_much(weights: list[float], share: float) -> Non
     assert mass[(begin + np.arange(cells)) % DIRECTIONS].sum() >= share - 1e-9
     shorter = [mass[(k + np.arange(cells - 1)) % DIRECTIONS].sum() for k in range(DIRECTIONS)]
     assert max(shorter) < share + 1e-9
+
+
+def test_a_place_that_sees_the_belief_end_on_is_turned_at_sooner_than_one_that_sees_it_broadside() -> None:
+    prior = GaussianPrior(150.0, 150.0, np.diag([4.0**2, 60.0**2]))
+    belief = prior_belief(replace(PROBLEM, prior=prior))
+    places = np.array([[150.0, -150.0], [70.0, 150.0]])
+    rule = SectorTurns(turn_rate=0.5, narrowest=0.1)
+    before = turning_lead(rule, belief, places, 0.05)
+    end_on, broadside = turning_lead(rule, replace(belief, bearings=1), places, 0.05)
+    assert np.array_equal(before, [0.0, 0.0])
+    assert end_on + broadside == pytest.approx(0.0)
+    arcs = [shortest_arc(expected_directions(belief, (x, y), 0.05), rule.share).width for x, y in places]
+    assert broadside - end_on == pytest.approx((arcs[1] - arcs[0]) / rule.turn_rate, abs=0.3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from equipment import TWO_EMITTERS, spec
@@ -22,10 +24,7 @@ from backend.reasons.turning import (
 )
 from backend.search.sector import (
     CIRCLE_DEG,
-    MARGIN_DEG,
-    NARROWEST_DEG,
-    SHARE,
-    WIDEST_DEG,
+    RULE,
     GoOn,
     Stop,
     TurnPlan,
@@ -41,6 +40,7 @@ from hardware.readings import BearingReading
 
 NOTHING = np.full(180, np.nan)
 MOST_LOOKS = 8
+MARGIN_DEG = math.degrees(RULE.margin)
 
 
 def expected(middle_deg: float, sd_deg: float) -> np.ndarray:
@@ -82,10 +82,10 @@ def mission(**sensor: object) -> MissionSpec:
 def test_a_sector_holds_the_expected_directions_with_a_margin_on_either_side(middle: float, sd: float) -> None:
     plan = planned_turn(expected(middle, sd))
     assert plan.begin_deg is not None
-    assert plan.width_deg >= NARROWEST_DEG
+    assert plan.width_deg >= math.degrees(RULE.narrowest) - 1e-9
     after = (np.arange(360) - plan.begin_deg) % 360.0
-    within = (after >= MARGIN_DEG) & (after <= plan.width_deg - MARGIN_DEG)
-    assert expected(middle, sd)[within].sum() >= SHARE - 1e-9
+    within = (after >= MARGIN_DEG - 1e-6) & (after <= plan.width_deg - MARGIN_DEG + 1e-6)
+    assert expected(middle, sd)[within].sum() >= RULE.share - 1e-9
     assert isinstance(plan.why, SectorExpected)
 
 
@@ -207,5 +207,5 @@ def test_whatever_is_heard_it_ends_within_the_circle_and_has_a_reason_for_every_
 
 def test_a_turn_wider_than_the_widest_sector_is_whole_and_never_in_between() -> None:
     widths = [planned_turn(expected(10.0, sd)).width_deg for sd in np.linspace(1.0, 200.0, 60)]
-    assert all(width <= WIDEST_DEG or width == CIRCLE_DEG for width in widths)
+    assert all(width <= math.degrees(RULE.widest) or width == CIRCLE_DEG for width in widths)
     assert {width == CIRCLE_DEG for width in widths} == {True, False}
