@@ -986,6 +986,72 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/bundles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Bring In Bundle
+         * @description Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
+         *     paths, so the same review. The same bundle again changes nothing: 200. 409: the mission is here with other facts.
+         */
+        post: operations["bring_in_bundle"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/courses": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Courses
+         * @description The course of a mission about an emitter (None: the first) and those of its variants, each computed from the
+         *     stored facts.
+         */
+        get: operations["get_courses"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/variants/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Keep Variant
+         * @description Keep a supposition by name beside the mission, which stays as it was flown.
+         */
+        put: operations["keep_variant"];
+        post?: never;
+        /**
+         * Drop Variant
+         * @description Forget a variant. Nothing happens to a name that is not kept.
+         */
+        delete: operations["drop_variant"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/expected-time": {
         parameters: {
             query?: never;
@@ -2272,6 +2338,27 @@ export interface components {
              */
             code: "budget_too_small";
         };
+        /** @description name: of the file in the bundle that cannot be brought in, and the whole bundle with it. */
+        BundleFileWrong: {
+            /** @enum {string} */
+            fault: "foreign" | "damaged" | "not_exported";
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bundle_file_wrong";
+        };
+        /** @description What was sent cannot be brought in as a mission. */
+        BundleUnreadable: {
+            /** @enum {string} */
+            fault: "not_zip" | "too_large" | "later" | "under_way" | "differs";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bundle_unreadable";
+        };
         /**
          * @description Of all checked missions of a craft and antenna, or of all. within_1_sigma and within_2_sigma: of bearings, offset
          *     not taken off (68 and 95 % when sigma is right). c95: of fixes. error_ratio: root mean square of error over stated
@@ -2680,6 +2767,26 @@ export interface components {
              */
             code: "control_stale";
         };
+        /** @description Of a mission as it was flown (name None), or of one of its variants. problem: why a variant has no points. */
+        Course: {
+            name: string | null;
+            wanted: components["schemas"]["Supposition"] | null;
+            points: components["schemas"]["CoursePoint"][];
+            problem: components["schemas"]["Reason"] | null;
+        };
+        /**
+         * @description What was, or would have been, believed at a time. t_s: since the start. error_m: of the estimate, None while
+         *     nobody has said where the emitter was.
+         */
+        CoursePoint: {
+            t_s: number;
+            bearings: number;
+            expected_rmse_m: number | null;
+            c95_area_m2: number | null;
+            error_m: number | null;
+            inside: boolean | null;
+            localized: boolean;
+        };
         /**
          * @description `covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
          *     `missing`: what no map covers so.
@@ -2932,7 +3039,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"] | components["schemas"]["MissionBroughtIn"] | components["schemas"]["VariantKept"] | components["schemas"]["VariantDropped"];
         /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
@@ -4330,6 +4437,39 @@ export interface components {
             localized: boolean;
             found: components["schemas"]["EmitterFound"][];
             outcome_reason: components["schemas"]["Reason"] | null;
+        };
+        /** @description A mission out of a bundle. already: it was here before, and nothing was changed. */
+        MissionBrought: {
+            mission_id: string;
+            already: boolean;
+            events: number;
+            sweeps: number;
+        };
+        /**
+         * @description All facts before this one are of another installation, brought in with a bundle.
+         *
+         *     software: that wrote the bundle, "" when it named none.
+         */
+        MissionBroughtIn: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mission_brought_in";
+            software: string;
+            by: string;
+        };
+        /**
+         * @description Of one emitter. ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing
+         *     that counts was taken.
+         */
+        MissionCourses: {
+            mission_id: string;
+            name: string;
+            emitter_id: string;
+            ended_s: number | null;
+            bearings_s: number[];
+            courses: components["schemas"]["Course"][];
         };
         /** @description Out of the list; everything of it is kept for some days more. */
         MissionDeleted: {
@@ -6413,7 +6553,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["TooManyVariants"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["BundleUnreadable"] | components["schemas"]["BundleFileWrong"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -6486,7 +6626,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"] | components["schemas"]["MissionBroughtIn"] | components["schemas"]["VariantKept"] | components["schemas"]["VariantDropped"];
         };
         RecordedElsewhere: {
             recorded_hz: number;
@@ -7414,6 +7554,50 @@ export interface components {
             speed_m_s: number | null;
             constant_s: number | null;
         };
+        /**
+         * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
+         *
+         *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
+         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
+         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
+         *     decision.
+         */
+        Supposition: {
+            emitter_id: string | null;
+            without: string[];
+            sigma_deg: number | null;
+            outlier_probability: number | null;
+            bearing_errors: ("independent" | "joint") | null;
+            pattern: components["schemas"]["PatternUpload"] | null;
+            offset_to_nose_deg: number | null;
+            method: ("rollout" | "base_policy") | null;
+            base_policy: ("ellipse" | "fisher" | "dynamic_program") | null;
+            selection: ("uniform" | "sequential_halving") | null;
+            estimator: ("map" | "expected_value" | "geometric_median") | null;
+            budget: number | null;
+        };
+        /**
+         * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
+         *
+         *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
+         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
+         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
+         *     decision.
+         */
+        SuppositionInput: {
+            emitter_id?: string | null;
+            without?: string[];
+            sigma_deg?: number | null;
+            outlier_probability?: number | null;
+            bearing_errors?: ("independent" | "joint") | null;
+            pattern?: components["schemas"]["PatternUpload"] | null;
+            offset_to_nose_deg?: number | null;
+            method?: ("rollout" | "base_policy") | null;
+            base_policy?: ("ellipse" | "fisher" | "dynamic_program") | null;
+            selection?: ("uniform" | "sequential_halving") | null;
+            estimator?: ("map" | "expected_value" | "geometric_median") | null;
+            budget?: number | null;
+        };
         /** @description unknown: what of the sweep is not a number. */
         SweepIncomplete: {
             unknown: ("bearing" | "sigma" | "quality" | "altitude" | "drift")[];
@@ -7873,6 +8057,14 @@ export interface components {
              */
             code: "too_many_tries";
         };
+        TooManyVariants: {
+            most: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_variants";
+        };
         /** @description altitude_relative_m: above home, when the climb was confirmed. */
         TookOff: {
             /**
@@ -8119,6 +8311,27 @@ export interface components {
              */
             code: "upload_incomplete";
         };
+        /** @description Nobody needs it any longer. */
+        VariantDropped: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "variant_dropped";
+            name: string;
+            by: string;
+        };
+        /** @description A supposition kept by name beside the mission, which stays as it was flown; the same name takes its place. */
+        VariantKept: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "variant_kept";
+            name: string;
+            wanted: components["schemas"]["Supposition"];
+            by: string;
+        };
         /** @description One layer of a vector map; `fields`: the names of its attributes. */
         VectorLayer: {
             id: string;
@@ -8266,23 +8479,21 @@ export interface components {
             name: string;
             offset_to_nose_deg: number;
         };
-        /**
-         * @description A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
-         *     `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`
-         *     (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
-         *     bearings stay.
-         */
+        /** @description The decision after this many of the flown bearings that count, taken again. */
         WhatIfRequest: {
             emitter_id?: string | null;
-            bearings: number;
+            without?: string[];
             sigma_deg?: number | null;
             outlier_probability?: number | null;
+            bearing_errors?: ("independent" | "joint") | null;
             pattern?: components["schemas"]["PatternUpload"] | null;
             offset_to_nose_deg?: number | null;
             method?: ("rollout" | "base_policy") | null;
             base_policy?: ("ellipse" | "fisher" | "dynamic_program") | null;
             selection?: ("uniform" | "sequential_halving") | null;
             estimator?: ("map" | "expected_value" | "geometric_median") | null;
+            budget?: number | null;
+            bearings: number;
         };
         /** @description After this many flown bearings: what would have been said, and what was (None: nothing was said then). */
         WhatIfStep: {
@@ -10153,6 +10364,148 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ExportedMission"];
                 };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    bring_in_bundle: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/zip": string;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionBrought"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionBrought"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_courses: {
+        parameters: {
+            query?: {
+                emitter?: string | null;
+            };
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionCourses"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    keep_variant: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SuppositionInput"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    drop_variant: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description What went wrong and how to mend it */
             default: {
