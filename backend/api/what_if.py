@@ -22,7 +22,7 @@ from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
 from hardware.readings import Place
 from planner.types import PlannerError
 
-SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected", "recording_imported")
+SUPPOSED_KINDS = (*FOLDED_KINDS, "recording_imported")
 """The events that the answer depends on: a sweep that was rejected may tell something through another antenna, and
 the antenna that flew is named at the start or the import."""
 
@@ -39,12 +39,15 @@ def what_if(
         return None
     home = state.home or corner_of(state.mission.area)
     mission = changed(state.mission, wanted)
-    task = localization(mission, home, wanted.emitter_id)
+    task = bare = localization(mission, home, wanted.emitter_id)
     bearings = state.emitters[task.emitter_id].bearings
+    unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
     supposed: list[SweepFact] = []
     said = [task.belief_fact([])]
     for sweeps in _sweeps_of_each(recorded, bearings):
         supposed += _taken(sweeps, supposed, mission, wanted, antenna)
+        silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
+        task = bare.after(silent)
         said.append(task.belief_fact(_bearings(supposed)))
     fact, belief = said[-1]
     platform = bearings[-1].place if bearings else home

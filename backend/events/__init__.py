@@ -32,6 +32,7 @@ from backend.events.bearings import (
     Peak,
     PersonSource,
     RecordingImported,
+    SilenceFact,
     SweepRejected,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
@@ -152,6 +153,7 @@ __all__ = [
     "ReviewFact",
     "SafetyVetoed",
     "ServerRestarted",
+    "SilenceFact",
     "SourceErrorsFact",
     "SweepRejected",
     "SweepStarted",

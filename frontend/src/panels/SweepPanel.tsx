@@ -18,7 +18,7 @@ type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; excluded: boo
 function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] {
   return [
     ...mission.bearings.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
-    ...mission.rejected.map(({ seq, fact }) => ({ seq, fact, excluded: false })),
+    ...mission.rejected.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
   ].toSorted((a, b) => b.seq - a.seq);
 }
 
@@ -53,9 +53,23 @@ function Running({ running, attempt }: { running: SweepProgress; attempt: number
   );
 }
 
+function LeaveOut({ evidenceId, label }: { evidenceId: string; label: string }) {
+  const id = mission.value.missionId;
+  if (cursor.value !== null || mission.value.ended || !id) return null;
+  return (
+    <button
+      type="button"
+      class="small"
+      data-testid="exclude"
+      onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: evidenceId, reason: "" })}
+    >
+      {label}
+    </button>
+  );
+}
+
 function Facts({ sweep }: { sweep: Sweep }) {
   const { fact, excluded } = sweep;
-  const id = mission.value.missionId;
   if (fact.kind === "sweep_rejected") {
     return (
       <div class="sweep-facts">
@@ -63,6 +77,8 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
+        {fact.silence && <div data-testid="sweep-silence">{t(excluded ? "sweep.silence.excluded" : "sweep.silence")}</div>}
+        {fact.silence && !excluded && <LeaveOut evidenceId={fact.sweep_id} label={t("sweep.silence.exclude")} />}
       </div>
     );
   }
@@ -92,16 +108,7 @@ function Facts({ sweep }: { sweep: Sweep }) {
           {reasonText(remark)}
         </div>
       ))}
-      {!excluded && cursor.value === null && !mission.value.ended && id && (
-        <button
-          type="button"
-          class="small"
-          data-testid="exclude"
-          onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.bearing_id, reason: "" })}
-        >
-          {t("sweep.exclude")}
-        </button>
-      )}
+      {!excluded && <LeaveOut evidenceId={fact.bearing_id} label={t("sweep.exclude")} />}
     </div>
   );
 }

@@ -11,6 +11,11 @@ export interface Bearing extends At<BearingMeasured> {
   excluded: boolean;
 }
 
+export interface Rejected extends At<SweepRejected> {
+  /** It heard nothing, and somebody left out what that tells. */
+  excluded: boolean;
+}
+
 export interface BeliefPoint {
   seq: number;
   at: string;
@@ -21,7 +26,7 @@ export interface BeliefPoint {
 export interface EmitterState {
   emitterId: string;
   bearings: readonly Bearing[];
-  rejected: readonly At<SweepRejected>[];
+  rejected: readonly Rejected[];
   belief: At<BeliefUpdated> | null;
   beliefs: readonly BeliefPoint[];
   /** The last belief that said localized: of an emitter that moves it stands for its moment. */
@@ -44,7 +49,7 @@ export const emptyEmitter = (emitterId: string): EmitterState => ({
 export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
   switch (event.kind) {
     case "sweep_rejected":
-      return { ...state, rejected: [...state.rejected, { fact: event, seq, at }] };
+      return { ...state, rejected: [...state.rejected, { fact: event, seq, at, excluded: false }] };
     case "bearing_measured":
       return { ...state, bearings: [...state.bearings, { fact: event, seq, at, excluded: false }] };
     case "bearing_excluded":
@@ -52,6 +57,7 @@ export function foldEmitter(state: EmitterState, event: MissionEvent, seq: numbe
         ...state,
         claim: null,
         bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
+        rejected: state.rejected.map((r) => (r.fact.sweep_id === event.bearing_id ? { ...r, excluded: true } : r)),
       };
     case "truth_noted":
       return { ...state, truth: { fact: event, seq, at } };

@@ -121,6 +121,7 @@ export const excluded = (bearingId: string): EventOf<"bearing_excluded"> => ({
   bearing_id: bearingId,
   by: "operator",
   reason: "",
+  heard: true,
 });
 
 /** The events after its draft that bring a mission into a phase. */

@@ -1951,7 +1951,10 @@ export interface components {
              */
             code: "battery_unknown";
         };
-        /** @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. */
+        /**
+         * @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. heard False: it is
+         *     a turn that heard nothing, and bearing_id that of its sweep.
+         */
         BearingExcluded: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -1962,6 +1965,8 @@ export interface components {
             bearing_id: string;
             by: string;
             reason: string;
+            /** @default true */
+            heard: boolean;
         };
         BearingExcludedAlready: {
             /**
@@ -6945,6 +6950,14 @@ export interface components {
             admin: boolean;
             has_password: boolean;
         };
+        /**
+         * @description The emitter was listened to and not heard. chances: (16,) to hear it, with the antenna pointing to 0, 22.5, ..
+         *     degrees from north. gain_db: (36,) of the antenna, 0, 10, .. degrees clockwise of its front, below its maximum.
+         */
+        SilenceFact: {
+            chances: number[];
+            gain_db: number[];
+        };
         /** @description above_db: the strongest reading over the noise. */
         SilentAt: {
             file: string;
@@ -7214,7 +7227,10 @@ export interface components {
             heading_deg: (number | null)[];
             power_db: (number | null)[];
         };
-        /** @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured. */
+        /**
+         * @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured.
+         *     silence: the emitter should have been heard, were it near; None: the turn says nothing of that.
+         */
         SweepRejected: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -7232,6 +7248,7 @@ export interface components {
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
             likelihood: string | null;
+            silence: components["schemas"]["SilenceFact"] | null;
         };
         /** @description attempt: counts the turns at this place from 1. */
         SweepStarted: {
