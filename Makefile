@@ -176,11 +176,12 @@ audit: setup-dev ## known vulnerabilities of the packages that are installed, of
 	cd frontend && npm audit --omit=dev
 
 SCALE ?= 1
-soak: setup-dev build ## a hundred viewers for ten minutes, aborts under load, files of 50 MB: figures 6, 7 and 20; SCALE=0.1 for a short one
-	$(BIN)/python -m tests.benchmarks.campaign soak --scale $(SCALE) $(if $(OUT),--out $(OUT))
+CAMPAIGN = $(BIN)/python -m tests.benchmarks.campaign $@ $(if $(SHORT),--short,--scale $(SCALE)) $(if $(OUT),--out $(OUT))
+soak: setup-dev build ## a hundred viewers for ten minutes, aborts under load, files of 50 MB: figures 6, 7 and 20; SHORT=1: five minutes
+	$(CAMPAIGN)
 
-chaos: setup-dev build kernel ## kills, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13 and 15; hours, SCALE=0.01 for a short one
-	$(BIN)/python -m tests.benchmarks.campaign chaos --scale $(SCALE) $(if $(OUT),--out $(OUT))
+chaos: setup-dev build kernel ## kills, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13 and 15; hours, or SHORT=1
+	$(CAMPAIGN)
 
 example: setup-dev ## the flight that the page plays as its example, recorded again: after each change of the wire
 	$(BIN)/python frontend/scripts/record_example.py

@@ -107,6 +107,25 @@ class ExcludeBearing(Model):
     """In the operator's own words."""
 
 
+class IncludeBearing(Model):
+    """A bearing that was left out counts again."""
+
+    kind: Literal["include_bearing"] = "include_bearing"
+    bearing_id: str
+
+
+class MuteSource(Model):
+    """muted: no bearing of the source counts, whenever it comes; False: they count again. name: the person's, or the
+    recording's id. A craft is not muted: it would go on flying and measuring for nothing."""
+
+    kind: Literal["mute_source"] = "mute_source"
+    of: Literal["person", "import"]
+    name: str = Field(max_length=200)
+    muted: bool
+    reason: str = Field(default="", max_length=200)
+    """In the operator's own words."""
+
+
 class AcknowledgeAlert(Model):
     """Somebody has seen it; it stays open until its cause is gone."""
 
@@ -145,7 +164,7 @@ class ReleaseControl(Model):
 
 
 ForCraft = Start | Hold | Resume | Return | Land | Abort | KeepHolding | Override | Accept | Veto | SetAutomatic
-ForSearch = ChangeArea | ExcludeBearing | AcknowledgeAlert
+ForSearch = ChangeArea | ExcludeBearing | IncludeBearing | MuteSource | AcknowledgeAlert
 ForControl = TakeControl | AskControl | GiveControl | KeepControl | ReleaseControl
 Command = Annotated[ForCraft | ForSearch | ForControl, Field(discriminator="kind")]
 

@@ -39,6 +39,16 @@ class TrackPoint:
     mode: str | None
 
 
+@dataclass(frozen=True, slots=True)
+class SectorShown:
+    """Of the circle, what a running turn goes through as decided so far: goal_deg clockwise from the antenna heading
+    begin_deg. because: why that far."""
+
+    begin_deg: float
+    goal_deg: float
+    because: Reason | None
+
+
 class JournalUnavailable(ReasonedError, RuntimeError):
     """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
 
@@ -233,8 +243,9 @@ class Publisher(Protocol):
         heading_deg: list[float],
         power_db: list[float],
         turned_deg: float,
+        sector: SectorShown | None = None,
     ) -> None:
-        """heading_deg, power_db: all samples of the turn so far. turned_deg: of 360."""
+        """heading_deg, power_db: all samples of the turn so far. turned_deg: of 360, or of the sector."""
         ...
 
     def belief(

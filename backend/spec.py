@@ -192,6 +192,8 @@ class SensorSpec(Model):
     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+    sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
+    means whole turns. whole_turns: from how many places all directions are heard before sectors are.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -205,6 +207,8 @@ class SensorSpec(Model):
     maximum_retakes: int = Field(default=2, ge=0, le=10)
     bearing_errors: ErrorModel = "independent"
     learned: LearnedErrors | None = None
+    sector_turns: bool = False
+    whole_turns: int = Field(default=1, ge=1, le=20)
     sweep_evidence: SweepEvidence = "peak"
 
 

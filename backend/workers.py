@@ -6,6 +6,8 @@ Whatever is in them, the event loop, and with it an abort, never waits for them,
 from __future__ import annotations
 
 import asyncio
+import ctypes
+import gc
 import logging
 import multiprocessing
 import os
@@ -13,7 +15,7 @@ import resource
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from pebble import ProcessExpired, ProcessPool
 
@@ -66,7 +68,7 @@ class Workers:
         pool = self._opened()
         self._waiting += 1
         try:
-            return await asyncio.wrap_future(pool.schedule(work, args, kwargs, timeout=self.time_s))
+            return await asyncio.wrap_future(pool.schedule(_tidied, (work, *args), kwargs, timeout=self.time_s))
         except TimeoutError as error:
             raise WorkStopped(FileTooHeavy("time", self.time_s, self.memory_bytes)) from error
         except MemoryError as error:
@@ -96,6 +98,17 @@ class Workers:
                 context=multiprocessing.get_context("spawn"),
             )
         return self._pool
+
+
+def _tidied(work: Callable[..., T], *args: Any, **kwargs: Any) -> T:
+    """The result of `work`; what the allocator keeps of its memory is given back to the system."""
+    try:
+        return work(*args, **kwargs)
+    finally:
+        gc.collect()
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc's
+        if trim is not None:
+            trim(0)
 
 
 def _confine(memory_bytes: int) -> None:

@@ -28,6 +28,7 @@ class Authority:
     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+    failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
     given nothing back.
@@ -44,6 +45,7 @@ class Authority:
     mode: str | None = None
     given_back: bool = False
     perhaps_failsafe: bool = False
+    failsafe_landed: bool = False
     under_way: tuple[int, ...] = ()
     undone: bool = False
     commanded: tuple[int, ...] = ()
@@ -240,6 +242,7 @@ def _taken(
         given_back=not authority.armed,
         under_way=authority.commanded if authority.tolerated else (),
         undone=False,
+        failsafe_landed=False,
         perhaps_failsafe=who == "pilot" and heard is not None and heard.kind in HOMEWARD,
     )
 
@@ -255,7 +258,9 @@ def _switch_moved(authority: Authority, seen: SwitchMoved) -> Authority:
 def _while_taken(before: Authority, now: Authority, seen: ModeHeard) -> Authority:
     """Somebody else has control, or had it before the vehicle landed."""
     if not now.armed:
-        return replace(now, who="nobody" if before.armed else before.who, given_back=True, undone=False)
+        who = "nobody" if before.armed else before.who
+        by_failsafe = before.failsafe_landed or (who == "nobody" and before.who == "failsafe")
+        return replace(now, who=who, failsafe_landed=by_failsafe, given_back=True, undone=False)
     if before.who == "nobody":
         return _taken(now, "pilot", "mode", seen.at_s, seen)  # armed again by hand
     waiting, homeward = seen.kind == "waiting", seen.kind in HOMEWARD

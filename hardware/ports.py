@@ -125,12 +125,15 @@ class Vehicle(Protocol):
         """Of the autopilot's own return: it is not ours to choose, and must lie below the mission's ceiling."""
         ...
 
-    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
-        """Fly there and return once telemetry says arrived and settled."""
+    async def goto(
+        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+    ) -> None:
+        """Fly there and return once telemetry says arrived and settled. heading_deg: where the nose is wanted by then;
+        an autopilot may leave it elsewhere."""
         ...
 
-    async def turn(self, rate_deg_s: float) -> None:
-        """Turn once through 360 degrees on the spot; returns once telemetry has seen the whole circle."""
+    async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
+        """Turn on the spot, clockwise, negative: counterclockwise; returns once telemetry has seen all of it."""
         ...
 
     async def hold(self) -> None:

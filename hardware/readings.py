@@ -176,7 +176,8 @@ class Sweep:
     at_s, heading_deg, power_db: (n,), one row a sample, in time order. `heading_deg` is the nose's; the antenna's
     offset to it belongs to the antenna pattern. drift_m: how far from `position` the vehicle may have been: it moved
     while it turned, or its reported position had jumped. samples_without_heading: power samples that were left out,
-    because the headings before and after them were too far apart.
+    because the headings before and after them were too far apart. partial: only a part of the circle was meant to be
+    turned through.
     """
 
     at_s: NDArray[np.float64]
@@ -190,6 +191,7 @@ class Sweep:
     noise_floor_db: float | None = None
     tag: str | None = None
     samples_without_heading: int = 0
+    partial: bool = False
 
 
 @dataclass(frozen=True, slots=True)

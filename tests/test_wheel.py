@@ -61,10 +61,14 @@ def test_a_wheel_holds_what_the_server_reads_and_no_tests(wheel: Path) -> None:
     for needed in (
         "hardware/direction_finding/patterns/small_yagi.json",
         "planner/policy/ellipse_table.json",
+        "planner/policy/shipped_table.npz",
         "migrations/env.py",
         "migrations/versions/0001_journal.py",
     ):
         assert needed in names
+    rooms = (REPOSITORY / room for room in ("planner", "hardware", "backend", "migrations"))
+    kept = [path for room in rooms for path in room.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+    assert not [name for path in kept if (name := path.relative_to(REPOSITORY).as_posix()) not in names]
     assert not [name for name in names if name.startswith(("tests/", "docs/"))]
     assert ("backend/page/index.html" in names) == PAGE.exists()
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from backend.api.services import Services
-from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recorded, SweepRejected
+from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recorded, Supposition, SweepRejected
 from backend.reasons import carried
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.request import SamplesNotStored
@@ -15,7 +15,7 @@ from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.spec import MissionSpec
 from backend.store.entries import SweepEntry
-from backend.wire.resources import PatternUpload, SweepFact, WhatIfAntenna, WhatIfRequest
+from backend.wire.resources import PatternUpload, SweepFact, WhatIfAntenna
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import PatternError, parse_pattern
 from hardware.ports import DirectionFinder
@@ -41,9 +41,9 @@ class AnotherAntenna:
             return flown  # of power that could not be made into a sweep
         if entry is None:
             raise MissionConflict(SamplesNotStored(flown.place_number))
-        sweep = entry.sweep()
+        sweep = replace(entry.sweep(), partial=flown.turn is not None and flown.turn.partial)
         reading = self.finder.estimate(sweep, self.pattern)
-        taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt)
+        taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt, flown.turn)
         heard = sweep_fact(taken, mission.sensor, sweep, reading, None)
         if isinstance(heard, BearingMeasured) and isinstance(flown, BearingMeasured):
             return heard.model_copy(update={"bearing_id": flown.bearing_id})
@@ -51,7 +51,7 @@ class AnotherAntenna:
 
 
 async def another_antenna(
-    services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: WhatIfRequest
+    services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: Supposition
 ) -> AnotherAntenna | None:
     """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew.
 

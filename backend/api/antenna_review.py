@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from backend.events import BearingExcluded, BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
+from backend.events import BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
 from backend.reasons import carried
 from backend.search.antenna import antenna_flown
+from backend.search.counted import counted
 from backend.wire.resources import AntennaReview, PatternUpload
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import pattern_json
@@ -53,9 +54,7 @@ def _emitter(recorded: Sequence[Recorded], emitter_id: str | None) -> str | None
 
 
 def _counted(recorded: Sequence[Recorded], emitter_id: str) -> list[BearingMeasured]:
-    excluded = {r.event.bearing_id for r in recorded if isinstance(r.event, BearingExcluded)}
-    facts = [r.event for r in recorded if isinstance(r.event, BearingMeasured)]
-    return [fact for fact in facts if fact.emitter_id == emitter_id and fact.bearing_id not in excluded]
+    return [fact for fact in counted(r.event for r in recorded) if fact.emitter_id == emitter_id]
 
 
 def _kept(fact: BearingMeasured) -> KeptSweep:

@@ -17,6 +17,8 @@ FOLDED_KINDS = (
     "mission_started",
     "bearing_measured",
     "bearing_excluded",
+    "bearing_included",
+    "source_mute_changed",
     "belief_updated",
     "sweep_rejected",
 )

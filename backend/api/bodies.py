@@ -13,6 +13,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from backend.api.problems import ApiProblem, respond
+from backend.live.connections import spread
 from backend.reasons import request as reasons
 from backend.wire.problem import Problem, problem
 
@@ -26,20 +27,20 @@ AREA_BYTES = 8 * 2**20
 """With the text of a KML or GeoJSON file inside."""
 RECORDING_BYTES = 128 * 2**20
 """A minute of IQ at the usual rates."""
-EXPORT_BYTES = 32 * 2**20
-"""Hours of a mission with some hundred sweeps."""
+EXPORT_BYTES = 16 * 2**20
+"""Events and flown path of a day in the air."""
 
 ENTRANCES = ("/api/session", "/api/first-admin", "/api/recovery", "/api/invitation/")
 UPLOADS = ("/api/maps", "/api/overlays", "/api/terrain")
 """Their bodies are files, under limits of their own."""
-READ_APART = ("/api/areas", "/api/recordings/read")
-"""Their JSON is read in a process of its own."""
+READ_APART = ("/api/recordings/read",)
+"""Its JSON is read in a process of its own, and may be as rich as a mission is."""
 
 MOST_FIELDS = 2_000
 MOST_ITEMS = 20_000
 LET_PASS_BYTES = 64 * 2**20
 STALL_S = 20.0
-"""So long a body may stand still."""
+"""So long a body may stand still, at least."""
 
 
 def most_bytes(path: str) -> int | None:
@@ -48,7 +49,7 @@ def most_bytes(path: str) -> int | None:
         return None
     if path.startswith(ENTRANCES):
         return ENTERING_BYTES
-    if path == "/api/recordings/read":
+    if path in ("/api/recordings/read", "/api/bundles"):
         return EXPORT_BYTES
     if path == "/api/areas":
         return AREA_BYTES
@@ -85,6 +86,11 @@ def too_rich(text: bytes) -> bool:
     return bare.count(b":") > MOST_FIELDS or bare.count(b",") > MOST_ITEMS
 
 
+async def _found_too_rich(text: bytes) -> bool:
+    """In a thread when it is long."""
+    return await asyncio.to_thread(too_rich, text) if len(text) > JSON_BYTES else too_rich(text)
+
+
 class Bodies:
     """ASGI middleware, inside the gate: nothing is read for whoever may not make the call."""
 
@@ -109,7 +115,7 @@ class Bodies:
             return
         if body is None:
             return  # nobody waits for an answer
-        if scope["path"] not in READ_APART and too_rich(body):
+        if scope["path"] not in READ_APART and await _found_too_rich(body):
             found = problem(413, reasons.BodyTooRich(MOST_FIELDS, MOST_ITEMS))
             await respond(found)(scope, receive, send)
             return
@@ -152,7 +158,7 @@ def _bounded(scope: Scope, receive: Receive) -> Receive:
         if not more:
             return await receive()  # whether the caller is still there
         try:
-            async with asyncio.timeout(STALL_S):
+            async with asyncio.timeout(spread(STALL_S)):
                 message = await receive()
         except TimeoutError:
             raise ApiProblem(408, reasons.BodyTooSlow(STALL_S), headers={"connection": "close"}) from None

@@ -34,6 +34,10 @@ SHORT_BYTES = 256 * 2**10
 """Read in a thread; the event loop waits while a longer one is parsed there."""
 
 
+MOST_ITEMS = 2_000_000
+"""The largest export has one in ten bytes or fewer; a list of bare numbers would fill the memory."""
+
+
 class ExportRefused(ReasonedError):
     """What was sent is no exported mission that can be read."""
 
@@ -57,6 +61,8 @@ async def read_exported_mission(request: Request, services: ServicesDep) -> Resp
 
 def read_export(text: bytes) -> str:
     """The answer's JSON. Raises ExportRefused."""
+    if text.count(b",") > MOST_ITEMS:
+        raise ExportRefused(ExportUnreadable("not_exported"))
     try:
         parsed = json.loads(text)
     except (ValueError, RecursionError) as error:

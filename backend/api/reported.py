@@ -115,6 +115,32 @@ async def take_back_bearing(
     await services.missions.reports.take_back(mission_id, bearing_id, principal.name, of_anybody)
 
 
+@router.post("/bearings/{bearing_id}/restore", status_code=204)
+async def restore_bearing(
+    mission_id: MissionId,
+    bearing_id: Annotated[str, Path(pattern=r"^[A-Za-z0-9_-]{1,64}$")],
+    services: ServicesDep,
+    principal: PrincipalDep,
+) -> None:
+    """Count a bearing again that the same person, or the same machine, took back."""
+    await services.missions.reports.restore(mission_id, bearing_id, principal.name)
+
+
+class Reporter(Model):
+    """by: whose bearings, as in BearingReport. muted: they do not count, those to come too."""
+
+    by: Who | None = None
+    muted: bool
+
+
+@router.put("/reporter", status_code=204)
+async def mute_reporter(
+    mission_id: MissionId, reporter: Reporter, services: ServicesDep, principal: PrincipalDep
+) -> None:
+    """Stop counting one's own bearings, or count them again. Whoever controls the search does it for others."""
+    await services.missions.reports.mute(mission_id, _who(principal, reporter.by), reporter.muted)
+
+
 def _who(principal: Principal, said: str | None) -> str:
     """Nobody who is signed in, and no machine, speaks in another's name."""
     return said if principal.local and said is not None else principal.name

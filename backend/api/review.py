@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
@@ -17,6 +18,7 @@ from backend.api.missions import stored_mission
 from backend.api.problems import PROBLEM_RESPONSES, not_found
 from backend.api.what_if import SUPPOSED_KINDS, what_if
 from backend.events import FIRST_CRAFT, Recorded
+from backend.store.brought import raw_files
 from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
@@ -153,8 +155,11 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     await stored_mission(services, mission_id)
     recorded = await services.journal.read(mission_id)
     tracks = await services.journal.tracks(mission_id)
+    making = EXPORTS[format]
+    if format == "bundle":
+        making = partial(bundle, raw=raw_files(mission_id, await services.journal.sweeps(mission_id), tracks))
     return Response(
-        await beside(services, len(recorded), EXPORTS[format], recorded, tracks),
+        await beside(services, len(recorded), making, recorded, tracks),
         media_type=MEDIA_TYPES[format],
         headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'},
     )

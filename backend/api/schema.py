@@ -16,7 +16,9 @@ from pydantic import JsonValue
 
 from backend.api import (
     advice,
+    bundles,
     compass,
+    courses,
     crafts,
     entering,
     library,
@@ -56,6 +58,8 @@ ROUTERS = (
     review.router,
     library.router,
     read_export.router,
+    bundles.router,
+    courses.router,
     planning.router,
     advice.router,
     maps.router,

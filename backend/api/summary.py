@@ -25,6 +25,8 @@ DETAIL_KINDS = (
     "mission_started",
     "bearing_measured",
     "bearing_excluded",
+    "bearing_included",
+    "source_mute_changed",
     "belief_updated",
     "mission_ended",
 )

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from backend.api.another_antenna import AnotherAntenna
 from backend.api.beliefs import FOLDED_KINDS
-from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, SweepRejected
+from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, Supposition, SweepRejected
 from backend.reasons import Reason, carried
 from backend.search.area import corner_of
 from backend.search.localization import Localization, localization
@@ -20,6 +21,7 @@ from backend.spec import MissionSpec
 from backend.wire.belief_frame import encode_belief
 from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
 from hardware.readings import Place
+from planner.belief.grid import GridBelief
 from planner.types import PlannerError
 
 SUPPOSED_KINDS = (*FOLDED_KINDS, "recording_imported")
@@ -34,30 +36,19 @@ def what_if(
 
     recorded: of SUPPOSED_KINDS, in order. antenna: through which the sweeps are taken again, None: they stay as flown.
     """
-    state, flown = _flown(recorded, wanted.emitter_id, wanted.bearings)
-    if state is None:
+    found = suppose(recorded, wanted, wanted.bearings, antenna)
+    if found is None:
         return None
-    home = state.home or corner_of(state.mission.area)
-    mission = changed(state.mission, wanted)
-    task = bare = localization(mission, home, wanted.emitter_id)
-    bearings = state.emitters[task.emitter_id].bearings
-    unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
-    supposed: list[SweepFact] = []
-    said = [task.belief_fact([])]
-    for sweeps in _sweeps_of_each(recorded, bearings):
-        supposed += _taken(sweeps, supposed, mission, wanted, antenna)
-        silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
-        task = bare.after(silent)
-        said.append(task.belief_fact(_bearings(supposed)))
-    fact, belief = said[-1]
-    platform = bearings[-1].place if bearings else home
+    task, bearings, supposed = found.task, found.counted, found.sweeps
+    fact, belief = found.said[-1]
+    platform = bearings[-1].place if bearings else found.home
     number = max((fact.place_number for fact in bearings), default=0) + 1
     plan, no_plan = _plan(task, _bearings(supposed), platform, number)
     frame = encode_belief(
         mission_id, task.emitter_id, 0, fact.bearings, belief.density, task.corners_lon_lat(belief), lite=True
     )
     return WhatIf(
-        steps=[_step(count, then, flown.get(count)) for count, (then, _) in enumerate(said)],
+        steps=[_step(count, then, found.flown.get(count)) for count, (then, _) in enumerate(found.said)],
         belief=fact,
         plan=plan,
         no_plan=no_plan,
@@ -67,10 +58,45 @@ def what_if(
     )
 
 
-def changed(mission: MissionSpec, wanted: WhatIfRequest) -> MissionSpec:
+@dataclass(frozen=True, slots=True)
+class Supposed:
+    """counted: the flown bearings that count. said: before the first and after each of them, with the fact and the
+    belief. flown: what was said in flight, by the number of bearings."""
+
+    task: Localization
+    home: Place
+    counted: Sequence[BearingMeasured]
+    flown: dict[int, BeliefUpdated]
+    sweeps: list[SweepFact]
+    said: list[tuple[BeliefUpdated, GridBelief]]
+
+
+def suppose(
+    recorded: Sequence[Recorded], wanted: Supposition, bearings: int | None, antenna: AnotherAntenna | None
+) -> Supposed | None:
+    """The beliefs of a supposition. bearings None: all that count. None: the mission had fewer."""
+    state, flown = _flown(recorded, wanted.emitter_id, bearings)
+    if state is None:
+        return None
+    home = state.home or corner_of(state.mission.area)
+    mission = changed(state.mission, wanted)
+    task = localization(mission, home, wanted.emitter_id)
+    counted = state.emitters[task.emitter_id].bearings
+    supposed: list[SweepFact] = []
+    said, bare = [task.belief_fact([])], task
+    unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
+    for sweeps in _sweeps_of_each(recorded, counted):
+        supposed += _taken(sweeps, supposed, mission, wanted, antenna)
+        silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
+        task = bare.after(silent)
+        said.append(task.belief_fact(_bearings(supposed)))
+    return Supposed(task, home, counted, flown, supposed, said)
+
+
+def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:
     """The specification with what is wanted otherwise; fields that are None stay."""
-    sensor = {name: getattr(wanted, name) for name in ("sigma_deg", "outlier_probability")}
-    planner = {name: getattr(wanted, name) for name in ("method", "base_policy", "selection", "estimator")}
+    sensor = {name: getattr(wanted, name) for name in ("sigma_deg", "outlier_probability", "bearing_errors")}
+    planner = {name: getattr(wanted, name) for name in ("method", "base_policy", "selection", "estimator", "budget")}
     return mission.model_copy(
         update={
             "sensor": mission.sensor.model_copy(update={k: v for k, v in sensor.items() if v is not None}),
@@ -80,11 +106,11 @@ def changed(mission: MissionSpec, wanted: WhatIfRequest) -> MissionSpec:
 
 
 def _flown(
-    recorded: Sequence[Recorded], emitter_id: str | None, bearings: int
+    recorded: Sequence[Recorded], emitter_id: str | None, bearings: int | None
 ) -> tuple[SearchState | None, dict[int, BeliefUpdated]]:
     """The last state with this number of counted bearings, and what was said in flight after each number of them.
 
-    emitter_id None: of the first emitter.
+    emitter_id None: of the first emitter. bearings None: the last state of all.
     """
     state, found = SearchState(), None
     said: dict[int, BeliefUpdated] = {}
@@ -93,7 +119,7 @@ def _flown(
         wanted = emitter_id or next(iter(state.emitters), "")
         if isinstance(record.event, BeliefUpdated) and record.event.emitter_id == wanted:
             said[record.event.bearings] = record.event
-        if wanted in state.emitters and len(state.emitters[wanted].bearings) == bearings:
+        if wanted in state.emitters and bearings in (None, len(state.emitters[wanted].bearings)):
             found = state
     return found, said
 
@@ -118,13 +144,15 @@ def _taken(
     flown: Sequence[SweepFact],
     before: Sequence[SweepFact],
     mission: MissionSpec,
-    wanted: WhatIfRequest,
+    wanted: Supposition,
     antenna: AnotherAntenna | None,
 ) -> list[SweepFact]:
     """The sweeps as wanted. A place that already gave its bearing would not have been measured again."""
     with_bearing = {fact.place_number for fact in _bearings(before)}
     taken: list[SweepFact] = []
     for fact in flown:
+        if isinstance(fact, BearingMeasured) and fact.bearing_id in wanted.without:
+            continue
         if antenna is not None and fact.place_number in with_bearing:
             continue
         heard = fact if antenna is None else antenna.heard(mission, fact)

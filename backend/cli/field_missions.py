@@ -1,7 +1,8 @@
 """Whole searches in the field world: sweeps through the direction finder, beliefs and claims as in a mission.
 
-Only flying is simplified: a craft takes as long as the fitted movement model says (thesis 6.4.3), turns once around at
-every place, and settles. Mission k has the same world under every planner, and its n-th sweep the same chance.
+Only flying is simplified: a craft takes as long as the fitted movement model says (thesis 6.4.3), turns at every place,
+once around or through a sector, and settles. Before a sector its yaw is laid on the way: what of the swing the flight
+does not cover is waited for. Mission k has the same world in every row, and its n-th sweep the same chance.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from shapely import Point, Polygon
@@ -19,11 +20,23 @@ from backend.api.suggestion import suggested_mission
 from backend.events import BearingMeasured, CraftSource
 from backend.search.localization import Localization, localization
 from backend.search.planning import decide, foreseen
+from backend.search.sector import (
+    GoOn,
+    Stop,
+    TurnPlan,
+    expected_here,
+    look,
+    must_be_whole,
+    planned_turn,
+    turn_fact,
+    whole_turn,
+)
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.simulation.field_world import Field, antenna_pattern, drawn_field
 from backend.spec import MissionSpec, PlannerSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.sweep import first_part
 from hardware.readings import Place
 from planner.airspace import may_fly
 from planner.belief.estimate import confidence_region
@@ -50,11 +63,19 @@ STEP_M = 30.0
 """Between the nine places that the greedy planner compares."""
 
 
+LOOK_S = 1.0
+"""To brake, look, and turn on, when a sector was not enough."""
+
+Turns = Literal["whole", "sector"]
+
+
 @dataclass(frozen=True, slots=True)
 class FieldOptions:
-    """turn_rate_deg_s: of a sweep. compass_sd_deg: of the flights' heading errors."""
+    """turns: once around at every place, or as far as needed. turn_rate_deg_s: of a sweep. compass_sd_deg: of the
+    flights' heading errors."""
 
     planner: str = "crossfix"
+    turns: Turns = "whole"
     turn_rate_deg_s: float = 30.0
     compass_sd_deg: float = 4.0
 
@@ -139,7 +160,12 @@ def mission_of(options: FieldOptions) -> MissionSpec:
     """The suggested mission with a joint belief; all planners measure and claim alike."""
     spec = suggested_mission(HOME)
     sensor = spec.sensor.model_copy(
-        update={"bearing_errors": "joint", "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S}
+        update={
+            "bearing_errors": "joint",
+            "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S,
+            "turn_rate_deg_s": options.turn_rate_deg_s,
+            "sector_turns": options.turns == "sector",
+        }
     )
     own = spec.planner if options.planner == "crossfix" else PlannerSpec(estimator=spec.planner.estimator)
     return spec.model_copy(update={"sensor": sensor, "planner": own})
@@ -169,20 +195,28 @@ class FieldStudy:
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
         measured: list[BearingMeasured] = []
         here, heading, time_s = (0.0, 0.0), 0.0, 0.0
-        sweeps, retakes = 0, 0
+        sweeps, retakes, turned_deg = 0, 0, 0.0
         fact, belief = task.belief_fact(measured)
         while not fact.localized and sweeps < self.spec.localization.maximum_bearings:
             place = self._choose(belief, measured, here, rng)
             way = np.array(place) - np.array(here)
-            length = float(np.hypot(*way))
+            length, flown_s = float(np.hypot(*way)), 0.0
             if length > 0.0:
                 direction = float(np.arctan2(way[1], way[0]))
                 time_s += float(flight_time(motion, length, turn_between(heading, direction)))
+                flown_s = float(flight_time(motion, length))
                 heading = direction
             here = place
-            for _ in range(1 + self.spec.sensor.maximum_retakes):
-                found = self._measured(field, here, sweeps)
-                time_s += 360.0 / rate + SETTLE_S
+            for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
+                plan = self._turn(belief, measured, here, attempt)
+                swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
+                found, turned, looks = self.measured(field, here, sweeps, plan)
+                spent_s = turned / rate + (looks - 1) * LOOK_S + SETTLE_S
+                time_s += max(swing_s - flown_s, 0.0) + spent_s
+                turned_deg += turned + swing_s * rate
+                flown_s = 0.0
+                if plan.begin_deg is not None:
+                    heading = math.radians(90.0 - plan.begin_deg - turned)
                 sweeps += 1
                 if found is not None:
                     measured.append(found)
@@ -200,7 +234,7 @@ class FieldStudy:
             stated_m=math.nan if estimate is None else estimate.expected_rmse_m,
             bearings=len(measured),
             rejected=retakes,
-            turned_deg=360.0 * sweeps,
+            turned_deg=turned_deg,
             off_deg=tuple(off for b in measured if (off := self._off_deg(field, b)) is not None),
         )
 
@@ -217,13 +251,46 @@ class FieldStudy:
         decision = decide(self.task, belief, measured, here)
         return decision.x, decision.y
 
-    def _measured(self, field: Field, here: tuple[float, float], number: int) -> BearingMeasured | None:
-        sweep = field.sweep(*here, number, self.options.turn_rate_deg_s)
-        reading = self.finder.estimate(sweep, self.pattern)
-        taken = Taken(self.task.emitter_id, CraftSource(craft_id="craft-1"), f"sweep-{number}", number + 1, 1)
-        duration_s = 360.0 / self.options.turn_rate_deg_s + SETTLE_S
+    def _turn(
+        self,
+        belief: GridBelief,
+        measured: Sequence[BearingMeasured],
+        here: tuple[float, float],
+        attempt: int,
+    ) -> TurnPlan:
+        because = must_be_whole(self.spec, measured, attempt)
+        if not self.spec.sensor.sector_turns or because is not None:
+            return whole_turn(because or "first")
+        return planned_turn(expected_here(self.task, belief, measured, here))
+
+    def measured(
+        self, field: Field, here: tuple[float, float], number: int, plan: TurnPlan
+    ) -> tuple[BearingMeasured | None, float, int]:
+        """(the bearing, degrees turned, looks) of one sweep. here: m ENU. number: of all sweeps of the mission."""
+        offset = self.pattern.offset_to_nose_deg
+        start = None if plan.begin_deg is None else plan.begin_deg - offset
+        whole = field.sweep(*here, number, self.options.turn_rate_deg_s, start)
+        began = float(whole.heading_deg[0]) + offset
+        turned, steps = plan.width_deg, list[GoOn]()
+        while True:
+            sweep = whole if turned >= 360.0 else first_part(whole, turned)
+            reading = self.finder.estimate(sweep, self.pattern)
+            decided = look(plan, began, turned, reading)
+            if isinstance(decided, Stop):
+                break
+            steps.append(decided)
+            turned += decided.by_deg
+        taken = Taken(
+            self.task.emitter_id,
+            CraftSource(craft_id="craft-1"),
+            f"sweep-{number}",
+            number + 1,
+            1,
+            turn_fact(plan, began, turned, steps, decided),
+        )
+        duration_s = turned / self.options.turn_rate_deg_s + len(steps) * LOOK_S + SETTLE_S
         fact = sweep_fact(taken, self.spec.sensor, sweep, reading, duration_s)
-        return fact if isinstance(fact, BearingMeasured) else None
+        return fact if isinstance(fact, BearingMeasured) else None, turned, 1 + len(steps)
 
     def _off_deg(self, field: Field, fact: BearingMeasured) -> float | None:
         """What a bearing is off by, the compass' error taken out; None from nearer than FAR_M."""
@@ -233,6 +300,11 @@ class FieldStudy:
             return None
         seen = fact.bearing_deg + field.world.heading_error_deg
         return math.remainder(seen - math.degrees(math.atan2(east, north)), 360.0)
+
+
+def _apart(heading: float, compass_deg: float) -> float:
+    """Degrees between a heading (rad ccw from east) and one clockwise from north."""
+    return abs(math.remainder(90.0 - math.degrees(heading) - compass_deg, 360.0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast, get_args
 
 import typer
 
 from backend.cli.edge import print_json, remark
-from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, FieldSummary, summary
+from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, FieldSummary, Turns, summary
 from planner.study.errors import StudyError
 
 REMARK_EVERY = 20
@@ -16,6 +16,7 @@ HEADING_SIGMA_DEG = 4.0
 """What the craft states of its heading."""
 COLUMNS = (
     "planner",
+    "turns",
     "missions",
     "time, s",
     "90 %",
@@ -28,9 +29,16 @@ COLUMNS = (
 
 
 def field_rows(
-    planners: Sequence[str], runs: int, seed: int, turn_rate_deg_s: float, compass_sd_deg: float, json_: bool
+    planners: Sequence[str],
+    turns: Sequence[str],
+    runs: int,
+    seed: int,
+    turn_rate_deg_s: float,
+    compass_sd_deg: float,
+    json_: bool,
 ) -> None:
-    """Flies and prints one row a planner. seed: of the first mission. Raises StudyError for what cannot be flown."""
+    """Flies and prints one row a planner and way of turning. seed: of the first mission. Raises StudyError for what
+    cannot be flown."""
     if not 5.0 <= turn_rate_deg_s <= 90.0:
         raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {turn_rate_deg_s:g}")
     if not 0.0 <= compass_sd_deg <= 60.0:
@@ -38,7 +46,14 @@ def field_rows(
     for planner in planners:
         if planner not in PLANNERS:
             raise StudyError(f"field-world has no planner {planner!r}: choose one of {', '.join(PLANNERS)}")
-    rows = [_row(FieldOptions(planner, turn_rate_deg_s, compass_sd_deg), runs, seed) for planner in planners]
+    for way in turns:
+        if way not in get_args(Turns):
+            raise StudyError(f"--turns must be one of {', '.join(get_args(Turns))}, got {way!r}")
+    rows = [
+        _row(FieldOptions(planner, cast(Turns, way), turn_rate_deg_s, compass_sd_deg), runs, seed)
+        for planner in planners
+        for way in turns
+    ]
     if json_:
         answers = [row.as_json() for row in rows]
         print_json(answers[0] if len(answers) == 1 else answers)
@@ -54,7 +69,7 @@ def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
     for number in range(seed, seed + runs):
         flown.append(study.fly(number))
         if len(flown) % REMARK_EVERY == 0 and len(flown) < runs:
-            remark(f"{options.planner}: {len(flown)} of {runs} missions")
+            remark(f"{options.planner}, {options.turns}: {len(flown)} of {runs} missions")
     return summary(options, flown)
 
 
@@ -66,6 +81,7 @@ def _cells(row: FieldSummary) -> tuple[str, ...]:
 
     return (
         row.options.planner,
+        row.options.turns,
         str(row.missions),
         f"{row.time_s:.1f} ± {row.time_ci95_s:.1f}",
         f"{row.time_90_s:.0f}",

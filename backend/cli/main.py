@@ -8,8 +8,14 @@ import os
 import sys
 from typing import Any
 
-import typer
-from typer.core import TyperCommand, TyperGroup
+try:
+    import typer
+    from typer.core import TyperCommand, TyperGroup
+except ModuleNotFoundError as error:
+    raise SystemExit(
+        f"crossfix: the package {error.name} is missing, so the planner alone was installed. "
+        "Install the server too: pipx install 'crossfix[server]'"
+    ) from None
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "serve": ("backend.cli.serve:serve", "Start the server and say where the page is."),

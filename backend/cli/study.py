@@ -86,6 +86,10 @@ def run(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler to fly on instead, for instance tcp://host:8786.")
     ] = None,
+    turns: Annotated[
+        list[str] | None,
+        typer.Option(help="field-world: whole, or sector: only as far as needed. May be repeated: a row each."),
+    ] = None,
     turn_rate: Annotated[float, typer.Option(help="field-world: of a sweep, degrees a second.")] = 30.0,
     compass_sd: Annotated[
         float, typer.Option(help="field-world: standard deviation of the flights' compass errors, degrees.")
@@ -101,7 +105,7 @@ def run(
     """
     if scenario is not None and FIELD_WORLD in scenario:
         try:
-            _field_world(scenario, planner, runs, seed, turn_rate, compass_sd, json_)
+            _field_world(scenario, planner, turns, runs, seed, turn_rate, compass_sd, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
         return
@@ -175,6 +179,7 @@ app.command()(truth)
 def _field_world(
     scenario: list[str],
     planner: list[str] | None,
+    turns: list[str] | None,
     runs: int,
     seed: list[int] | None,
     turn_rate: float,
@@ -186,7 +191,7 @@ def _field_world(
         raise StudyError("field-world is flown by itself, from one --seed on: give --scenario and --seed once")
     if runs < 1 or seeds[0] < 0:
         raise StudyError(f"--runs must be 1 or more and --seed 0 or more, got {runs} and {seeds[0]}")
-    field_rows(planner or ["crossfix"], runs, seeds[0], turn_rate, compass_sd, json_)
+    field_rows(planner or ["crossfix"], turns or ["whole"], runs, seeds[0], turn_rate, compass_sd, json_)
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

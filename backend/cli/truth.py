@@ -49,7 +49,7 @@ def truth(
         ),
     ] = 0,
     told: Annotated[
-        bool, typer.Option("--told", help="joint: the search is told the row's true errors, to compare with.")
+        bool, typer.Option("--told", help="joint: the search knows the true errors of the row, to compare with.")
     ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,

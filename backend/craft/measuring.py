@@ -14,9 +14,11 @@ import numpy as np
 
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
-from backend.craft.sweep_turns import turn_and_listen
+from backend.craft.sector_turns import Turned, TurnShown, turn_as_planned
 from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejected
+from backend.ports import SectorShown
 from backend.reasons import carried
+from backend.search.sector import TurnPlan
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.silence import chances_by_heading, relative_gain_db
@@ -47,22 +49,26 @@ async def measure(
     place_number: int,
     attempt: int,
     wanted: Collection[str],
+    plan: TurnPlan | None = None,
 ) -> tuple[Measured, ...]:
-    """One result an emitter; the turn lasts until those with the ids `wanted` were heard well enough.
+    """One result an emitter; the turn lasts until those with the ids `wanted` were heard well enough. plan: of a
+    mission that turns only as far as needed.
 
     Raises VehicleError when the turn fails, ReceiverError when nothing was heard at all.
     """
     ordered_s = equipment.clock.now()
-    progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, ordered_s))
+    shown = TurnShown()
+    progress = asyncio.create_task(_show_progress(equipment, mission, mission_id, listening, place_number, shown))
     try:
         waited_for = [emitter for emitter in mission.emitters if emitter.emitter_id in wanted]
         turned_for = mission.model_copy(update={"emitters": waited_for or mission.emitters})
-        began_s, ended_s = await turn_and_listen(equipment, turned_for, listening)
+        turned = await turn_as_planned(equipment, turned_for, listening, plan, shown)
     finally:
         progress.cancel()
         await asyncio.gather(progress, return_exceptions=True)
     heard = {
-        emitter.emitter_id: listening.between(began_s, ended_s, emitter.frequency_hz) for emitter in mission.emitters
+        emitter.emitter_id: listening.between(turned.began_s, turned.ended_s, emitter.frequency_hz)
+        for emitter in mission.emitters
     }
     pulsed = any(emitter.kind == "pulsed" for emitter in mission.emitters)
     if not any(heard.values()) and not (pulsed and listening.state == "ok"):
@@ -77,7 +83,7 @@ async def measure(
                 heard[emitter.emitter_id],
                 place_number,
                 attempt,
-                (began_s, ended_s),
+                turned,
                 taken_s,
             )
             for emitter in mission.emitters
@@ -92,13 +98,14 @@ async def _result(
     samples: list[PowerSample],
     place_number: int,
     attempt: int,
-    turn_s: tuple[float, float],
+    turned: Turned,
     taken_s: float,
 ) -> Measured:
-    """turn_s: when the turn began and ended. taken_s: from the order to the bearing."""
+    """taken_s: from the order to the bearing."""
     sweep_id = str(uuid4())
-    taken = Taken(emitter.emitter_id, CraftSource(craft_id=equipment.craft_id), sweep_id, place_number, attempt)
-    telemetry, headings = equipment.vehicle.telemetry(), equipment.vehicle.headings(turn_s[0] - 1.0)
+    source = CraftSource(craft_id=equipment.craft_id)
+    taken = Taken(emitter.emitter_id, source, sweep_id, place_number, attempt, turned.turn)
+    telemetry, headings = equipment.vehicle.telemetry(), equipment.vehicle.headings(turned.began_s - 1.0)
     silence = SilenceFact(
         chances=chances_by_heading(
             [sample.at_s for sample in samples],
@@ -124,8 +131,10 @@ async def _result(
         reason = NoPulseHeard() if unheard else carried(error.reason)
         told = silence if unheard and samples else None
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
+    sweep = turned.as_turned(sweep)
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
-    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, fmean(turn_s), silence))
+    middle_s = fmean((turned.began_s, turned.ended_s))
+    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s, silence))
 
 
 async def _show_progress(
@@ -134,7 +143,7 @@ async def _show_progress(
     mission_id: str,
     listening: Listening,
     place_number: int,
-    began_s: float,
+    shown: TurnShown,
 ) -> None:
     """The running sweep to whoever watches: antenna heading and power so far, of each emitter in turn."""
     offset = equipment.pattern.offset_to_nose_deg
@@ -142,9 +151,11 @@ async def _show_progress(
     while True:
         await equipment.clock.sleep(PROGRESS_S)
         await asyncio.sleep(0.05)
-        headings = equipment.vehicle.headings(began_s)
+        if shown.began_s is None:
+            continue
+        headings = equipment.vehicle.headings(shown.began_s)
         emitter = next(emitters)
-        found = listening.between(began_s, equipment.clock.now(), emitter.frequency_hz)
+        found = listening.between(shown.began_s, equipment.clock.now(), emitter.frequency_hz)
         samples = [s for s in found if s.detected]
         if len(headings) < 2 or not samples:
             continue
@@ -158,4 +169,5 @@ async def _show_progress(
             [float(h) for h in (at + offset) % 360.0],
             [s.power_db for s in samples],
             turned_deg(nose),
+            None if shown.begin_deg is None else SectorShown(shown.begin_deg, shown.goal_deg, shown.because),
         )

@@ -20,7 +20,7 @@ from backend.commands import (
 from backend.craft.effects import CancelTimer, CancelWork, HoldVehicle, LeaveSearch, TakeControl
 from backend.craft.inputs import CraftOrdered
 from backend.craft.low_battery import keep_holding
-from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
+from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState, failsafe_has
 from backend.craft.step import (
     CraftStep,
     cancel_timers,
@@ -244,7 +244,7 @@ def _set_automatic(step: CraftStep, given: CraftOrdered, automatic: bool) -> Non
 
 def _take_from_failsafe(step: CraftStep, by: str) -> None:
     """An explicit deed, as resuming is; a pilot's own control is never taken by it."""
-    if step.craft.authority.who == "failsafe":
+    if failsafe_has(step.craft.authority):
         _take_control(step, by)
         clear_failsafe(step)
 

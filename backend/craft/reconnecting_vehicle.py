@@ -146,11 +146,13 @@ class ReconnectingVehicle:
     async def take_off(self, altitude_relative_m: float) -> None:
         await self._present().take_off(altitude_relative_m)
 
-    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
-        await self._present().goto(place, altitude_amsl_m, speed_m_s)
+    async def goto(
+        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+    ) -> None:
+        await self._present().goto(place, altitude_amsl_m, speed_m_s, heading_deg)
 
-    async def turn(self, rate_deg_s: float) -> None:
-        await self._present().turn(rate_deg_s)
+    async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
+        await self._present().turn(rate_deg_s, by_deg)
 
     async def hold(self) -> None:
         await self._present().hold()

@@ -17,7 +17,7 @@ from backend.spec import FlightSpec
 from hardware.ports import HardwareError, Vehicle
 
 PLACES_ACROSS, MOST_ON_EDGE = 20, 1000
-"""Places that a return may begin at: a grid inside the fence, and so many on its edge at most."""
+"""Where a return may begin: places of a grid inside the fence, and at most this many on its edge."""
 MOST_POINTS = 400
 """Of one way home: a longer one is looked at less finely."""
 

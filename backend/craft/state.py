@@ -15,6 +15,7 @@ from backend.events import (
     BatteryCountdownStarted,
     BatteryCountdownStopped,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     CraftSource,
     Event,
@@ -35,6 +36,7 @@ from backend.events import (
     PlanChosen,
     PlanVetoed,
     ServerRestarted,
+    SourceMuteChanged,
     SweepRejected,
     SweepStarted,
     TookOff,
@@ -95,14 +97,19 @@ class CraftState:
         return self.phase in AUTOMATIC or self.phase in HOMEWARD
 
 
+def failsafe_has(authority: Authority) -> bool:
+    """The autopilot's failsafe has control, and no operator has taken it back since; after its landing, too."""
+    return authority.who == "failsafe" or authority.failsafe_landed
+
+
 def pilot_has(authority: Authority) -> bool:
     """A pilot has control, and no operator has taken it back since; after their landing, too."""
-    return authority.taken_by is not None and authority.who != "failsafe"
+    return authority.taken_by is not None and not failsafe_has(authority)
 
 
 def ours_to_order(authority: Authority) -> bool:
     """Neither a pilot nor the autopilot's failsafe has the vehicle."""
-    return authority.who != "failsafe" and not pilot_has(authority)
+    return not failsafe_has(authority) and not pilot_has(authority)
 
 
 def evolve(state: CraftState, event: Event) -> CraftState:
@@ -190,7 +197,7 @@ def _evolve_place(state: CraftState, event: Event) -> CraftState:
             return replace(state, chosen=None, accepted=False, avoid=(*state.avoid, state.chosen.place))
         case BearingMeasured() if _ours(state, event):
             return replace(state, chosen=None, accepted=False, avoid=())
-        case BearingExcluded() if state.phase == "waiting":
+        case BearingExcluded() | BearingIncluded() | SourceMuteChanged() if state.phase == "waiting":
             return replace(state, chosen=None)
         case _:
             return state

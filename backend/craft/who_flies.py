@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from backend.craft.effects import CancelTimer, CancelWork
-from backend.craft.state import AUTOMATIC, HOMEWARD, ours_to_order, pilot_has
+from backend.craft.state import AUTOMATIC, HOMEWARD, failsafe_has, ours_to_order, pilot_has
 from backend.craft.step import CraftStep, alert, cancel_timers, clear_alerts, clear_failsafe, insist
 from backend.events import AuthorityChanged
 from backend.reasons import flight
@@ -28,7 +28,7 @@ def authority_heard(step: CraftStep, heard: Authority) -> None:
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
-    elif heard.who == "failsafe" and before.who != "failsafe" and craft.phase in AUTOMATIC | {"hold"}:
+    elif failsafe_has(heard) and not failsafe_has(before) and craft.phase in AUTOMATIC | {"hold"}:
         step.do(CancelWork())
         silent = "link_lost" if "vehicle" in craft.links_down else "silence"
         _failsafe_flies(step, flight.FailsafeFlies(silent))
@@ -59,7 +59,7 @@ def restarted(step: CraftStep, heard: Authority) -> None:
         reason = flight.PilotFlies(heard.mode or "", heard.perhaps_failsafe)
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
-    elif heard.who == "failsafe":
+    elif failsafe_has(heard):
         ordered = craft.phase in HOMEWARD
         _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
     else:

@@ -22,6 +22,7 @@ from backend.events import PlanChosen
 from backend.reasons import Reason, carried, safety
 from backend.search.closed_by_ground import closed_by_ground
 from backend.search.planning import next_place, next_place_together, way_to
+from backend.search.sector import TurnPlan, expected_here, must_be_whole, planned_turn, whole_turn
 from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from backend.spec import Place
@@ -72,6 +73,8 @@ class Work:
         """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""
         began_s, speed = self.equipment.clock.now(), self.task.mission.flight.speed_m_s
         end = self.task.frame.to_enu(effect.place)
+        plan = await asyncio.to_thread(self._turn_at, end, 1)
+        facing_deg = None if plan is None or plan.begin_deg is None else self._nose_deg(plan.begin_deg)
         try:
             way = await asyncio.to_thread(self._way, end)
         except PlannerError as error:
@@ -89,7 +92,7 @@ class Work:
             (east, north), *way = way
             leg = self.task.frame.to_geo(east, north) if way else effect.place
             try:
-                await self.equipment.vehicle.goto(leg, altitude, speed)
+                await self.equipment.vehicle.goto(leg, altitude, speed, None if way else facing_deg)
             except PlaceRefused as error:
                 return inputs.PlaceNotTaken(effect.place, carried(error.reason))
         here = self._here()
@@ -98,6 +101,8 @@ class Work:
 
     async def measure(self, effect: effects.Measure) -> inputs.CraftInput:
         """SweepTaken, a rejected sweep too, or WorkVetoed. Raises HardwareError."""
+        here = self.task.frame.to_enu(self._here())
+        plan = await asyncio.to_thread(self._turn_at, here, effect.attempt)
         vetoes = turn_vetoes(self.limits, await recent(self.situation))
         if vetoes:
             return inputs.WorkVetoed(vetoes)
@@ -109,10 +114,29 @@ class Work:
             effect.place_number,
             effect.attempt,
             wanted=[emitter.emitter_id for emitter in self.search().sought],
+            plan=plan,
         )
         for measured in found:
             self.keep_sweep(measured, effect.place_number, effect.attempt)
         return inputs.SweepTaken(tuple(measured.fact for measured in found))
+
+    def _turn_at(self, place: tuple[float, float], attempt: int) -> TurnPlan | None:
+        """The turn at a place (m ENU), from what is known now; None: this mission turns once around everywhere."""
+        mission, search = self.task.mission, self.search()
+        if not mission.sensor.sector_turns:
+            return None
+        because = must_be_whole(mission, search.measured, attempt)
+        if because is not None:
+            return whole_turn(because)
+        (emitter,) = search.emitters.values()
+        task = self.task.emitters[emitter.emitter_id]
+        bearings = task.planner_bearings(emitter.bearings)
+        if task.belief(bearings) is None:
+            return whole_turn("unsure")
+        return planned_turn(expected_here(task, task.planning_belief(bearings), emitter.bearings, place))
+
+    def _nose_deg(self, antenna_deg: float) -> float:
+        return (antenna_deg - self.equipment.pattern.offset_to_nose_deg) % 360.0
 
     async def plan(self, effect: effects.PlanNext) -> inputs.CraftInput:
         """Planned, or NothingToPlan; the planner runs in a thread. Raises VehicleError when the place is unknown."""
@@ -160,7 +184,7 @@ class Work:
         None: straight, else around what may not be crossed."""
         end, now = self.task.frame.to_enu(place), self.situation()
         points = [*(way or ()), end]
-        straight = place_vetoes(self.limits, now, place, self.level_altitude(points), way or ())
+        straight = place_vetoes(self.limits, now, place, self._level_altitude(now, points), way or ())
         around = safety.WayLeavesFence | safety.WayCrossesNoFly
         if self.task.ground.terrain is not None:
             around |= safety.ClearanceShort | safety.TooHighAboveGround | safety.AltitudeOutside
@@ -170,11 +194,14 @@ class Work:
             found = self._way(end)
         except PlannerError:
             return straight
-        return place_vetoes(self.limits, now, place, self.level_altitude(found), found[:-1])
+        return place_vetoes(self.limits, now, place, self._level_altitude(now, found), found[:-1])
 
     def level_altitude(self, way: Sequence[tuple[float, float]]) -> float:
         """Metres AMSL at which a way (m ENU) is flown from where the vehicle is now."""
-        position = self.situation().telemetry.position
+        return self._level_altitude(self.situation(), way)
+
+    def _level_altitude(self, now: Situation, way: Sequence[tuple[float, float]]) -> float:
+        position = now.telemetry.position
         before = [] if position is None else [self.task.frame.to_enu(position)]
         return self.task.level_altitude([*before, *way])
 

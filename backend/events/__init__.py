@@ -25,6 +25,7 @@ from backend.events.alerts import (
 from backend.events.bearings import (
     AntennaFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BearingSource,
     CraftSource,
@@ -33,7 +34,9 @@ from backend.events.bearings import (
     PersonSource,
     RecordingImported,
     SilenceFact,
+    SourceMuteChanged,
     SweepRejected,
+    TurnFact,
 )
 from backend.events.belief import BeliefUpdated, EstimateFact, SourceErrorsFact
 from backend.events.checks import AntennaChecked, CheckFact, PreflightChecked
@@ -79,7 +82,16 @@ from backend.events.orders import (
     ReturnOrdered,
 )
 from backend.events.plans import CandidateFact, PlanChosen, PlanVetoed
-from backend.events.review import MissionDeleted, MissionLabelled, MissionRestored, TruthNoted
+from backend.events.review import (
+    MissionBroughtIn,
+    MissionDeleted,
+    MissionLabelled,
+    MissionRestored,
+    Supposition,
+    TruthNoted,
+    VariantDropped,
+    VariantKept,
+)
 from backend.spec import Model
 
 __all__ = [
@@ -98,6 +110,7 @@ __all__ = [
     "BatteryCountdownStarted",
     "BatteryCountdownStopped",
     "BearingExcluded",
+    "BearingIncluded",
     "BearingMeasured",
     "BearingSource",
     "BeliefUpdated",
@@ -123,6 +136,7 @@ __all__ = [
     "Link",
     "LinkLost",
     "LinkRestored",
+    "MissionBroughtIn",
     "MissionDeleted",
     "MissionDrafted",
     "MissionEdited",
@@ -155,17 +169,22 @@ __all__ = [
     "ServerRestarted",
     "SilenceFact",
     "SourceErrorsFact",
+    "SourceMuteChanged",
+    "Supposition",
     "SweepRejected",
     "SweepStarted",
     "TookOff",
     "Topic",
     "TruthNoted",
+    "TurnFact",
+    "VariantDropped",
+    "VariantKept",
 ]
 
 FORM = 2
 """Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
 
-ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored
+ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
 
 Event = Annotated[
     MissionDrafted
@@ -188,6 +207,8 @@ Event = Annotated[
     | BearingMeasured
     | RecordingImported
     | BearingExcluded
+    | BearingIncluded
+    | SourceMuteChanged
     | BeliefUpdated
     | HoldOrdered
     | ResumeOrdered
@@ -217,7 +238,10 @@ Event = Annotated[
     | TruthNoted
     | MissionLabelled
     | MissionDeleted
-    | MissionRestored,
+    | MissionRestored
+    | MissionBroughtIn
+    | VariantKept
+    | VariantDropped,
     Field(discriminator="kind"),
 ]
 

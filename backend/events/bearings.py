@@ -11,6 +11,8 @@ from backend.events.fact import Fact, Known
 from backend.reasons import Reason
 from backend.spec import Id, Place
 
+WHOLE_DEG = 355.0
+
 
 class AntennaFact(Fact):
     """relative_bearing_deg: (n,) clockwise from the antenna's front, ascending. gain_db: (n,). offset_to_nose_deg: the
@@ -65,9 +67,29 @@ class SilenceFact(Fact):
     gain_db: Annotated[list[Annotated[float, Field(le=0)]], Field(min_length=1, max_length=360)]
 
 
+class TurnFact(Fact):
+    """How far a craft turned for a sweep. begin_deg: antenna heading at which it began, clockwise from true north.
+
+    planned_deg, turned_deg: clockwise from there. planned_because: why a sector of that width, or a whole turn.
+    went_on_because: one a look that was not enough. stopped_because: why the last one was.
+    """
+
+    begin_deg: float
+    planned_deg: float
+    turned_deg: float
+    planned_because: Reason
+    went_on_because: list[Reason]
+    stopped_because: Reason
+
+    @property
+    def partial(self) -> bool:
+        """Whether it left a part of the circle out; a vehicle stops a few degrees short of a whole one."""
+        return self.turned_deg < WHOLE_DEG
+
+
 class SweepRejected(Fact):
-    """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured.
-    silence: the emitter should have been heard, were it near; None: the turn says nothing of that."""
+    """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood, turn: as in
+    BearingMeasured. silence: the emitter should have been heard, were it near; None: the turn says nothing of that."""
 
     kind: Literal["sweep_rejected"] = "sweep_rejected"
     emitter_id: Id
@@ -82,6 +104,7 @@ class SweepRejected(Fact):
     fitted_db: list[Known]
     likelihood: str | None = None
     silence: SilenceFact | None = None
+    turn: TurnFact | None = None
 
 
 class BearingMeasured(Fact):
@@ -94,6 +117,7 @@ class BearingMeasured(Fact):
     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
     taken_at_s: UTC epoch seconds of the middle of the turn; None: nobody said (imported, or before it was kept).
+    turn: how far the craft turned and why; None: once all the way round, as in every mission without sector turns.
     """
 
     kind: Literal["bearing_measured"] = "bearing_measured"
@@ -119,6 +143,7 @@ class BearingMeasured(Fact):
     likelihood: str | None = None
     samples_without_heading: int = 0
     taken_at_s: Known = None
+    turn: TurnFact | None = None
 
 
 class RecordingImported(Fact):
@@ -149,3 +174,24 @@ class BearingExcluded(Fact):
     reason: str
     """In the operator's own words."""
     heard: bool = True
+
+
+class BearingIncluded(Fact):
+    """A bearing that was left out counts again, in its old place in the order."""
+
+    kind: Literal["bearing_included"] = "bearing_included"
+    emitter_id: Id
+    bearing_id: str
+    by: str
+
+
+class SourceMuteChanged(Fact):
+    """muted: the source's bearings, those to come too, are kept and count for nothing; False: they count again, but for
+    those that were left out one by one."""
+
+    kind: Literal["source_mute_changed"] = "source_mute_changed"
+    source: BearingSource
+    muted: bool
+    by: str
+    reason: str = ""
+    """In the operator's own words."""

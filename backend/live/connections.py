@@ -4,13 +4,15 @@ Without them a thousand half-sent requests use up the process's file descriptors
 room left, whoever keeps the server waiting makes room: a stranger who fills every place with half a request, a body
 that never ends or an answer that is never taken keeps nobody out for longer than a whole request takes to arrive.
 
-A live websocket is counted only until it is one: the live channel has a limit of its own.
+A crowd that came at once is not sent away at once: it would come back so, and whoever came after it would wait for all
+of it. A live websocket is counted only until it is one: the live channel has a limit of its own.
 """
 
 from __future__ import annotations
 
 import asyncio
 import ipaddress
+import random
 import resource
 from collections import Counter
 from collections.abc import Callable, Collection
@@ -34,11 +36,21 @@ class Visitor(Protocol):
         ...
 
 
+SPREAD = 1.5
+"""Patience with one connection is between its least and this many times as much."""
+
+
+def spread(least_s: float) -> float:
+    """Seconds of patience with one connection, so that those of a crowd end one after the other."""
+    return least_s * random.uniform(1.0, SPREAD)
+
+
 @dataclass(slots=True)
 class Door:
-    """most: open at once. each: of one address, but for this machine's and `exempt` ones. head_s: for a whole head.
+    """most: open at once. each: of one address, but for this machine's and `exempt` ones. head_s: for a whole head, at
+    least.
 
-    inside: the address of each, the longest there first.
+    inside: the address of each, the longest there first. of_address: how many of each address are inside.
     """
 
     most: int
@@ -46,21 +58,26 @@ class Door:
     head_s: float
     exempt: Collection[str] = ()
     inside: dict[Visitor, str] = field(default_factory=dict[Visitor, str])
+    of_address: Counter[str] = field(default_factory=Counter[str])
 
     def enter(self, visitor: Visitor, address: str) -> bool:
         """False: there are too many, and all of them are being served."""
-        of_this = [other for other, whose in self.inside.items() if whose == address]
-        if len(of_this) >= self.each and address not in self.exempt and not _ours(address):
-            if not self._make_room(of_this):
+        if self.of_address[address] >= self.each and address not in self.exempt and not _ours(address):
+            if not self._make_room([other for other, whose in self.inside.items() if whose == address]):
                 return False
         elif len(self.inside) >= self.most and not self._make_room(list(self.inside)):
             return False
         self.inside[visitor] = address
+        self.of_address[address] += 1
         return True
 
     def leave(self, visitor: Visitor) -> None:
         """Nothing happens when it has left before."""
-        self.inside.pop(visitor, None)
+        address = self.inside.pop(visitor, None)
+        if address is not None:
+            self.of_address[address] -= 1
+            if not self.of_address[address]:
+                del self.of_address[address]
 
     def _make_room(self, among: list[Visitor]) -> bool:
         """Of those who keep the server waiting, the one from the address with the most of them who came first."""
@@ -126,7 +143,7 @@ class LimitedProtocol(H11Protocol):
 
     def _await_head(self) -> None:
         if self._head_timer is None and self in self._door.inside:
-            self._head_timer = asyncio.get_running_loop().call_later(self._door.head_s, self._too_slow)
+            self._head_timer = asyncio.get_running_loop().call_later(spread(self._door.head_s), self._too_slow)
 
     def _head_is_whole(self) -> None:
         if self._head_timer is not None:

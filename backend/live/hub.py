@@ -18,9 +18,9 @@ from typing import Literal
 
 from backend.events import Recorded
 from backend.live.snapshot import telemetry_message
-from backend.ports import Status
+from backend.ports import SectorShown, Status
 from backend.wire.belief_frame import encode_belief
-from backend.wire.messages import CraftStatusMessage, EventMessage, StatusMessage, SweepProgress
+from backend.wire.messages import CraftStatusMessage, EventMessage, SectorMessage, StatusMessage, SweepProgress
 from hardware.readings import Telemetry
 from planner.belief.grid import GridBelief
 
@@ -166,6 +166,7 @@ class Hub:
         heading_deg: list[float],
         power_db: list[float],
         turned_deg: float,
+        sector: SectorShown | None = None,
     ) -> None:
         """Thinned to PROGRESS_POINTS."""
         step = -(-len(heading_deg) // PROGRESS_POINTS) or 1
@@ -177,6 +178,9 @@ class Hub:
             heading_deg=[round(heading, 1) for heading in heading_deg[::step]],
             power_db=[round(power, 1) for power in power_db[::step]],
             turned_deg=turned_deg,
+            sector=None
+            if sector is None
+            else SectorMessage(begin_deg=sector.begin_deg, goal_deg=sector.goal_deg, because=sector.because),
         )
         self._put(mission_id, ("sweep_progress", f"{craft_id}/{emitter_id}"), message.model_dump_json())
 

@@ -78,17 +78,18 @@ class OverlayFolder:
 
     def keep(self, content: bytes, name: str, added_at: datetime) -> Overlay:
         """Read a file and keep what it holds. MapRefused when there is nothing in it that can be drawn, or no room."""
+        overlay_id = hashlib.sha256(content).hexdigest()[:ID_DIGITS]
         kind, reading = read_overlay(content)
         if not reading.features:
             raise MapRefused(NothingToDraw(tuple(reading.all_notes())))
+        bounds = reading.bounds()
         features, thinned = simplified(reading.features)
-        overlay_id = hashlib.sha256(content).hexdigest()[:ID_DIGITS]
         overlay = Overlay(
             overlay_id=overlay_id,
             name=storable(name) or f"Overlay {overlay_id[:6]}",
             format=kind,
             features=len(features),
-            bounds=reading.bounds(),
+            bounds=bounds,
             notes=[*([] if thinned is None else [thinned]), *reading.all_notes()],
             added_at_utc=added_at,
         )

@@ -189,7 +189,7 @@ class Flights:
         gone = holder_gone(state, operates)
         given = Commanded(command_id, author, request.command, contexts, fence=request.fence, holder_gone=gone)
         asked, seq = await self.records.give(mission_id, state, given)
-        if isinstance(request.command, commands.ExcludeBearing):
+        if isinstance(request.command, commands.ExcludeBearing | commands.IncludeBearing | commands.MuteSource):
             await self.records.settle_beliefs(mission_id)
         return _reply(request, asked, seq or last_seq)
 

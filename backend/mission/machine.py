@@ -17,8 +17,10 @@ from backend.commands import (
     ForCraft,
     GiveControl,
     Hold,
+    IncludeBearing,
     KeepControl,
     Land,
+    MuteSource,
     ReleaseControl,
     Return,
     Start,
@@ -32,6 +34,7 @@ from backend.events import (
     AreaChanged,
     AuthorFact,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BeliefUpdated,
     CommandAccepted,
@@ -43,6 +46,7 @@ from backend.events import (
     Event,
     MissionStarted,
     ServerRestarted,
+    SourceMuteChanged,
     SweepRejected,
 )
 from backend.mission import control
@@ -54,6 +58,9 @@ from backend.reasons.access import CommandIdReused
 from backend.search import machine as search_machine
 from backend.search.effects import Record, Refuse, SearchEffect, UpdateBelief
 from backend.search.inputs import SearchInput, SearchOrdered, SearchOver
+
+Recount = BearingExcluded | BearingIncluded | SourceMuteChanged
+"""What makes bearings count that did not, or the other way round."""
 
 FOR_ALL = (Hold, Return, Land, Abort)
 """Orders that name no craft are for every one."""
@@ -123,13 +130,13 @@ class _Transition:
 def _outruns_beliefs(fact: Event) -> bool:
     """A turn that heard nothing counts where it says what it listened to."""
     silent = isinstance(fact, SweepRejected) and fact.silence is not None
-    return silent or isinstance(fact, BearingMeasured | BearingExcluded | AreaChanged | MissionStarted)
+    return silent or isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted)
 
 
 def _changes_the_search(fact: Event) -> bool:
     """A craft's own bearing is part of what it is doing already."""
     foreign = isinstance(fact, BearingMeasured) and not isinstance(fact.source, CraftSource)
-    return foreign or isinstance(fact, BeliefUpdated | BearingExcluded)
+    return foreign or isinstance(fact, BeliefUpdated | Recount)
 
 
 def transition(state: MissionState, given: Input, at_s: float) -> tuple[MissionState, tuple[Effect, ...]]:
@@ -190,7 +197,7 @@ def _carry_out(now: _Transition, given: Commanded) -> Reason | None:
             return None
         case AcknowledgeAlert(alert_id=alert_id) if alert_id not in open_alert_ids(state):
             return refusals.NoSuchAlert()
-        case ChangeArea() | ExcludeBearing() | AcknowledgeAlert():
+        case ChangeArea() | ExcludeBearing() | IncludeBearing() | MuteSource() | AcknowledgeAlert():
             held = all(craft.phase == "hold" and not craft.taken_over for craft in state.engaged)
             return now.to_search(SearchOrdered(given.author.name, command, given.search.objections, held))
         case _:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from backend.commands import ExcludeBearing
-from backend.events import BearingMeasured, PersonSource, Recorded
+from backend.commands import ExcludeBearing, IncludeBearing, MuteSource
+from backend.events import BearingExcluded, BearingMeasured, Event, PersonSource, Recorded, SourceMuteChanged
 from backend.mission.flights import Flights
 from backend.mission.records import Records
 from backend.reasons import refusals
@@ -55,6 +56,47 @@ class Reports:
             if bearing_id not in emitter.excluded:
                 order = ExcludeBearing(bearing_id=bearing_id, reason=TAKEN_BACK)
                 await self._give(mission_id, SearchOrdered(by, order))
+
+    async def restore(self, mission_id: str, bearing_id: str, by: str) -> None:
+        """What the same person took back counts again; a second time changes nothing. Raises as `take_back`, also for
+        a bearing that somebody else left out: that is theirs, or the controller's, to undo."""
+        async with self.records.lock(mission_id):
+            search = await self._search(mission_id)
+            found = search.bearing(bearing_id)
+            if found is None or not isinstance(found[1].source, PersonSource):
+                raise MissionInputError(refusals.NoSuchBearing(), "bearing_id")
+            if bearing_id not in found[0].excluded:
+                return
+
+            def left_out(event: Event) -> str | None:
+                ours = isinstance(event, BearingExcluded) and event.bearing_id == bearing_id
+                return event.by if ours else None
+
+            await self._by_the_same(mission_id, left_out, by, "bearing_id")
+            await self._give(mission_id, SearchOrdered(by, IncludeBearing(bearing_id=bearing_id)))
+
+    async def mute(self, mission_id: str, name: str, muted: bool) -> None:
+        """A reporter's own bearings, those to come too; the same once more changes nothing. Raises as `restore`."""
+        source = PersonSource(name=name)
+        async with self.records.lock(mission_id):
+            search = await self._search(mission_id)
+            if (source in search.muted) == muted:
+                return
+            if all(bearing.source != source for bearing in search.measured):
+                raise MissionInputError(refusals.NoSuchSource(), "by")
+
+            def mute(event: Event) -> str | None:
+                return event.by if isinstance(event, SourceMuteChanged) and event.source == source else None
+
+            if not muted:
+                await self._by_the_same(mission_id, mute, name, "by")
+            await self._give(mission_id, SearchOrdered(name, MuteSource(of="person", name=name, muted=muted)))
+
+    async def _by_the_same(self, mission_id: str, whose: Callable[[Event], str | None], by: str, field: str) -> None:
+        """Raises MissionInputError when the newest such fact is somebody else's."""
+        named = [who for recorded in await self.records.read(mission_id) if (who := whose(recorded.event)) is not None]
+        if named and named[-1] != by:
+            raise MissionInputError(refusals.LeftOutByAnother(named[-1]), field)
 
     async def _search(self, mission_id: str) -> SearchState:
         """Raises MissionConflict once it has ended."""

@@ -1,10 +1,21 @@
-"""After the flight: what is told of an emitter, a mission's labels, its deletion. Facts like all others."""
+"""After the flight: the ground truth of an emitter, a mission's labels, its deletion. Facts like all others."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from backend.events import MissionDeleted, MissionLabelled, MissionRestored, ReviewFact, TruthNoted
+from backend.events import (
+    MissionDeleted,
+    MissionLabelled,
+    MissionRestored,
+    Recorded,
+    ReviewFact,
+    Supposition,
+    TruthNoted,
+    VariantDropped,
+    VariantKept,
+)
 from backend.events.review import TruthWay
 from backend.mission.flights import Flights
 from backend.mission.learning import learn_from_truth
@@ -14,6 +25,23 @@ from backend.reasons.search import WhichEmitter
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.inputs import Reviewed
 from backend.spec import Place
+
+MOST_VARIANTS = 12
+"""Of one mission: each is computed again whenever they are compared."""
+
+
+def variants_of(recorded: Iterable[Recorded]) -> dict[str, Supposition]:
+    """By name, the one kept first before the others."""
+    kept: dict[str, Supposition] = {}
+    for record in recorded:
+        match record.event:
+            case VariantKept(name=name, wanted=wanted):
+                kept[name] = wanted
+            case VariantDropped(name=name):
+                kept.pop(name, None)
+            case _:
+                pass
+    return kept
 
 
 @dataclass(slots=True)
@@ -49,6 +77,18 @@ class Review:
     async def label(self, mission_id: str, name: str, tags: list[str], notes: str, by: str) -> None:
         """In the place of what was said before."""
         await self._record(mission_id, MissionLabelled(name=name, tags=tags, notes=notes, by=by))
+
+    async def keep_variant(self, mission_id: str, name: str, wanted: Supposition, by: str) -> None:
+        """Beside the mission, in the place of one of the same name. Raises MissionConflict when there are too many."""
+        kept = variants_of(await self.records.read(mission_id))
+        if name not in kept and len(kept) >= MOST_VARIANTS:
+            raise MissionConflict(refusals.TooManyVariants(MOST_VARIANTS))
+        await self._record(mission_id, VariantKept(name=name, wanted=wanted, by=by))
+
+    async def drop_variant(self, mission_id: str, name: str, by: str) -> None:
+        """Nothing happens to a name that is not there."""
+        if name in variants_of(await self.records.read(mission_id)):
+            await self._record(mission_id, VariantDropped(name=name, by=by))
 
     async def delete(self, mission_id: str, by: str) -> None:
         """Out of the list, to be restored for some days. Raises MissionConflict while it is under way."""

@@ -22,6 +22,7 @@ from backend.reasons.safety import SafetyReason
 from backend.reasons.search import SearchReason
 from backend.reasons.storage import StorageReason
 from backend.reasons.terrain import TerrainReason
+from backend.reasons.turning import TurnReason
 from backend.reasons.work import WorkReason
 from hardware.readings import CheckName
 from hardware.reasons.union import HardwareReason
@@ -186,6 +187,7 @@ ReasonUnion = TypeAliasType(
         | SearchReason
         | StorageReason
         | TerrainReason
+        | TurnReason
         | WorkReason
         | CompositeReason,
         Field(discriminator="code"),

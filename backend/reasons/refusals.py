@@ -93,6 +93,34 @@ class BearingExcludedAlready:
 
 
 @dataclass(frozen=True, slots=True)
+class BearingCountsAlready:
+    code: Literal["bearing_counts_already"] = "bearing_counts_already"
+    english: ClassVar[Words] = Words("The bearing was not left out.")
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOutByAnother:
+    by: str
+    code: Literal["left_out_by_another"] = "left_out_by_another"
+    english: ClassVar[Words] = Words(
+        "{by} left it out.", "Ask {by}, or whoever controls the search, to count it again."
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class NoSuchSource:
+    code: Literal["no_such_source"] = "no_such_source"
+    english: ClassVar[Words] = Words("No bearing of this search comes from there.", "Reload the page.")
+
+
+@dataclass(frozen=True, slots=True)
+class MutedAlready:
+    muted: bool
+    code: Literal["muted_already"] = "muted_already"
+    english: ClassVar[Words] = Words("The source is {muted?true=muted already|false=not muted}.")
+
+
+@dataclass(frozen=True, slots=True)
 class NoSuchAlert:
     code: Literal["no_such_alert"] = "no_such_alert"
     english: ClassVar[Words] = Words("There is no such open alert.", "It may have cleared by itself.")
@@ -158,6 +186,13 @@ class MissionFlies:
 
 
 @dataclass(frozen=True, slots=True)
+class TooManyVariants:
+    most: int
+    code: Literal["too_many_variants"] = "too_many_variants"
+    english: ClassVar[Words] = Words("This mission has {most} variants, the most it may.", "Forget one of them first.")
+
+
+@dataclass(frozen=True, slots=True)
 class ServerIsEnding:
     code: Literal["server_is_ending"] = "server_is_ending"
     english: ClassVar[Words] = Words(
@@ -186,6 +221,10 @@ RefusalReason = (
     | NoSuchBearing
     | BearingOfAnother
     | BearingExcludedAlready
+    | BearingCountsAlready
+    | LeftOutByAnother
+    | NoSuchSource
+    | MutedAlready
     | NoSuchAlert
     | NoSuchCraft
     | NoSuchEmitter
@@ -197,4 +236,5 @@ RefusalReason = (
     | MissionFlies
     | MissionDoesNotFly
     | ServerIsEnding
+    | TooManyVariants
 )

@@ -226,6 +226,39 @@ class ExportUnreadable:
 
 
 @dataclass(frozen=True, slots=True)
+class BundleUnreadable:
+    """What was sent cannot be brought in as a mission."""
+
+    fault: Literal["not_zip", "too_large", "later", "under_way", "differs"]
+    code: Literal["bundle_unreadable"] = "bundle_unreadable"
+    english: ClassVar[Words] = Words(
+        "{fault?not_zip=This is not a zip file"
+        "|too_large=The files in the bundle are larger than those of any mission"
+        "|later=A later Crossfix wrote this bundle"
+        "|under_way=The mission was still under way when the bundle was written"
+        "|differs=This installation has the same mission with other facts}.",
+        "{fault?later=Open it with that Crossfix."
+        "|under_way=Export it again after it has ended."
+        "|differs=Nothing was changed. Open the mission that is here."
+        "|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class BundleFileWrong:
+    """name: of the file in the bundle that cannot be brought in, and the whole bundle with it."""
+
+    fault: Literal["foreign", "damaged", "not_exported"]
+    name: str
+    code: Literal["bundle_file_wrong"] = "bundle_file_wrong"
+    english: ClassVar[Words] = Words(
+        "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged"
+        "|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+        "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class UploadBrokeOff:
     code: Literal["upload_broke_off"] = "upload_broke_off"
     english: ClassVar[Words] = Words("The upload broke off; nothing was kept.", "Upload the file again.")
@@ -293,6 +326,8 @@ RequestReason = (
     | TooManyFiles
     | TwoRecordings
     | ExportUnreadable
+    | BundleUnreadable
+    | BundleFileWrong
     | UploadBrokeOff
     | NoPayloadExpected
     | UnknownToken

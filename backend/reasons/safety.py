@@ -202,7 +202,8 @@ class ClearanceShort:
     least_m: float
     code: Literal["clearance_short"] = "clearance_short"
     english: ClassVar[Words] = Words(
-        _OVER + " at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+        _OVER
+        + " at {altitude_relative_m} above home is only {clearance_m:1} above the ground; {least_m:1} are needed.",
         "Choose another place, or allow more altitude above home.",
     )
 
@@ -217,7 +218,7 @@ class TooHighAboveGround:
     most_m: float
     code: Literal["too_high_above_ground"] = "too_high_above_ground"
     english: ClassVar[Words] = Words(
-        _OVER + " at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+        _OVER + " at {altitude_relative_m} above home is {height_m:1} above the ground; {most_m:1} are allowed.",
         "Choose a nearer place: the ground falls away below one level way.",
     )
 

@@ -234,7 +234,7 @@ def _bearing(story: Story, event: BearingMeasured) -> SweepMark:
         bearing_deg=event.bearing_deg,
         sigma_deg=event.sigma_deg,
         quality=event.quality,
-        counted=event.bearing_id not in story.state.search.emitters[event.emitter_id].excluded,
+        counted=story.state.search.emitters[event.emitter_id].counts(event),
         peaks=tuple((peak.bearing_deg, peak.weight) for peak in event.peaks),
         power_db=_power(event.binned_db),
     )

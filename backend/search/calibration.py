@@ -14,8 +14,6 @@ import numpy as np
 from shapely.geometry import Point, shape
 
 from backend.events import (
-    BearingExcluded,
-    BearingMeasured,
     BeliefUpdated,
     CraftSource,
     MissionStarted,
@@ -24,6 +22,7 @@ from backend.events import (
     Recorded,
     TruthNoted,
 )
+from backend.search.counted import counted
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.motion import fit_motion
@@ -35,6 +34,7 @@ FACTS_NEEDED = (
     "place_reached",
     "bearing_measured",
     "bearing_excluded",
+    "bearing_included",
     "belief_updated",
     "truth_noted",
 )
@@ -193,10 +193,8 @@ def _errors(
     recorded: Sequence[Recorded], known: Mapping[str, Place], craft: str
 ) -> Iterable[tuple[Place, float, float]]:
     """Place, error and sigma (degrees) of the counted bearings that a craft took, of emitters whose place is known."""
-    excluded = {r.event.bearing_id for r in recorded if isinstance(r.event, BearingExcluded)}
-    for record in recorded:
-        fact = record.event
-        if not isinstance(fact, BearingMeasured) or fact.bearing_id in excluded or fact.emitter_id not in known:
+    for fact in counted(record.event for record in recorded):
+        if fact.emitter_id not in known:
             continue
         if not isinstance(fact.source, CraftSource) or (craft and fact.source.craft_id != craft):
             continue

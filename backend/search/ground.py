@@ -61,11 +61,11 @@ class Ground:
         """The ground's height AMSL at a place; None where the terrain does not know it."""
         return self.home_amsl_m if self.terrain is None else _known(self.terrain, place)
 
-    def below(self, way: Way) -> Below | None:
-        """At worst, under a way of one or more points (m ENU). None: part of it is not known."""
+    def below(self, way: Way, beside_m: float = LATERAL_TOLERANCE_M) -> Below | None:
+        """At worst, under a way of one or more points (m ENU) and as far beside it. None: part of it is not known."""
         if self.terrain is None:
             return Below(self.home_amsl_m, self.home_amsl_m)
-        lat, lon = self._to_geo(_corridor(way, sample_m(self.terrain)))
+        lat, lon = self._to_geo(_corridor(way, sample_m(self.terrain), beside_m))
         heights = self.terrain.at(lat, lon)
         if not np.isfinite(heights).all():
             return None
@@ -140,11 +140,10 @@ def _known(terrain: Terrain, place: Place) -> float | None:
     return height if math.isfinite(height) else None
 
 
-def _corridor(way: Way, step_m: float) -> Points:
-    """Points (n, 2) at most `step_m` apart over everything within the lateral tolerance of the way."""
+def _corridor(way: Way, step_m: float, reach: float) -> Points:
+    """Points (n, 2) at most `step_m` apart over everything within `reach` (m) of the way."""
     line = [np.asarray(point, dtype=float) for point in way]
     legs = list(pairwise(line)) or [(line[0], line[0])]
-    reach = LATERAL_TOLERANCE_M
     across = np.linspace(-reach, reach, math.ceil(2 * reach / step_m) + 1)
     found: list[Points] = []
     for start, end in legs:

@@ -8,22 +8,26 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, assert_never
 
-from backend.commands import AcknowledgeAlert, ChangeArea, ExcludeBearing
+from backend.commands import AcknowledgeAlert, ChangeArea, ExcludeBearing, IncludeBearing, MuteSource
 from backend.events import (
     AlertAcknowledged,
     AlertCleared,
     AlertRaised,
     AreaChanged,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     BeliefUpdated,
     Event,
+    ImportSource,
     MissionDeleted,
     MissionEdited,
     MissionEnded,
+    PersonSource,
     PreflightChecked,
     ReviewFact,
     SourceErrorsFact,
+    SourceMuteChanged,
     Topic,
     TruthNoted,
 )
@@ -123,7 +127,7 @@ def _arrived(step: SearchStep, facts: tuple[Event, ...]) -> None:
 
 
 def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
-    """What is in the air is in the list; what is told of an emitter changes no belief."""
+    """What is in the air is in the list; its ground truth changes no belief."""
     if isinstance(fact, TruthNoted) and fact.emitter_id not in step.state.emitters:
         raise Refused(refusals.NoSuchEmitter(fact.emitter_id))
     if isinstance(fact, MissionDeleted) and step.state.stage == "open":
@@ -164,6 +168,10 @@ def _ordered(step: SearchStep, given: SearchOrdered) -> None:
             _change_area(step, given, given.command)
         case ExcludeBearing():
             _exclude(step, given, given.command)
+        case IncludeBearing():
+            _include(step, given, given.command)
+        case MuteSource():
+            _mute(step, given, given.command)
         case AcknowledgeAlert(alert_id=alert_id):
             step.record(AlertAcknowledged(alert_id=alert_id, by=given.by))
         case _:
@@ -204,6 +212,32 @@ def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) ->
             heard=isinstance(left_out, BearingMeasured),
         )
     )
+    update_stale_beliefs(step)
+
+
+def _include(step: SearchStep, given: SearchOrdered, command: IncludeBearing) -> None:
+    found = step.state.bearing(command.bearing_id)
+    if found is None:
+        raise Refused(refusals.NoSuchBearing())
+    emitter, _ = found
+    if command.bearing_id not in emitter.excluded:
+        raise Refused(refusals.BearingCountsAlready())
+    if step.state.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    step.record(BearingIncluded(emitter_id=emitter.emitter_id, bearing_id=command.bearing_id, by=given.by))
+    update_stale_beliefs(step)
+
+
+def _mute(step: SearchStep, given: SearchOrdered, command: MuteSource) -> None:
+    person, name = command.of == "person", command.name
+    source = PersonSource(name=name) if person else ImportSource(recording_id=name)
+    if all(bearing.source != source for bearing in step.state.measured):
+        raise Refused(refusals.NoSuchSource())
+    if (source in step.state.muted) == command.muted:
+        raise Refused(refusals.MutedAlready(command.muted))
+    if step.state.stage == "ended":
+        raise Refused(refusals.MissionOver())
+    step.record(SourceMuteChanged(source=source, muted=command.muted, by=given.by, reason=command.reason))
     update_stale_beliefs(step)
 
 

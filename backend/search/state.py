@@ -12,7 +12,9 @@ from backend.events import (
     AntennaChecked,
     AreaChanged,
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
+    BearingSource,
     BeliefUpdated,
     CheckFact,
     Event,
@@ -25,6 +27,7 @@ from backend.events import (
     PlanChosen,
     PreflightChecked,
     ServerRestarted,
+    SourceMuteChanged,
     SweepRejected,
     Topic,
     TruthNoted,
@@ -52,6 +55,8 @@ class EmitterState:
     claim, claimed_at_s: the last belief that said localized, and when (UTC epoch seconds): of an emitter that moves it
     stands for its moment, whatever is believed later.
 
+    muted: sources whose bearings do not count, as those in `excluded` do not.
+
     belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
     epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
     really was; no belief about it depends on that. silences: turns that heard nothing of it and tell something by that.
@@ -60,6 +65,7 @@ class EmitterState:
     emitter_id: str
     measured: tuple[BearingMeasured, ...] = ()
     excluded: frozenset[str] = frozenset()
+    muted: frozenset[BearingSource] = frozenset()
     belief: BeliefUpdated | None = None
     belief_current: bool = False
     localized_at_s: float | None = None
@@ -71,7 +77,11 @@ class EmitterState:
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
         """The bearings that count, in the order they were taken."""
-        return tuple(b for b in self.measured if b.bearing_id not in self.excluded)
+        return tuple(b for b in self.measured if self.counts(b))
+
+    def counts(self, bearing: BearingMeasured) -> bool:
+        """Neither it nor its source was left out."""
+        return bearing.bearing_id not in self.excluded and bearing.source not in self.muted
 
     @property
     def bearing_ids(self) -> tuple[str, ...]:
@@ -99,6 +109,8 @@ class SearchState:
     """emitters: by id, in the specification's order. home: origin of the local frame, None until a craft started.
     ground: the terrain below, None while it is taken to be flat.
 
+    muted: sources whose bearings count for no emitter.
+
     place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds.
     """
 
@@ -110,6 +122,7 @@ class SearchState:
     ground: GroundFact | None = None
     started_at_s: float | None = None
     emitters: Mapping[str, EmitterState] = field(default_factory=dict[str, EmitterState])
+    muted: frozenset[BearingSource] = frozenset()
     place_number: int = 0
     open_alerts: tuple[OpenAlert, ...] = ()
     alerts_raised: int = 0
@@ -227,8 +240,11 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, place_number=max(state.place_number, number))
         case SweepRejected(silence=None):
             return state
-        case BearingMeasured() | BearingExcluded() | BeliefUpdated() | SweepRejected():
+        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated() | SweepRejected():
             return _evolve_emitter(state, event, at_s)
+        case SourceMuteChanged(source=source, muted=muted):
+            sources = state.muted | {source} if muted else state.muted - {source}
+            return _each(replace(state, muted=sources), lambda emitter: _muting(emitter, source, sources))
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
@@ -246,9 +262,11 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
 
 
 def _evolve_emitter(
-    state: SearchState, event: BearingMeasured | BearingExcluded | BeliefUpdated | SweepRejected, at_s: float
+    state: SearchState,
+    event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected,
+    at_s: float,
 ) -> SearchState:
-    emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id))
+    emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id, muted=state.muted))
     number = state.place_number
     match event:
         case BearingMeasured():
@@ -257,8 +275,9 @@ def _evolve_emitter(
         case SweepRejected():
             emitter = replace(emitter, silences=(*emitter.silences, event), belief_current=False)
         case BearingExcluded(bearing_id=bearing_id):
-            excluded = emitter.excluded | {bearing_id}
-            emitter = replace(emitter, excluded=excluded, belief_current=False, claim=None, claimed_at_s=None)
+            emitter = _recounted(replace(emitter, excluded=emitter.excluded | {bearing_id}))
+        case BearingIncluded(bearing_id=bearing_id):
+            emitter = _recounted(replace(emitter, excluded=emitter.excluded - {bearing_id}))
         case BeliefUpdated(localized=localized):
             since = (emitter.localized_at_s or at_s) if localized else None
             emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
@@ -267,10 +286,23 @@ def _evolve_emitter(
     return replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
 
 
+def _muting(emitter: EmitterState, source: BearingSource, muted: frozenset[BearingSource]) -> EmitterState:
+    """An emitter that the source told nothing of keeps its belief."""
+    emitter = replace(emitter, muted=muted)
+    concerned = any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
+    return _recounted(emitter) if concerned else emitter
+
+
+def _recounted(emitter: EmitterState) -> EmitterState:
+    """What was claimed was claimed of other bearings."""
+    return replace(emitter, belief_current=False, claim=None, claimed_at_s=None)
+
+
 def _with_spec(state: SearchState, spec: MissionSpec) -> SearchState:
     """An emitter that is no longer looked for takes its bearings with it."""
     ids = [emitter.emitter_id for emitter in spec.emitters]
-    emitters = {name: replace(state.emitters.get(name, EmitterState(name)), belief_current=False) for name in ids}
+    unknown = {name: EmitterState(name, muted=state.muted) for name in ids}
+    emitters = {name: replace(state.emitters.get(name, unknown[name]), belief_current=False) for name in ids}
     return replace(state, spec=spec, emitters=emitters)
 
 

@@ -8,7 +8,7 @@ from uuid import uuid4
 
 import numpy as np
 
-from backend.events import BearingMeasured, BearingSource, Peak, SilenceFact, SweepRejected
+from backend.events import BearingMeasured, BearingSource, Peak, SilenceFact, SweepRejected, TurnFact
 from backend.reasons import Reason, carried
 from backend.reasons.search import QualityTooLow, SweepIncomplete, SweepValue
 from backend.spec import Place, SensorSpec
@@ -20,13 +20,15 @@ BINS = 180
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """Which sweep it is. place_number counts places from 1, attempt the turns at one."""
+    """Which sweep it is. place_number counts places from 1, attempt the turns at one. turn: None: once all the way
+    round."""
 
     emitter_id: str
     source: BearingSource
     sweep_id: str
     place_number: int
     attempt: int
+    turn: TurnFact | None = None
 
 
 def sweep_fact(
@@ -80,6 +82,7 @@ def sweep_fact(
         likelihood=reading.likelihood,
         samples_without_heading=sweep.samples_without_heading,
         taken_at_s=taken_at_s,
+        turn=taken.turn,
     )
 
 
@@ -108,6 +111,7 @@ def rejected(
         fitted_db=nothing if fitted_db is None else fitted_db,
         likelihood=likelihood,
         silence=silence,
+        turn=taken.turn,
     )
 
 

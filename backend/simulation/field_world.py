@@ -67,8 +67,9 @@ class Field:
     shadows: tuple[Shadow, ...]
     seed: int
 
-    def sweep(self, x: float, y: float, number: int, rate_deg_s: float) -> Sweep:
-        """A whole turn at (x, y). What chance there is depends on the seed and the number of the sweep alone."""
+    def sweep(self, x: float, y: float, number: int, rate_deg_s: float, start_deg: float | None = None) -> Sweep:
+        """A whole turn at (x, y), from this heading of the nose on, None: from any. What chance there is depends on the
+        seed and the number of the sweep alone."""
         direct, *echoes = (shadow.db(x, y) for shadow in self.shadows)
         world, rng = self.world, np.random.default_rng([self.seed, number, 2])
         emitter = dataclasses.replace(world.emitters[0], power_dbm=world.emitters[0].power_dbm - direct)
@@ -77,9 +78,10 @@ class Field:
             for one, lost in zip(world.reflectors, echoes, strict=True)
         )
         here = dataclasses.replace(world, emitters=(emitter,), reflectors=reflectors, seed=int(rng.integers(2**31)))
-        place, start_deg = self.frame.to_geo(x, y), float(rng.uniform(0.0, 360.0))
+        place, any_deg = self.frame.to_geo(x, y), float(rng.uniform(0.0, 360.0))
         link = RadioLink(here, FREQUENCY_HZ)
-        return turn_once(link, place, HEIGHT_M, start_deg=start_deg, rate_deg_s=rate_deg_s)
+        begin_deg = any_deg if start_deg is None else start_deg
+        return turn_once(link, place, HEIGHT_M, start_deg=begin_deg, rate_deg_s=rate_deg_s)
 
 
 def antenna_pattern() -> AntennaPattern:

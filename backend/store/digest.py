@@ -9,6 +9,7 @@ from typing import Any
 
 from backend.events import (
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     MissionDrafted,
     MissionEdited,
@@ -130,6 +131,8 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             return replace(digest, bearings=digest.bearings + 1)
         case BearingExcluded(heard=True):
             return replace(digest, bearings=digest.bearings - 1)
+        case BearingIncluded():
+            return replace(digest, bearings=digest.bearings + 1)
         case SweepRejected():
             return replace(digest, rejected_sweeps=digest.rejected_sweeps + 1)
         case MissionEnded(outcome=outcome, mission_time_s=mission_time_s):

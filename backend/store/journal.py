@@ -17,9 +17,10 @@ from typing import Any, TypeVar
 
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import Event, Recorded
+from backend.events import Event, MissionBroughtIn, Recorded
 from backend.ports import FactRefused, JournalUnavailable, Kept, TrackPoint
-from backend.reasons.storage import FactUnfit
+from backend.reasons.storage import FactUnfit, WrittenElsewhere
+from backend.store.brought import Brought, bring_in
 from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
 from backend.store.digest import MissionDigest, fold
 from backend.store.entries import (
@@ -118,6 +119,27 @@ class SqlJournal:
             self._written[mission_id] = known
             self._forget_ended()
         return recorded
+
+    async def bring_in(self, brought: Brought, by: str) -> bool:
+        """A mission of another installation, with the times it had there, and the fact that it was brought in. All of
+        it or nothing, into the database and never into the spool: it can be sent again. False: it is here already,
+        with the same facts.
+
+        Raises JournalUnavailable, JournalConflict when it is here with other facts.
+        """
+        return await self._whole(self._bring_in(brought, by))
+
+    async def _bring_in(self, brought: Brought, by: str) -> bool:
+        async with self._lock:
+            here = (await self._known(brought.mission_id)).recorded
+            if here:
+                rows = await asyncio.to_thread(lambda: tuple(to_row(r.seq, r.at_utc, r.event) for r in here))
+                if rows[: len(brought.rows)] != brought.rows:
+                    raise JournalConflict(WrittenElsewhere(brought.mission_id, len(here)))
+                return False
+            at_utc = datetime.fromtimestamp(self._now(), UTC)
+            await bring_in(self._engine, brought, at_utc, by)
+            return True
 
     async def save_sweep(
         self,
@@ -247,7 +269,8 @@ class SqlJournal:
         newest = (await self._patiently(self._stored.missions))[:NETS_MISSIONS]
         known = {digest.mission_id for digest in newest} | set(self._written)
         stored = [d.mission_id for d in reversed(newest)] + sorted(known - {d.mission_id for d in newest})
-        return [record for each in stored for record in await self.read_kinds(each, ("nets_noted", "nets_put_back"))]
+        found = [await self.read_kinds(each, ("nets_noted", "nets_put_back", "mission_brought_in")) for each in stored]
+        return [record for of_one in found for record in _of_this_installation(of_one)]
 
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft is not down yet; oldest start first. Asked at a
@@ -264,6 +287,14 @@ class SqlJournal:
                 return waiting
         return await self._stored.sweep(mission_id, sweep_id)
 
+    async def sweeps(self, mission_id: str) -> list[SweepEntry]:
+        """All raw sweeps of a mission, by id, with what waits in the spool."""
+        stored = {entry.sweep_id: entry for entry in await self._stored.sweeps(mission_id)}
+        for waiting in self._delivery.waiting:
+            if isinstance(waiting, SweepEntry) and waiting.mission_id == mission_id:
+                stored[waiting.sweep_id] = waiting
+        return [stored[sweep_id] for sweep_id in sorted(stored)]
+
     async def imported_sweeps(self) -> Kept:
         """The raw sweeps of recordings in the database. Raises JournalUnavailable."""
         return await self._stored.imported_sweeps()
@@ -271,6 +302,12 @@ class SqlJournal:
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
         """By craft, in time order."""
         return await self._stored.tracks(mission_id)
+
+
+def _of_this_installation(recorded: Sequence[Recorded]) -> Sequence[Recorded]:
+    """Without what came in with a bundle: those nets are of vehicles elsewhere."""
+    brought = [at for at, record in enumerate(recorded) if isinstance(record.event, MissionBroughtIn)]
+    return recorded[brought[-1] + 1 :] if brought else recorded
 
 
 def _entry(mission_id: str, first: int, at_utc: datetime, events: Sequence[Event]) -> EventsEntry:

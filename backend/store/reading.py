@@ -129,6 +129,12 @@ class StoredFacts:
         rows = await self._fetch(select(*columns).where(here))
         return SweepEntry(**rows[0]._mapping) if rows else None
 
+    async def sweeps(self, mission_id: str) -> list[SweepEntry]:
+        """All of a mission, by id."""
+        columns = [sweeps.c[name] for name in sweep_columns()]
+        query = select(*columns).where(sweeps.c.mission_id == mission_id).order_by(sweeps.c.sweep_id)
+        return [SweepEntry(**row._mapping) for row in await self._fetch(query)]
+
     async def imported_sweeps(self) -> Kept:
         """The raw sweeps that came with recordings."""
         size = func.coalesce(func.sum(func.length(sweeps.c.samples)), 0)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import json
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 
 from backend.events import Recorded
 from backend.version import VERSION
@@ -24,15 +26,39 @@ FILES: dict[str, tuple[Export, str]] = {
 }
 
 
-def bundle(recorded: Sequence[Recorded], tracks: export.Tracks) -> bytes:
-    """The zip; the same mission gives the same bytes."""
+SCHEMA = "crossfix bundle"
+SCHEMA_VERSION = 1
+MANIFEST, SWEEPS, TRACKS = "bundle.json", "sweeps.jsonl", "tracks.jsonl"
+RAW: dict[str, str] = {
+    MANIFEST: "which schema the bundle has; Crossfix opens it as a mission",
+    SWEEPS: "the power of each sweep, sample by sample, a line each (samples: zlib of three rows of float64)",
+    TRACKS: "the flown path of each craft with all that was kept of it, a line each",
+}
+"""What another installation needs besides mission.json for the same review."""
+
+
+def bundle(
+    recorded: Sequence[Recorded], tracks: export.Tracks, raw: Mapping[str, bytes] = MappingProxyType({})
+) -> bytes:
+    """The zip; the same mission gives the same bytes. raw: the files SWEEPS and TRACKS, as the store writes them."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        contents = "".join(f"{name:16} {words}\n" for name, (_, words) in FILES.items())
+        words_of = {name: words for name, (_, words) in FILES.items()} | RAW
+        contents = "".join(f"{name:16} {words}\n" for name, words in words_of.items())
         notice = "Positions are WGS84, bearings degrees clockwise from true north, times UTC."
         _add(archive, "README.txt", f"A mission of crossfix {VERSION}.\n{notice}\n\n{contents}")
         for name, (make, _) in FILES.items():
             _add(archive, name, make(recorded, tracks))
+        manifest = {
+            "schema": SCHEMA,
+            "version": SCHEMA_VERSION,
+            "software": f"crossfix {VERSION}",
+            "mission_id": recorded[0].mission_id,
+            "events": len(recorded),
+        }
+        _add(archive, MANIFEST, json.dumps(manifest, indent=1))
+        for name in (SWEEPS, TRACKS):
+            _add(archive, name, raw.get(name, b""))
     return stream.getvalue()
 
 

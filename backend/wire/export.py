@@ -154,7 +154,7 @@ def _emitter_features(
             "bearing_deg": fact.bearing_deg,
             "sigma_deg": fact.sigma_deg,
             "quality": fact.quality,
-            "excluded": fact.bearing_id in emitter.excluded,
+            "excluded": not emitter.counts(fact),
             "at_utc": times_utc[fact.bearing_id].isoformat(),
         }
         here = [fact.place.lon, fact.place.lat]

@@ -1,4 +1,4 @@
-"""The library of missions: small maps, labels, what is told of an emitter, and what many missions say together."""
+"""The library of missions: small maps, labels, the ground truth of an emitter, and what many missions say together."""
 
 from __future__ import annotations
 
@@ -28,6 +28,15 @@ class MissionLabels(Model):
     name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120)]
     tags: Annotated[list[Tag], Field(max_length=20)]
     notes: Annotated[str, StringConstraints(max_length=4000)] = ""
+
+
+class MissionBrought(Model):
+    """A mission out of a bundle. already: it was here before, and nothing was changed."""
+
+    mission_id: str
+    already: bool
+    events: int
+    sweeps: int
 
 
 class TruthTold(Model):

@@ -65,9 +65,18 @@ class TelemetryMessage(Model):
     dropped: int
 
 
+class SectorMessage(Model):
+    """What of the circle is turned through, as decided so far: clockwise from begin_deg (antenna heading, true).
+    because: why that far."""
+
+    begin_deg: float
+    goal_deg: float
+    because: Reason | None
+
+
 class SweepProgress(Model):
     """The running sweep of a craft: antenna heading (true) and power of one emitter's samples so far, thinned to at
-    most 360."""
+    most 360. sector None: once all the way round."""
 
     type: Literal["sweep_progress"] = "sweep_progress"
     mission_id: str
@@ -77,6 +86,7 @@ class SweepProgress(Model):
     heading_deg: list[float]
     power_db: list[float]
     turned_deg: float
+    sector: SectorMessage | None = None
 
 
 class OrderMessage(Model):

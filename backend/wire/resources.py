@@ -19,10 +19,10 @@ from backend.events import (
     Recorded,
     SweepRejected,
 )
+from backend.events.review import PatternUpload, Supposition
 from backend.reasons import Reason
 from backend.spec import Area, Id, MissionSpec, Model, Place
 from backend.wire.library import Sketch
-from planner.options import BasePolicy, DiscreteSelection, Estimator, Method
 
 
 class Payload(Model):
@@ -302,13 +302,6 @@ class RecordingImport(Model):
 SweepFact = Annotated[BearingMeasured | SweepRejected, Field(discriminator="kind")]
 
 
-class PatternUpload(Model):
-    """The text of an antenna pattern: JSON, or a turntable table when `filename` ends in .csv, .tsv or .txt."""
-
-    text: str = Field(min_length=1, max_length=500_000)
-    filename: str = Field(min_length=1, max_length=255)
-
-
 class AntennaReview(Model):
     """What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
     what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
@@ -340,22 +333,44 @@ class CompassKnown(Model):
     outlier_rate: float
 
 
-class WhatIfRequest(Model):
-    """A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
-    `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`
-    (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
-    bearings stay."""
+class WhatIfRequest(Supposition):
+    """The decision after this many of the flown bearings that count, taken again."""
 
-    emitter_id: Id | None = None
     bearings: int = Field(ge=0, le=200)
-    sigma_deg: float | None = Field(default=None, ge=0.1, le=60)
-    outlier_probability: float | None = Field(default=None, ge=0, le=0.5)
-    pattern: PatternUpload | None = None
-    offset_to_nose_deg: float | None = Field(default=None, ge=-360, le=360, allow_inf_nan=False)
-    method: Method | None = None
-    base_policy: BasePolicy | None = None
-    selection: DiscreteSelection | None = None
-    estimator: Estimator | None = None
+
+
+class CoursePoint(Model):
+    """What was, or would have been, believed at a time. t_s: since the start. error_m: of the estimate, None while
+    nobody has said where the emitter was."""
+
+    t_s: float
+    bearings: int
+    expected_rmse_m: float | None
+    c95_area_m2: float | None
+    error_m: float | None
+    inside: bool | None
+    localized: bool
+
+
+class Course(Model):
+    """Of a mission as it was flown (name None), or of one of its variants. problem: why a variant has no points."""
+
+    name: str | None
+    wanted: Supposition | None
+    points: list[CoursePoint]
+    problem: Reason | None = None
+
+
+class MissionCourses(Model):
+    """Of one emitter. ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing
+    that counts was taken."""
+
+    mission_id: str
+    name: str
+    emitter_id: str
+    ended_s: float | None
+    bearings_s: list[float]
+    courses: list[Course]
 
 
 class WhatIfStep(Model):

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
+from hardware.autopilot.dialect import (
+    STATION_NOTICED_LOST_S,
+    Dialect,
+    FailsafeRule,
+    ModeOrder,
+    NetRules,
+    OwnFence,
+)
 from hardware.autopilot.messages import HEARTBEAT_ID, TAKE_OFF, Outgoing, command_long, set_mode
 from hardware.autopilot.opening import STATION_SYSTEM
 from hardware.reasons.vehicle import CommandName
@@ -96,6 +103,13 @@ ARDUPILOT = Dialect(
             "station",
             frozenset({1, 3, 4, 5, 6, 7}),
             1,  # RTL
+        ),
+        FailsafeRule(
+            "FS_GCS_TIMEOUT",
+            "station_time",
+            frozenset(),
+            5,
+            within=STATION_NOTICED_LOST_S,
         ),
         FailsafeRule(
             "MAV_GCS_SYSID",

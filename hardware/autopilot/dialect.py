@@ -11,10 +11,15 @@ from hardware.autopilot.messages import Outgoing
 from hardware.reasons.preflight import FailsafeWatch
 from hardware.reasons.vehicle import CommandName
 
+STATION_NOTICED_LOST_S = (2.0, 30.0)
+"""Heartbeats come once a second: sooner would be a false alarm. Later, a vehicle without its station flies on or hovers
+for a good part of its battery: ArduCopter allows 120 s, PX4 300."""
+
 
 @dataclass(frozen=True, slots=True)
 class FailsafeRule:
-    """One parameter that must make the autopilot act by itself. `safe`: the values that do; `set_to`: the remedy."""
+    """One parameter that must make the autopilot act by itself, and soon enough. `safe`: the values that do; `set_to`:
+    the remedy."""
 
     parameter: str
     watch: FailsafeWatch
@@ -23,6 +28,8 @@ class FailsafeRule:
     blocking: bool = True
     bit: int | None = None
     """When given, this bit must be set and `safe` is not looked at."""
+    within: tuple[float, float] | None = None
+    """When given, the value must lie there, and `safe` is not looked at."""
     formerly: str | None = None
     """The name of the same parameter in older versions."""
 
@@ -32,6 +39,9 @@ class FailsafeRule:
 
     def holds(self, value: float) -> bool:
         """value: the parameter as a number; of a bit mask only `bit` is looked at."""
+        if self.within is not None:
+            least, most = self.within
+            return least <= value <= most
         return bool(int(value) & self.bit) if self.bit is not None else int(value) in self.safe
 
 

@@ -19,16 +19,18 @@ STUCK_S = 10.0
 ATTEMPTS = 3
 
 
-async def fly_to(guidance: Guidance, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
-    """Returns once arrived and settled. Raises PlaceRefused when the autopilot says that it will not fly there,
-    VehicleError when it does not arrive."""
+async def fly_to(
+    guidance: Guidance, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+) -> None:
+    """Returns once arrived and settled, wherever the nose points by then. Raises PlaceRefused when the autopilot says
+    that it will not fly there, VehicleError when it does not arrive."""
     monitor = guidance.monitor
     manoeuvre = guidance.begin("flight")
     distance, climb = guidance.distance(place, altitude_amsl_m)
     deadline = Deadline(monitor.clock, 30.0 + 3.0 * distance / speed_m_s + climb / 0.5)
     ordered_at_s = monitor.clock.now()
     for attempt in range(1, ATTEMPTS + 1):
-        await _send(guidance, manoeuvre, place, altitude_amsl_m, speed_m_s)
+        await _send(guidance, manoeuvre, place, altitude_amsl_m, speed_m_s, heading_deg)
         if await _arrive(guidance, manoeuvre, place, altitude_amsl_m, deadline, ordered_at_s):
             return
         distance, climb = guidance.distance(place, altitude_amsl_m)
@@ -40,11 +42,16 @@ async def fly_to(guidance: Guidance, place: Place, altitude_amsl_m: float, speed
 
 
 async def _send(
-    guidance: Guidance, manoeuvre: Manoeuvre, place: Place, altitude_amsl_m: float, speed_m_s: float
+    guidance: Guidance,
+    manoeuvre: Manoeuvre,
+    place: Place,
+    altitude_amsl_m: float,
+    speed_m_s: float,
+    heading_deg: float | None,
 ) -> None:
     dialect = guidance.monitor.dialect
     await guidance.enter_steering(manoeuvre)
-    there = reposition(place, altitude_amsl_m, speed_m_s, None)
+    there = reposition(place, altitude_amsl_m, speed_m_s, heading_deg)
     try:
         await guidance.steer(manoeuvre, there, "place")
     except CommandDenied as denied:

@@ -28,7 +28,7 @@ from hardware.autopilot.mode_switch import ModeSwitch
 from hardware.autopilot.opening import Connection
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import ARM_STATUS, RemoteId, remote_id
-from hardware.autopilot.silence import Silence
+from hardware.autopilot.silence import AfterSilence, Silence
 from hardware.autopilot.snapshot import NAMES, Snapshot
 from hardware.autopilot.status_texts import StatusText, StatusTexts
 from hardware.autopilot.timesync import Timesync
@@ -103,7 +103,7 @@ class Monitor:
         self.timesync = Timesync(self.link, clock, self.snapshot)
         self.silence = Silence()
         self.mode_switch = ModeSwitch()
-        self._after_silence: Deadline | None = None
+        self._after_silence = AfterSilence(clock)
         self._lost_at_s: float | None = None
         self._shown_mode: int | None = None
         self._tasks: list[asyncio.Task[None]] = []
@@ -215,6 +215,7 @@ class Monitor:
         if self.mode_switch.take_moved(self.clock.now()):
             self.control.see(SwitchMoved(self.telemetry().mode or "", self.clock.now()))
         self.silence.look(elapsed_s)
+        self._after_silence.look()
         lost = self.silence.seconds > LINK_LOST_WALL_S
         if lost and self.connected:
             self.connected, self._lost_at_s = False, self.snapshot.heard_at_s
@@ -293,7 +294,6 @@ class Monitor:
                 self.announce(ModeChanged(self._dialect.mode_name(mode)))
             self._shown_mode = mode
         arming_known = self.connected or self._heartbeat_heard_again
-        window = self._after_silence
         self.control.see(
             ModeHeard(
                 mode=mode,
@@ -301,7 +301,7 @@ class Monitor:
                 name=self._dialect.mode_name(mode),
                 armed=snapshot.armed if arming_known else None,
                 in_air=bool(snapshot.in_air),
-                after_silence=not self.connected or (window is not None and not window.passed),
+                after_silence=self._after_silence.look() or not self.connected,
                 at_s=snapshot.mode_at_s or self.clock.now(),
             )
         )
@@ -313,7 +313,7 @@ class Monitor:
         self._on_mode()
 
     def _begin_after_silence(self) -> None:
-        self._after_silence = Deadline(self.clock, AFTER_SILENCE_S, AFTER_SILENCE_WALL_S)
+        self._after_silence.begin(AFTER_SILENCE_S, AFTER_SILENCE_WALL_S)
 
     def _on_authority(self, before: Authority, after: Authority) -> None:
         if after.who != before.who and after.who in ("pilot", "failsafe"):

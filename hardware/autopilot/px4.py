@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from hardware.autopilot.dialect import Dialect, FailsafeRule, ModeOrder, NetRules, OwnFence
+from hardware.autopilot.dialect import (
+    STATION_NOTICED_LOST_S,
+    Dialect,
+    FailsafeRule,
+    ModeOrder,
+    NetRules,
+    OwnFence,
+)
 from hardware.autopilot.messages import CURRENT_MODE_ID, TAKE_OFF, Outgoing, command_long, pause, pause_here, set_mode
 from hardware.reasons.vehicle import CommandName
 
@@ -101,6 +108,13 @@ PX4 = Dialect(
             "station",
             frozenset({1, 2, 3}),
             2,  # return
+        ),
+        FailsafeRule(
+            "COM_DL_LOSS_T",
+            "station_time",
+            frozenset(),
+            10,
+            within=STATION_NOTICED_LOST_S,
         ),
         FailsafeRule(
             "COM_RC_OVERRIDE",

@@ -1,4 +1,4 @@
-"""The ways to turn a multicopter once around, each watched by telemetry; when one does nothing the next is tried."""
+"""The ways to turn a multicopter on the spot, each watched by telemetry; when one does nothing the next is tried."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ SPOT_M = 5.0
 _NUDGE_DEG = 9e-6  # one metre of latitude
 
 
-async def turn_around(guidance: Guidance, rate_deg_s: float) -> None:
-    """Returns once telemetry saw the whole circle. Raises VehicleError when no way of turning made it."""
+async def turn_around(guidance: Guidance, rate_deg_s: float, by_deg: float = FULL_CIRCLE) -> None:
+    """Returns once telemetry saw it turn by so much, negative: counterclockwise. Raises VehicleError when no way of
+    turning made it."""
     here = guidance.here()
     spot = here if guidance.spot is None or sum(guidance.distance(*guidance.spot)) > SPOT_M else guidance.spot
     methods = guidance.monitor.dialect.turn_methods
-    turn = Turn(guidance, guidance.begin("turn"), rate_deg_s)
+    turn = Turn(guidance, guidance.begin("turn"), rate_deg_s, by_deg)
     for number, method in enumerate(methods, 1):
         if await turn.run(method, *spot):
             return
@@ -38,22 +39,23 @@ async def turn_around(guidance: Guidance, rate_deg_s: float) -> None:
 
 
 class Turn:
-    """One turn; `run` tries one way of doing it and says whether the circle was seen."""
+    """One turn; `run` tries one way of doing it and says whether it was seen."""
 
-    def __init__(self, guidance: Guidance, manoeuvre: Manoeuvre, rate_deg_s: float) -> None:
+    def __init__(self, guidance: Guidance, manoeuvre: Manoeuvre, rate_deg_s: float, by_deg: float) -> None:
         self._guidance = guidance
         self._manoeuvre = manoeuvre
         self._rate = rate_deg_s
+        self._by_deg = by_deg
         self.turned_deg = 0.0
 
     async def run(self, method: TurnMethod, place: Place, altitude_amsl_m: float) -> bool:
-        """True once telemetry saw the whole circle; False when the vehicle stopped turning."""
+        """True once telemetry saw the whole turn; False when the vehicle stopped turning."""
         monitor = self._guidance.monitor
         snapshot, clock = monitor.snapshot, monitor.clock
         await self._guidance.enter_steering(self._manoeuvre)
         if snapshot.heading_deg is None or snapshot.heading_at_s is None:
             return False
-        progress, seen_at = TurnProgress(snapshot.heading_deg), snapshot.heading_at_s
+        progress, seen_at = TurnProgress(snapshot.heading_deg, self._by_deg), snapshot.heading_at_s
         began, sent = clock.now(), 0.0
         progress_at, progress_deg = seen_at, 0.0
         while not progress.done:
@@ -75,21 +77,22 @@ class Turn:
     def _target(self, method: TurnMethod, elapsed_s: float, turned_deg: float, sent_deg: float) -> float:
         """Degrees from the start that should be commanded by now."""
         if method != "condition_yaw":
-            return next_target(elapsed_s, self._rate, turned_deg, step_size(self._rate))
+            return next_target(elapsed_s, self._rate, turned_deg, step_size(self._rate), abs(self._by_deg))
         lead = 0.4 * self._rate + 2.0  # command the next leg before this one brakes
         reached = sent_deg == 0.0 or turned_deg > sent_deg - lead
-        return min(turned_deg + LEG_DEG, FULL_CIRCLE + TOLERANCE) if reached else sent_deg
+        return min(turned_deg + LEG_DEG, abs(self._by_deg) + TOLERANCE) if reached else sent_deg
 
     def _step(
         self, method: TurnMethod, progress: TurnProgress, target_deg: float, place: Place, altitude_amsl_m: float
     ) -> Outgoing:
-        heading = (progress.start_deg + target_deg) % FULL_CIRCLE
+        side = progress.direction
+        heading = (progress.start_deg + side * target_deg) % FULL_CIRCLE
         if method == "condition_yaw":
-            return command_long(CONDITION_YAW, target_deg - progress.turned_deg, self._rate, 1.0, 1.0, 0.0, 0.0, 0.0)
+            return command_long(CONDITION_YAW, target_deg - progress.turned_deg, self._rate, side, 1.0, 0.0, 0.0, 0.0)
         if method == "condition_yaw_absolute":
-            return command_long(CONDITION_YAW, heading, self._rate, 1.0, 0.0, 0.0, 0.0, 0.0)
+            return command_long(CONDITION_YAW, heading, self._rate, side, 0.0, 0.0, 0.0, 0.0)
         if method == "nudged_yaw_steps":
             # some versions ignore a reposition that changes nothing but yaw: move a metre to and fro with it
-            side = _NUDGE_DEG if round(target_deg / step_size(self._rate)) % 2 else 0.0
-            place = Place(place.lat + side, place.lon)
+            nudge = _NUDGE_DEG if round(target_deg / step_size(self._rate)) % 2 else 0.0
+            place = Place(place.lat + nudge, place.lon)
         return reposition(place, altitude_amsl_m, None, heading)

@@ -157,21 +157,26 @@ class MavsdkVehicle:
         else:
             await take_off(self._guidance, altitude_relative_m)
 
-    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
-        """Fly there and return once telemetry says arrived and settled."""
-        numbers = (place.lat, place.lon, altitude_amsl_m, speed_m_s)
+    async def goto(
+        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+    ) -> None:
+        """Fly there and return once telemetry says arrived and settled. heading_deg: of the nose by then, if the
+        autopilot can; None: as it likes."""
+        numbers = (place.lat, place.lon, altitude_amsl_m, speed_m_s, heading_deg or 0.0)
         off_earth = abs(place.lat) > 90 or abs(place.lon) > 180
         if not all(map(math.isfinite, numbers)) or speed_m_s <= 0 or off_earth:
             raise ValueError(f"No place to fly to: {place}, {altitude_amsl_m} m AMSL at {speed_m_s} m/s.")
         self._refuse_on_ground()
-        await fly_to(self._guidance, place, altitude_amsl_m, speed_m_s)
+        await fly_to(self._guidance, place, altitude_amsl_m, speed_m_s, heading_deg)
 
-    async def turn(self, rate_deg_s: float) -> None:
-        """Turn once through 360 degrees on the spot; returns once telemetry has seen the whole circle."""
+    async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
+        """Turn on the spot, clockwise, negative: counterclockwise; returns once telemetry has seen all of it."""
         if not (math.isfinite(rate_deg_s) and 1.0 <= rate_deg_s <= 180.0):
             raise ValueError(f"The turn rate must be 1 to 180 degrees a second, not {rate_deg_s}.")
+        if not 0.0 < abs(by_deg) <= 360.0:
+            raise ValueError(f"A turn must be by more than 0 and at most 360 degrees either way, not by {by_deg}.")
         self._refuse_on_ground()
-        await turn_around(self._guidance, rate_deg_s)
+        await turn_around(self._guidance, rate_deg_s, by_deg)
 
     async def hold(self) -> None:
         """Brake and hover, at any time; a flight or turn in progress ends with an error. Returns once it is at rest."""

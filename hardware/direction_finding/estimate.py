@@ -46,7 +46,9 @@ PENALTY = 0.3
 MINIMUM_QUALITY = 0.7
 MINIMUM_BINS = 8
 MAXIMUM_GAP_DEG = 120.0
-"""Three quarters of a turn in slices of 22.5 degrees leave a gap of 112.5."""
+"""Three quarters of a turn in slices of 22.5 degrees leave a gap of 112.5. Of a turn that was meant to be whole."""
+LEAST_SECTOR_DEG = 80.0
+"""Headings heard, of a turn that was meant to be partial: less than a beam and its flanks shows no maximum."""
 MAXIMUM_GAP_SIGMA_DEG = 25.0
 """A bearing into a gap is used when what was heard beside the gap says it better than this."""
 MAXIMUM_CLIPPED = 0.05
@@ -209,7 +211,7 @@ def unusable(sweep: Sweep, binned: BinnedSweep) -> SweepReason | None:
     filled = int(binned.filled.sum())
     if filled < MINIMUM_BINS:
         return TooFewDirections(filled, MINIMUM_BINS)
-    if binned.largest_gap_deg > MAXIMUM_GAP_DEG:
+    if binned.largest_gap_deg > (360.0 - LEAST_SECTOR_DEG if sweep.partial else MAXIMUM_GAP_DEG):
         return TurnIncomplete(360.0 - binned.largest_gap_deg)
     if np.ptp(binned.power_db[binned.filled]) < 1e-6:
         return ConstantPower()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pymap3d
@@ -127,6 +127,19 @@ def turned_deg(heading_deg: NDArray[np.float64]) -> float:
     if heading_deg.size < 2:
         return 0.0
     return float(np.ptp(np.unwrap(heading_deg, period=360.0)))
+
+
+def first_part(sweep: Sweep, turned_deg: float) -> Sweep:
+    """The part of a clockwise turn heard within `turned_deg` of its beginning, as a partial sweep."""
+    turned = np.unwrap(sweep.heading_deg, period=360.0)
+    heard = turned - turned[0] <= turned_deg
+    return replace(
+        sweep,
+        at_s=sweep.at_s[heard],
+        heading_deg=sweep.heading_deg[heard],
+        power_db=sweep.power_db[heard],
+        partial=True,
+    )
 
 
 @dataclass(frozen=True, slots=True)

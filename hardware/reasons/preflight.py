@@ -9,7 +9,7 @@ from planner.reason import Words
 
 GpsFixName = Literal["no GPS", "no fix", "2D", "3D", "DGPS", "RTK float", "RTK fixed", "static", "PPP"]
 FailsafeWatch = Literal[
-    "station", "station_id", "fence", "transmitter", "sticks", "offboard", "battery", "battery_critical"
+    "station", "station_id", "station_time", "fence", "transmitter", "sticks", "offboard", "battery", "battery_critical"
 ]
 
 
@@ -164,6 +164,7 @@ class ControlChecked:
 
 _WATCHES = (
     "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches"
+    "|station_time=Seconds until it takes a silent ground station for lost"
     "|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight"
     "|offboard=Offboard link lost, which Crossfix does not use"
     "|battery=Battery low|battery_critical=Battery almost empty}"
@@ -171,6 +172,7 @@ _WATCHES = (
 _SET = (
     "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty"
     "|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other"
+    "|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long"
     "|fence=: else the autopilot only reports that the fence was left"
     "|transmitter= when a pilot stands by with a transmitter"
     "|sticks=: the pilot's sticks must end automatic flight at once|offboard="

@@ -12,7 +12,8 @@ import numpy as np
 
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
-from planner.kernels.reference import PointEstimate, ellipse_action
+from planner.kernels.reference.belief import PointEstimate
+from planner.kernels.reference.policy import ellipse_action
 from planner.policy.ellipse_table import TABLE
 from planner.reasons import BesideEllipse
 from planner.types import Decision, FloatArray, Problem

@@ -49,6 +49,9 @@ KernelName = Literal["compiled", "reference"]
 TerminalValue = Callable[[FloatArray], FloatArray]
 """Time still needed, (t,) s, from the ends (t, 10) of rollouts that were cut; columns as CLOSED_FEATURES."""
 
+LIGHT = 1e-6
+"""Rollouts start without the ends of rows that are lighter than this share of the heaviest cell."""
+
 HORIZON = 24
 """Bearings after which a rollout is given up."""
 
@@ -152,7 +155,7 @@ def simulate(
 
 def start_of(belief: GridBelief) -> Start:
     """The belief as kernel arrays, each row cut to the columns that carry weight."""
-    live = belief.density >= reference.LIGHT * belief.density.max()
+    live = belief.density >= LIGHT * belief.density.max()
     low = np.where(live.any(axis=1), live.argmax(axis=1), 0)
     high = np.where(live.any(axis=1), belief.nx - live[:, ::-1].argmax(axis=1), 0)
     return Start(

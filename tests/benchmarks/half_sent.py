@@ -17,18 +17,16 @@ import resource
 import sys
 import tempfile
 import time
-import uuid
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
-import httpx
+import psutil
 
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
-from tests.system.console import console
-from tests.system.processes import serving, vehicle_apart
+from tests.benchmarks.under_attack import flight, ordered_afresh_s, quantile_ms
 
 HALVES = 1010
 HEAD = b"GET /api/health HTTP/1.1\r\nhost: 127.0.0.1\r\n"
@@ -51,17 +49,17 @@ async def hold_open(port: int, sent: bytes) -> None:
         await asyncio.sleep(0.5)
 
 
-async def attack(port: int, seconds: float) -> None:
+async def attack(port: int, halves: int, seconds: float) -> None:
     """Ends by itself."""
     with suppress(TimeoutError):
         async with asyncio.timeout(seconds):
-            await asyncio.gather(*(hold_open(port, HEAD if n % 2 else BODY) for n in range(HALVES)))
+            await asyncio.gather(*(hold_open(port, HEAD if n % 2 else BODY) for n in range(halves)))
 
 
 @asynccontextmanager
-async def stranger(port: int) -> AsyncIterator[None]:
+async def stranger(port: int, halves: int) -> AsyncIterator[None]:
     """Attacks inside the block."""
-    command = (sys.executable, "-m", "tests.benchmarks.half_sent", "--attack", str(port))
+    command = (sys.executable, "-m", "tests.benchmarks.half_sent", "--attack", str(port), "--halves", str(halves))
     process = await asyncio.create_subprocess_exec(*command)
     try:
         yield
@@ -70,76 +68,61 @@ async def stranger(port: int) -> AsyncIterator[None]:
         await process.wait()
 
 
-async def ordered_s(url: str, mission_id: str) -> float | None:
-    """Seconds from the first byte to the answer, on a new connection; None when there was no answer."""
-    asked = {"command_id": str(uuid.uuid4()), "command": {"kind": "hold"}}
-    try:
-        async with httpx.AsyncClient(base_url=url, timeout=20.0) as client:
-            began = time.monotonic()
-            reply = await client.post(f"/api/missions/{mission_id}/commands", json=asked)
-            return time.monotonic() - began if reply.status_code == 200 else None
-    except httpx.HTTPError as error:
-        print(f"an order was lost: {error!r}", file=sys.stderr)
-        return None
+async def strike(
+    folder: Path, seconds: float, halves: int
+) -> tuple[list[float | None], list[float | None], bool, list[float]]:
+    """Orders before and during the attack, whether the websocket went on telling, and seconds of processor that the
+    server took per second, before and during."""
+    async with flight(folder) as (url, server, shown):
 
-
-async def strike(folder: Path) -> tuple[list[float | None], list[float | None], bool]:
-    """Orders before and during the attack, and whether the websocket went on telling."""
-    async with (
-        vehicle_apart() as vehicle,
-        serving(folder, "--vehicle", vehicle.url) as (url, _),
-        console(url) as shown,
-    ):
-        await shown.draft()
-        await shown.ready(120)
-        await shown.watch()
-        await shown.start(60)
-        await shown.until_phase("flying", 120)
-
-        async def orders(seconds: float) -> list[float | None]:
+        async def orders(seconds: float) -> tuple[list[float | None], float]:
             taken: list[float | None] = []
-            until = time.monotonic() + seconds
-            while time.monotonic() < until:
-                taken.append(await ordered_s(url, shown.mission_id))
+            began, worked_s = time.monotonic(), processor_s(server.pid)
+            while time.monotonic() < began + seconds:
+                taken.append(await ordered_afresh_s(url, shown.mission_id))
                 await asyncio.sleep(PAUSE_S)
-            return taken
+            return taken, (processor_s(server.pid) - worked_s) / (time.monotonic() - began)
 
-        before = await orders(10.0)
-        async with stranger(urlsplit(url).port or 0):
-            await asyncio.sleep(3.0)
-            during = await orders(SECONDS)
+        before, usual = await orders(10.0)
+        async with stranger(urlsplit(url).port or 0, halves):
+            during, busy = await orders(seconds)
             heard = len(shown.messages["telemetry"])
             await orders(3.0)
             lives = len(shown.messages["telemetry"]) > heard
-        return before, during, lives
+        return before, during, lives, [usual, busy]
 
 
-def ms(seconds: list[float | None], share: float) -> float:
-    known = sorted(second for second in seconds if second is not None)
-    return round(1e3 * known[min(len(known) - 1, int(share * len(known)))], 1) if known else float("inf")
+def processor_s(pid: int) -> float:
+    times = psutil.Process(pid).cpu_times()
+    return times.user + times.system
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--attack", type=int, metavar="PORT", help="be the stranger")
+    parser.add_argument("--halves", type=int, default=HALVES, help="half-sent requests at a time")
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="of orders during the attack")
     add_out(parser)
     given = parser.parse_args()
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
     if given.attack is not None:
-        asyncio.run(attack(given.attack, 600.0))
+        asyncio.run(attack(given.attack, given.halves, 600.0))
         return
     begun = begin(__file__)
     with tempfile.TemporaryDirectory(prefix="crossfix-half-sent-") as folder:
-        before, during, lives = asyncio.run(strike(Path(folder)))
+        before, during, lives, worked = asyncio.run(strike(Path(folder), given.seconds, given.halves))
     lost = sum(second is None for second in during)
-    note = (
-        f"{len(during)} orders, each on a new connection; median {ms(during, 0.5):g} ms, worst {ms(during, 1.0):g} ms"
-    )
+    median_ms, worst_ms = quantile_ms(during, 0.5), quantile_ms(during, 1.0)
+    note = f"{len(during)} orders, each on a new connection; median {median_ms:g} ms, worst {worst_ms:g} ms"
     figures = [
-        wanted("half_sent", ms(during, 0.99), note=note),
+        wanted("half_sent", quantile_ms(during, 0.99), note=note),
         wanted("half_sent_lost", lost + (0 if lives else 1), note=f"of {len(during)} orders and an open websocket"),
-        plain("the same before the attack, p99", ms(before, 0.99), "ms", note=f"{len(before)} orders"),
+        plain("the same before the attack, p99", quantile_ms(before, 0.99), "ms", note=f"{len(before)} orders"),
+        *(
+            plain(f"server {when} the attack, of one core", round(100.0 * share, 1), "%")
+            for when, share in zip(("before", "during"), worked, strict=True)
+        ),
     ]
     print(json.dumps({figure.name: figure.value for figure in figures}, indent=1))
     write(given.out, "half_sent", "1010 half-sent requests in flight", begun, figures, page="people.md")

@@ -112,7 +112,9 @@ class WanderingVehicle:
         self.measuring = True
         self._held(*self.frame.to_enu(self._here()), home + altitude_relative_m)
 
-    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
+    async def goto(
+        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+    ) -> None:
         """Sideways and upwards at once, each at its own speed, as autopilots do."""
         (x0, y0), (x1, y1) = self.frame.to_enu(self._here()), self.frame.to_enu(place)
         length, before = math.hypot(x1 - x0, y1 - y0), self.state.altitude_amsl_m or 0.0

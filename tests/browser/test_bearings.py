@@ -71,7 +71,7 @@ def test_a_phone_adds_two_bearings_to_a_flying_search_and_takes_one_back(
 
 
 def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Server, open_screen: OpenScreen) -> None:
-    """The advice is asked on the phone; what is heard there is told by a script that knows where the emitter is."""
+    """The advice is asked on the phone; a script that knows the emitter says what is heard there."""
     mission = server.draft(expected_rmse_m=20.0)
     address = f"{server.url.rstrip('/')}/api/missions/{mission}/bearings"
     page = open_screen(server, f"#/mission/{mission}/bearings", **PHONE).page

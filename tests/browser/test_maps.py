@@ -18,6 +18,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 from pmtiles.tile import Compression, TileType, zxy_to_tileid
 from pmtiles.writer import Writer
+from relief import geotiff
 from screen import OpenScreen, Screen
 from served import Server
 
@@ -183,3 +184,36 @@ def test_a_package_is_uploaded_chosen_and_removed_on_the_page(
     row.get_by_role("button").click()
     expect(row).to_have_count(0)
     assert chosen not in [one["map_id"] for one in server.get("/api/maps")["maps"]]
+
+
+def test_uploaded_terrain_is_shaded_and_lined_under_a_mission_and_can_be_hidden(
+    server: Server, browser: Browser, tmp_path: Path
+) -> None:
+    """A ridge of 90 m beside the vehicle's home, seen in the corner of the map where nothing else is drawn."""
+    step_deg, count = 1 / 3600, 300
+    ridge = 120.0 + 90.0 * np.exp(-(((np.arange(count) - count / 2 + 8) / 12.0) ** 2))
+    heights = np.broadcast_to(ridge, (count, count)).astype(np.float32)
+    file = tmp_path / "ridge.tif"
+    file.write_bytes(geotiff(heights, 50.6234 + count / 2 * step_deg, 7.2046 - count / 2 * step_deg, step_deg))
+    tab = MapTab(browser, server, "")
+    try:
+        tab.screen.go("#/maps")
+        tab.screen.part("upload-terrain").set_input_files(file)
+        expect(tab.screen.part("terrain")).to_contain_text("ridge")
+        tab.screen.open(server.draft())
+        tab.screen.map_ready()
+        tab.wait_for(lambda: any("/terrain/contours" in url for url in tab.asked), "the contours")
+        tab.wait_for(lambda: any("/terrain/tiles/" in url for url in tab.asked), "the shading")
+        tab.page.locator("summary", has_text="Layers").click()
+        relief = tab.page.get_by_role("checkbox", name="Relief")
+        expect(relief).to_be_checked()
+        tab.page.wait_for_timeout(500)
+        corner = (slice(-150, -60), slice(200, 500))
+        with_relief = tab.picture()[corner]
+        relief.uncheck()
+        tab.wait_for(lambda: (np.abs(tab.picture()[corner] - with_relief).max(axis=2) > 4).mean() > 0.2, "the plain")
+        assert tab.foreign == []
+    finally:
+        for one in server.get("/api/terrain")["terrains"]:
+            httpx.delete(f"{server.url.rstrip('/')}/api/terrain/{one['terrain_id']}", timeout=20).raise_for_status()
+        tab.context.close()

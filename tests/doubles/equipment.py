@@ -106,6 +106,8 @@ class FlatVehicle:
         self.stuck = False
         self.reachable = True
         self.headings_heard: list[HeadingSample] = []
+        self.turned_by: list[float] = []
+        self.flown_facing: list[float | None] = []
         self.announced: asyncio.Queue[Announcement] = asyncio.Queue()
 
     async def connect(self, timeout_s: float = 30.0) -> None:
@@ -187,21 +189,32 @@ class FlatVehicle:
         )
         self.shows("HOLD")
 
-    async def goto(self, place: Place, altitude_amsl_m: float, speed_m_s: float) -> None:
+    async def goto(
+        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+    ) -> None:
         self._order("goto", "flight")
         await self._takes(2.0)
+        self.flown_facing.append(heading_deg)
+        facing = self.state.heading_deg if heading_deg is None else heading_deg
         self.flown.append((place, altitude_amsl_m))
         above_home = altitude_amsl_m - (self.state.home_amsl_m or 0.0)
         self.state = replace(
-            self.state, position=place, altitude_amsl_m=altitude_amsl_m, altitude_relative_m=above_home
+            self.state,
+            position=place,
+            altitude_amsl_m=altitude_amsl_m,
+            altitude_relative_m=above_home,
+            heading_deg=facing,
         )
 
-    async def turn(self, rate_deg_s: float) -> None:
+    async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
         self._order("turn", "turn")
-        seconds, steps = 360.0 / rate_deg_s, 80
+        self.turned_by.append(by_deg)
+        seconds, steps = abs(by_deg) / rate_deg_s, max(round(abs(by_deg) / 4.5), 2)
+        start = self.state.heading_deg or 0.0
         for step in range(steps + 1):
-            heading = 360.0 * step / steps % 360.0
+            heading = (start + by_deg * step / steps) % 360.0
             self.headings_heard.append(HeadingSample(self.clock.now(), heading, self.state.position))
+            self.state = replace(self.state, heading_deg=heading)
             await self._takes(seconds / steps)
 
     async def hold(self) -> None:

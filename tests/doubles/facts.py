@@ -98,6 +98,10 @@ GIVEN_BACK = Authority(
 FAILSAFE = Authority(
     who="failsafe", taken_by="mode", taken_at_s=1_000.0, mode="RETURN", heard=3, kind="return", armed=True
 )
+LANDED_BY_FAILSAFE = Authority(
+    who="nobody", taken_by="mode", taken_at_s=1_000.0, mode="RETURN", given_back=True, failsafe_landed=True, heard=1,
+    kind="waiting",
+)  # fmt: skip
 NOBODY = Authority()
 LANDED_BY_PILOT = Authority(
     who="nobody", taken_by="mode", taken_at_s=1_000.0, mode="POSCTL", given_back=True, heard=1, kind="waiting"

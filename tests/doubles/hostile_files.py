@@ -105,4 +105,7 @@ def hostile_files() -> list[HostileFile]:
         HostileFile(
             "numbers in an exported mission", "/api/recordings/read", b"[" + b"1," * 15 * MEGABYTE + b"1]", False
         ),
+        HostileFile(
+            "as many as an export may have", "/api/recordings/read", b"[" + b"1," * 8 * MEGABYTE + b"1]", False
+        ),
     ]

@@ -25,7 +25,17 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.room import MissionRoom, mission_room
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState, fold
-from backend.ports import FactRefused, Grounds, JournalUnavailable, Lessons, NoGrounds, NoLessons, Status, TrackPoint
+from backend.ports import (
+    FactRefused,
+    Grounds,
+    JournalUnavailable,
+    Lessons,
+    NoGrounds,
+    NoLessons,
+    SectorShown,
+    Status,
+    TrackPoint,
+)
 from backend.reasons.storage import FactUnfit, NothingStores
 from hardware.clock import ScaledClock
 from hardware.direction_finding.antenna import AntennaPattern
@@ -124,6 +134,7 @@ class MemoryPublisher:
         self.beliefs: list[tuple[str, int]] = []
         self.statuses: list[Status] = []
         self.progress: list[tuple[str, float]] = []
+        self.sectors: list[SectorShown | None] = []
         self.telemetries: list[str] = []
         self.consoles = 0
 
@@ -144,7 +155,9 @@ class MemoryPublisher:
         heading_deg: list[float],
         power_db: list[float],
         turned_deg: float,
+        sector: SectorShown | None = None,
     ) -> None:
+        self.sectors.append(sector)
         assert len(heading_deg) == len(power_db)
         self.progress.append((emitter_id, turned_deg))
 

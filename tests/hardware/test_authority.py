@@ -236,8 +236,23 @@ def test_the_failsafe_lands_after_its_return_and_the_mode_after_its_landing_is_n
     landing = craft.hears(LAND)
     assert (landing.who, landing.mode) == ("failsafe", "LAND")
     assert craft.on_ground(HOLD, armed=True).who == "failsafe"
-    assert craft.on_ground(HOLD).who == "nobody"
-    assert craft.hears(POSCTL).who == "pilot"
+    landed = craft.on_ground(HOLD)
+    assert (landed.who, landed.failsafe_landed) == ("nobody", True)
+    assert craft.on_ground(HOLD).failsafe_landed
+    armed_by_hand = craft.hears(POSCTL)
+    assert (armed_by_hand.who, armed_by_hand.failsafe_landed) == ("pilot", False)
+
+
+def test_a_failsafes_landing_that_a_pilot_took_over_is_the_pilots() -> None:
+    craft = failsafe_flying()
+    craft.hears(POSCTL)
+    assert not craft.on_ground(HOLD).failsafe_landed
+
+
+def test_an_operator_who_takes_control_forgets_that_the_failsafe_landed_it() -> None:
+    craft = failsafe_flying()
+    craft.on_ground(HOLD)
+    assert not craft.sees(OperatorTookControl()).failsafe_landed
 
 
 def test_a_failsafe_stopped_by_an_earlier_command_is_no_pilot_but_a_later_stop_is() -> None:

@@ -69,7 +69,7 @@ def steps() -> tuple[tuple[Authority, Seen, Authority], ...]:
 def test_the_sweep_reaches_every_kind_of_state() -> None:
     assert {a.who for a in reachable()} == {"ours", "pilot", "failsafe", "nobody"}
     assert {a.taken_by for a in reachable()} == {None, "mode", "sticks"}
-    for name in ("given_back", "perhaps_failsafe", "undone", "armed", "restarted"):
+    for name in ("given_back", "perhaps_failsafe", "failsafe_landed", "undone", "armed", "restarted"):
         assert {getattr(a, name) for a in reachable()} == {False, True}, name
 
 
@@ -82,6 +82,7 @@ def test_it_is_ours_only_with_a_command_and_while_nobody_took_it() -> None:
         assert a.taken_by is not None or not (a.given_back or a.perhaps_failsafe or a.mode or a.taken_at_s or a.undone)
         assert not (a.undone and a.given_back)
         assert not a.perhaps_failsafe or a.taken_by == "mode"
+        assert not a.failsafe_landed or (a.who, a.taken_by, a.armed) == ("nobody", "mode", False)
 
 
 def test_what_somebody_else_took_comes_back_by_the_operators_deed_alone() -> None:

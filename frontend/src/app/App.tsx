@@ -21,6 +21,7 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   health: () => import("../pages/HealthPage").then((m) => m.HealthPage),
   calibration: () => import("../pages/CalibrationPage").then((m) => m.CalibrationPage),
   report: () => import("../pages/ReportPage").then((m) => m.ReportPage),
+  compare: () => import("../pages/ComparePage").then((m) => m.ComparePage),
   people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
   join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
   signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),

@@ -2,8 +2,8 @@
 import { signal } from "@preact/signals";
 import { newCommandId } from "../sources/api";
 import { RequestFailed } from "../sources/problem";
-import { type BearingReport, reportBearing, takeBackBearing } from "../sources/reportsApi";
-import { add, answered, nextOf, type Queue, type Queued, read, takeBackLast, withdrawn } from "../state/bearingQueue";
+import { type BearingReport, reportBearing, restoreBearing, takeBackBearing } from "../sources/reportsApi";
+import { add, answered, nextOf, type Queue, type Queued, read, restore, takeBackLast, withdrawn } from "../state/bearingQueue";
 
 const KEY = "crossfix.bearings";
 const AGAIN_MS = 4000;
@@ -49,6 +49,7 @@ async function say({ missionId, report, stage }: Queued): Promise<void> {
   }
   try {
     await reportBearing(missionId, report);
+    if (stage === "restoring") await restoreBearing(missionId, id);
     keep(answered(queue.peek(), id, null));
   } catch (error) {
     const why = refused(error);
@@ -82,6 +83,11 @@ export function report(missionId: string, bearing: Omit<BearingReport, "bearing_
 
 export function backspace(missionId: string): void {
   keep(takeBackLast(queue.peek(), missionId));
+  void sendWaiting();
+}
+
+export function countAgain(bearingId: string): void {
+  keep(restore(queue.peek(), bearingId));
   void sendWaiting();
 }
 

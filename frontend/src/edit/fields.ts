@@ -80,6 +80,8 @@ export const sections: readonly Section[] = [
       number("sensor.turn_rate_deg_s", "edit.turnRate", "°/s", { min: 5, max: 90, more: true }),
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),
+      { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns" },
+      number("sensor.whole_turns", "edit.wholeTurns", "places", { min: 1, max: 20, step: 1, more: true }),
       {
         kind: "choice",
         path: "sensor.bearing_errors",

@@ -11,6 +11,7 @@ import { safety } from "./german/safety";
 import { server } from "./german/server";
 import { sweep } from "./german/sweep";
 import { terrain } from "./german/terrain";
+import { turning } from "./german/turning";
 import { vehicle } from "./german/vehicle";
 import type { ReasonTable } from "./reasons";
 
@@ -19,6 +20,7 @@ export const reasonsDe: ReasonTable = {
   ...receiver,
   ...payload,
   ...sweep,
+  ...turning,
   ...recording,
   ...vehicle,
   ...preflight,

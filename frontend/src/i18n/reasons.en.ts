@@ -830,14 +830,14 @@ export const reasonsEn: ReasonTable = {
     remedy: "{who?failsafe=Let it land|*=Give control back with the transmitter, then resume}.",
   },
   failsafe_parameter: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} = {value}.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|station_time=Seconds until it takes a silent ground station for lost|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} = {value}.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
   failsafe_unread: {
-    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} could not be read.",
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|station_time=Seconds until it takes a silent ground station for lost|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} could not be read.",
     remedy:
-      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
+      "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
   parameter_to_set: {
     text: "{parameter} goes from {before} to {after}.",
@@ -1252,6 +1252,22 @@ export const reasonsEn: ReasonTable = {
     text: "The bearing is excluded already.",
     remedy: "",
   },
+  bearing_counts_already: {
+    text: "The bearing was not left out.",
+    remedy: "",
+  },
+  left_out_by_another: {
+    text: "{by} left it out.",
+    remedy: "Ask {by}, or whoever controls the search, to count it again.",
+  },
+  no_such_source: {
+    text: "No bearing of this search comes from there.",
+    remedy: "Reload the page.",
+  },
+  muted_already: {
+    text: "The source is {muted?true=muted already|false=not muted}.",
+    remedy: "",
+  },
   no_such_alert: {
     text: "There is no such open alert.",
     remedy: "It may have cleared by itself.",
@@ -1295,6 +1311,10 @@ export const reasonsEn: ReasonTable = {
   server_is_ending: {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
+  },
+  too_many_variants: {
+    text: "This mission has {most} variants, the most it may.",
+    remedy: "Forget one of them first.",
   },
   field_missing: {
     text: "It is missing.",
@@ -1371,6 +1391,15 @@ export const reasonsEn: ReasonTable = {
   export_unreadable: {
     text: "This {fault?not_json=is not JSON|not_exported=is not a mission that Crossfix exported|later=was exported by a later Crossfix}.",
     remedy: "{fault?later=Open it with that Crossfix.|*=Choose the file mission.json of an export.}",
+  },
+  bundle_unreadable: {
+    text: "{fault?not_zip=This is not a zip file|too_large=The files in the bundle are larger than those of any mission|later=A later Crossfix wrote this bundle|under_way=The mission was still under way when the bundle was written|differs=This installation has the same mission with other facts}.",
+    remedy:
+      "{fault?later=Open it with that Crossfix.|under_way=Export it again after it has ended.|differs=Nothing was changed. Open the mission that is here.|*=Choose the zip file that “All of it” saves under “Take away”, unchanged.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Crossfix writes no such file into a bundle|damaged=A file in the bundle is damaged|not_exported=A file in the bundle is not one that Crossfix exported}: {name}.",
+    remedy: "Choose the zip file that “All of it” saves under “Take away”, unchanged.",
   },
   upload_broke_off: {
     text: "The upload broke off; nothing was kept.",
@@ -1473,11 +1502,11 @@ export const reasonsEn: ReasonTable = {
     remedy: "Upload terrain for the whole fence, or remove the terrain: the ground then counts as level with home.",
   },
   clearance_short: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m} above the ground; {least_m} are needed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is only {clearance_m:1} above the ground; {least_m:1} are needed.",
     remedy: "Choose another place, or allow more altitude above home.",
   },
   too_high_above_ground: {
-    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m} above the ground; {most_m} are allowed.",
+    text: "{where?way_there=The way there|way_home=The way home from there|take_off=The take-off} at {altitude_relative_m} above home is {height_m:1} above the ground; {most_m:1} are allowed.",
     remedy: "Choose a nearer place: the ground falls away below one level way.",
   },
   area_empty: {
@@ -1666,6 +1695,42 @@ export const reasonsEn: ReasonTable = {
   ground_not_kept: {
     text: "The terrain could not be stored with the mission: {detail}.",
     remedy: "Make room on the disk, then start again.",
+  },
+  whole_turn: {
+    text: "A whole turn: {because?first=nothing was heard here or elsewhere before|again=the sweep before gave no bearing|unsure=the bearings so far contradict each other|wide=the emitter may be in almost any direction|several=several emitters are listened to|pulsed=a tag's pulses need every heading|second_place=the first places of this search hear all directions}.",
+    remedy: "",
+  },
+  sector_expected: {
+    text: "A sector of {width_deg}: it holds {share_percent} of the directions expected from here, and a margin.",
+    remedy: "",
+  },
+  maximum_seen: {
+    text: "Stopped after {turned_deg}: the maximum lies {inside_deg} within it, and another direction has a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  whole_circle_seen: {
+    text: "Stopped after the whole circle.",
+    remedy: "",
+  },
+  maximum_at_edge: {
+    text: "Turned {by_deg} further: the maximum lay at the sector's {edge?beginning=beginning|end=end}.",
+    remedy: "",
+  },
+  quality_poor: {
+    text: "Turned {by_deg} further: what was heard resembled the antenna's pattern by {quality:2} only.",
+    remedy: "",
+  },
+  elsewhere_possible: {
+    text: "Turned {by_deg} further: a direction not yet heard had a probability of {elsewhere_percent}.",
+    remedy: "",
+  },
+  bearing_uncertain: {
+    text: "Turned {by_deg} further: the bearing was still uncertain by {sigma_deg:1}.",
+    remedy: "",
+  },
+  nothing_found_yet: {
+    text: "Turned {by_deg} further: what was heard gave no bearing yet.",
+    remedy: "",
   },
   file_too_heavy: {
     text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",

@@ -1,17 +1,23 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
 import { useEffect, useState } from "preact/hooks";
-import { backspace, keepSending, queue, report, unreached } from "../commands/reportBearings";
+import { backspace, countAgain, keepSending, queue, report, unreached } from "../commands/reportBearings";
+import { asProblem } from "../commands/send";
 import { t } from "../i18n";
 import { AdviceCard } from "../panels/AdviceCard";
 import { AimMap } from "../panels/AimMap";
+import { ProblemBox } from "../panels/ProblemNote";
+import { muteReporter } from "../sources/reportsApi";
 import { advised } from "../state/advice";
 import { lastOf, pending, type Stage } from "../state/bearingQueue";
+import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
+import { emittersThen } from "../state/moment";
 import { compassState, magneticDeg, startCompass, stopCompass } from "../state/phoneCompass";
 import { missionAddress } from "../state/route";
 import { me } from "../state/session";
 import { mission } from "../state/shown";
 import { formatBearing } from "../units/quantities";
+import type { Problem } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import "../style/report.css";
 
@@ -50,7 +56,9 @@ function keepReporter(reporter: Reporter): void {
 const turned = (degrees: number) => ((degrees % 360) + 360) % 360;
 
 const stageWords = (stage: Stage, problem: string | null): string =>
-  stage === "refused" ? t("report.stage.refused", { problem: problem ?? "" }) : t(`report.stage.${stage}`);
+  stage === "refused"
+    ? t("report.stage.refused", { problem: problem ?? "" })
+    : [t(`report.stage.${stage}`), problem].filter(Boolean).join(": ");
 
 function useGps(onPlace: (at: LonLat) => void) {
   const [state, setState] = useState<"off" | "asking" | "on" | "denied">("off");
@@ -108,9 +116,42 @@ function Sent({ missionId }: { missionId: string }) {
         <li key={one.bearing_id} data-stage={stage}>
           <span>{formatBearing(one.bearing_deg)}</span> <span class="muted">{one.taken_at_utc?.slice(11, 19)}</span>{" "}
           <span>{stageWords(stage, problem)}</span>
+          {stage === "back" && (
+            <button type="button" class="small" data-testid="report-again" onClick={() => countAgain(one.bearing_id)}>
+              {t("report.again")}
+            </button>
+          )}
         </li>
       ))}
     </ul>
+  );
+}
+
+/** by: null where one is signed in. */
+function OwnMute({ missionId, name, by }: { missionId: string; name: string; by: string | null }) {
+  const [problem, setProblem] = useState<Problem | null>(null);
+  const source = { kind: "person" as const, name };
+  const muted = mission.value.muted.has(sourceKey(source));
+  const told = [...emittersThen.value.values()].some(({ bearings }) =>
+    bearings.some((b) => sourceKey(b.fact.source) === sourceKey(source)),
+  );
+  if (!told) return null;
+  const change = async () => {
+    setProblem(null);
+    try {
+      await muteReporter(missionId, by, !muted);
+    } catch (error) {
+      setProblem(asProblem(error));
+    }
+  };
+  return (
+    <div class="report-mute">
+      {muted && <p role="status">{t("report.muted")}</p>}
+      <button type="button" data-testid="report-mute" aria-pressed={muted} onClick={() => void change()}>
+        {t(muted ? "report.unmute" : "report.mute")}
+      </button>
+      {problem && <ProblemBox problem={problem} />}
+    </div>
   );
 }
 
@@ -295,6 +336,9 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         </label>
       </details>
       <Sent missionId={missionId} />
+      {named && !ended && (
+        <OwnMute missionId={missionId} name={signedIn ?? reporter.name.trim()} by={signedIn === null ? reporter.name.trim() : null} />
+      )}
       <footer class="report-foot">
         <button type="button" data-testid="report-back" disabled={!lastOf(queue.value, missionId)} onClick={() => backspace(missionId)}>
           ⌫ {t("report.back")}

@@ -8,6 +8,7 @@ import { MiniMap } from "../panels/MiniMap";
 import { ProblemBox, problemWords } from "../panels/ProblemNote";
 import * as api from "../sources/api";
 import { readRecording, replays } from "../sources/replay";
+import { upload } from "../sources/upload";
 import { ANY, asQuery, type Filter, type Library, withFirstPage, withNextPage } from "../state/library";
 import { isOver } from "../state/mission";
 import { go, missionAddress } from "../state/route";
@@ -15,7 +16,7 @@ import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration } from "../units/quantities";
-import type { MissionSummary, Problem } from "../wire";
+import type { MissionBrought, MissionSummary, Problem } from "../wire";
 import "../style/review.css";
 
 const REFRESH_MS = 5000;
@@ -97,12 +98,50 @@ function Row({ mission, editing, onEdit }: RowProperties) {
               {t("missions.report")}
             </a>
           )}
+          {mission.bearings > 0 && (
+            <a class="button" href={`#/compare/${encodeURIComponent(mission.mission_id)}`} data-testid="compare-mission">
+              {t("missions.compare")}
+            </a>
+          )}
           <button type="button" data-testid="label-mission" onClick={() => onEdit(editing ? null : mission.mission_id)}>
             {t("missions.label")}
           </button>
         </div>
       </td>
     </tr>
+  );
+}
+
+/** The bundle of another installation, as a mission of this one. */
+function BringIn({ onProblem }: { onProblem: (problem: Problem | null) => void }) {
+  const [share, setShare] = useState<number | null>(null);
+  const bring = async (file: File) => {
+    onProblem(null);
+    setShare(0);
+    try {
+      const brought = await upload<MissionBrought>("/bundles", file, setShare, "application/zip");
+      go(missionAddress(brought.mission_id));
+    } catch (error) {
+      onProblem(asProblem(error));
+      setShare(null);
+    }
+  };
+  return (
+    <label class="button">
+      {share === null ? t("missions.bringIn") : t("missions.bringingIn", { percent: Math.round(100 * share) })}
+      <input
+        class="visually-hidden"
+        type="file"
+        accept=".zip,application/zip"
+        data-testid="bring-in"
+        disabled={share !== null}
+        onChange={(e) => {
+          const file = e.currentTarget.files?.[0];
+          if (file) void bring(file);
+          e.currentTarget.value = "";
+        }}
+      />
+    </label>
   );
 }
 
@@ -168,6 +207,7 @@ export function MissionsPage() {
   const [broken, setBroken] = useState<string | null>(null);
   const [filter, setFilter] = useState<Filter>(ANY);
   const [editing, setEditing] = useState<string | null>(null);
+  const [refused, setRefused] = useState<Problem | null>(null);
   const { library, problem, more } = useLibrary(filter);
   const shown = library?.missions;
   return (
@@ -182,6 +222,7 @@ export function MissionsPage() {
           onInput={(e) => setFilter({ ...filter, named: e.currentTarget.value })}
         />
         <OpenRecording onProblem={setBroken} />
+        <BringIn onProblem={setRefused} />
         <a class="button primary" href="#/new" data-testid="new-mission">
           {t("missions.new")}
         </a>
@@ -203,6 +244,7 @@ export function MissionsPage() {
           {broken}
         </p>
       )}
+      {refused && <ProblemBox problem={refused} />}
       {problem && <ProblemBox problem={problem} />}
       {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
       {shown?.length === 0 && <p class="card">{t(filter !== ANY ? "missions.noneNamed" : "missions.empty")}</p>}

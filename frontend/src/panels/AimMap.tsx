@@ -77,11 +77,13 @@ export function AimMap({ area, others, advised, here, bearing, sigma, mode, onHe
             .join("")}
         />
       )}
-      {others
-        .filter((one) => !one.excluded)
-        .map(({ fact }) => (
-          <path class="aim-other" key={fact.bearing_id} d={ray([fact.place.lon, fact.place.lat], fact.bearing_deg)} />
-        ))}
+      {others.map(({ fact, excluded }) => (
+        <path
+          class={excluded ? "aim-other left-out" : "aim-other"}
+          key={fact.bearing_id}
+          d={ray([fact.place.lon, fact.place.lat], fact.bearing_deg)}
+        />
+      ))}
       {advised && <circle class="aim-advised" cx={frame.at(advised)[0]} cy={frame.at(advised)[1]} r={14} />}
       {here && bearing !== null && (
         <>

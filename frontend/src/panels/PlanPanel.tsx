@@ -41,9 +41,9 @@ function roundWords(candidate: CandidateFact): string {
   return candidate.dropped_in_round === null ? t("plan.kept") : t("plan.roundNumber", { round: candidate.dropped_in_round });
 }
 
-/** Within the table alone: a pointer over the map must move no button of the panel. */
+/** Within the table alone, and for a pointer over the map: a row that is pointed at itself stays where it is. */
 function showRow(box: HTMLElement | null, row: HTMLElement | null): void {
-  if (!box || !row) return;
+  if (!box || !row || row.matches(":hover")) return;
   const [within, own] = [box.getBoundingClientRect(), row.getBoundingClientRect()];
   if (own.top < within.top) box.scrollTop -= within.top - own.top;
   else if (own.bottom > within.bottom) box.scrollTop += own.bottom - within.bottom;

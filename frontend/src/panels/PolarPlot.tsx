@@ -1,6 +1,6 @@
 // The sweep by hand: power against heading, the pattern's fit, the bearing with its sigma, other peaks.
 import { t } from "../i18n";
-import { binnedPath, type PolarScale, polarPoint, polarScale, radius } from "../state/polar";
+import { arcPath, binnedPath, type PolarScale, polarPoint, polarScale, radius } from "../state/polar";
 import { formatBearing, formatNumber } from "../units/quantities";
 
 export interface PolarData {
@@ -10,7 +10,11 @@ export interface PolarData {
   bearing: { deg: number; sigmaDeg: number; quality: number } | null;
   peaks: { deg: number; weight: number }[];
   rejected: boolean;
+  /** What of the circle was turned through; goalDeg: what is meant to be. null: all of it, as ever. */
+  sector: { beginDeg: number; turnedDeg: number; goalDeg: number } | null;
 }
+
+const RIM = 1.04;
 
 function wedgePath(deg: number, sigma: number): string {
   const [x0, y0] = polarPoint(deg - sigma, 1);
@@ -57,6 +61,12 @@ export function PolarPlot({ data }: { data: PolarData }) {
   return (
     <svg class="polar" viewBox="-1.3 -1.3 2.6 2.6" role="img" aria-label={words} data-testid="polar">
       <Rings scale={scale} labelsDeg={labelsAt(data.bearing?.deg)} />
+      {data.sector && (
+        <g class="polar-sector" data-testid="polar-sector">
+          <path class="polar-sector-goal" d={arcPath(data.sector.beginDeg, data.sector.goalDeg, RIM)} />
+          <path class="polar-sector-turned" d={arcPath(data.sector.beginDeg, data.sector.turnedDeg, RIM)} />
+        </g>
+      )}
       {data.bearing && <path class="polar-wedge" d={wedgePath(data.bearing.deg, data.bearing.sigmaDeg)} />}
       {scale && data.fittedDb.length > 0 && <path class="polar-fit" d={binnedPath(data.fittedDb, scale)} data-testid="polar-fit" />}
       {scale && data.binnedDb.length > 0 && (

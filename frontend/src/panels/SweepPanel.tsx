@@ -2,24 +2,46 @@
 import { useState } from "preact/hooks";
 import { send } from "../commands/send";
 import { reasonText, t } from "../i18n";
+import { sourceKey } from "../state/emitter";
 import { sweep as sweepHeard } from "../state/heard";
 import { cursor } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { supposedHere } from "../state/supposed";
 import type { MissionView } from "../state/view";
+import { sourceName } from "../state/words";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
-import type { BearingMeasured, SweepProgress, SweepRejected } from "../wire";
+import type { BearingMeasured, BearingSource, SweepProgress, SweepRejected } from "../wire";
 import { type PolarData, PolarPlot } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
 
-type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; excluded: boolean };
+type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; leftOut: boolean; excluded: boolean };
 
 function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] {
   return [
-    ...mission.bearings.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
-    ...mission.rejected.map(({ seq, fact, excluded }) => ({ seq, fact, excluded })),
+    ...mission.bearings.map(({ seq, fact, leftOut, excluded }) => ({ seq, fact, leftOut, excluded })),
+    ...mission.rejected.map(({ seq, fact, excluded }) => ({ seq, fact, leftOut: excluded, excluded })),
   ].toSorted((a, b) => b.seq - a.seq);
+}
+
+type Turn = NonNullable<BearingMeasured["turn"]>;
+
+const sectorOf = (turn: Turn | null): PolarData["sector"] =>
+  turn && turn.turned_deg < 355 ? { beginDeg: turn.begin_deg, turnedDeg: turn.turned_deg, goalDeg: turn.turned_deg } : null;
+
+/** How far the craft turned for this sweep, and why: one line a decision. */
+function TurnWords({ turn }: { turn: Turn }) {
+  const whys = [turn.planned_because, ...turn.went_on_because, turn.stopped_because];
+  return (
+    <>
+      <div>{t("sweep.turnedSector", { turned: Math.round(turn.turned_deg), begin: formatBearing(turn.begin_deg) })}</div>
+      <ol class="sweep-turn" data-testid="sweep-turn">
+        {whys.map((why, i) => (
+          <li key={`${i} ${why.code}`}>{reasonText(why)}</li>
+        ))}
+      </ol>
+    </>
+  );
 }
 
 function polarOf({ fact, excluded }: Sweep): PolarData {
@@ -31,45 +53,92 @@ function polarOf({ fact, excluded }: Sweep): PolarData {
     bearing: measured && { deg: measured.bearing_deg, sigmaDeg: measured.sigma_deg, quality: measured.quality },
     peaks: measured?.peaks.map((p) => ({ deg: p.bearing_deg, weight: p.weight })) ?? [],
     rejected: excluded || !measured,
+    sector: sectorOf(fact.turn),
   };
 }
 
 function progressPolar(running: SweepProgress): PolarData {
   const samples = running.heading_deg.map((headingDeg, i) => ({ headingDeg, db: running.power_db[i] ?? NaN }));
-  return { binnedDb: [], fittedDb: [], samples, bearing: null, peaks: [], rejected: false };
+  const sector = running.sector && {
+    beginDeg: running.sector.begin_deg,
+    turnedDeg: running.turned_deg,
+    goalDeg: running.sector.goal_deg,
+  };
+  return { binnedDb: [], fittedDb: [], samples, bearing: null, peaks: [], rejected: false, sector };
 }
 
 function Running({ running, attempt }: { running: SweepProgress; attempt: number }) {
+  const turned = Math.round(running.turned_deg);
+  const goal = running.sector?.goal_deg ?? 360;
   return (
     <div class="sweep-body">
       <PolarPlot data={progressPolar(running)} />
       <div class="sweep-facts" data-testid="sweep-running">
         <strong>{t("sweep.place", { number: running.place_number })}</strong>
         {attempt > 1 && <div>{t("sweep.attempt", { attempt })}</div>}
-        <div>{t("sweep.running", { turned: Math.min(360, Math.round(running.turned_deg)) })}</div>
-        <progress max={360} value={running.turned_deg} aria-label={t("sweep.title")} />
+        <div>
+          {running.sector
+            ? t("sweep.runningSector", { turned, goal: Math.round(goal) })
+            : t("sweep.running", { turned: Math.min(360, turned) })}
+        </div>
+        <progress max={goal} value={running.turned_deg} aria-label={t("sweep.title")} />
+        {running.sector?.because && <div class="muted">{reasonText(running.sector.because)}</div>}
       </div>
     </div>
   );
 }
 
-function LeaveOut({ evidenceId, label }: { evidenceId: string; label: string }) {
-  const id = mission.value.missionId;
-  if (cursor.value !== null || mission.value.ended || !id) return null;
+/** Places are counted for craft only. */
+const whereOf = ({ source, place_number: number }: BearingMeasured | SweepRejected): string =>
+  source.kind === "person" ? source.name : t("sweep.place", { number });
+
+/** A craft is not muted: it would go on measuring for nothing. */
+function mutableOf(source: BearingSource): { of: "person" | "import"; name: string } | null {
+  switch (source.kind) {
+    case "craft":
+      return null;
+    case "import":
+      return { of: "import", name: source.recording_id };
+    case "person":
+      return { of: "person", name: source.name };
+  }
+}
+
+/** Whether a bearing counts is an operator's wish, and can be undone. */
+function Counting({ id, fact, leftOut }: { id: string; fact: BearingMeasured; leftOut: boolean }) {
+  const { source, bearing_id } = fact;
+  const mutable = mutableOf(source);
+  const muted = mission.value.muted.has(sourceKey(source));
   return (
-    <button
-      type="button"
-      class="small"
-      data-testid="exclude"
-      onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: evidenceId, reason: "" })}
-    >
-      {label}
-    </button>
+    <div class="sweep-counting">
+      <button
+        type="button"
+        class="small"
+        data-testid={leftOut ? "include" : "exclude"}
+        onClick={() =>
+          void send("sweep", id, leftOut ? { kind: "include_bearing", bearing_id } : { kind: "exclude_bearing", bearing_id, reason: "" })
+        }
+      >
+        {t(leftOut ? "sweep.include" : "sweep.exclude")}
+      </button>
+      {mutable && (
+        <button
+          type="button"
+          class="small"
+          data-testid="mute-source"
+          aria-pressed={muted}
+          onClick={() => void send("sweep", id, { ...mutable, kind: "mute_source", muted: !muted, reason: "" })}
+        >
+          {t(muted ? "sweep.unmute" : "sweep.mute", { source: sourceName(source) })}
+        </button>
+      )}
+    </div>
   );
 }
 
 function Facts({ sweep }: { sweep: Sweep }) {
-  const { fact, excluded } = sweep;
+  const { fact, leftOut, excluded } = sweep;
+  const id = mission.value.missionId;
   if (fact.kind === "sweep_rejected") {
     return (
       <div class="sweep-facts">
@@ -78,15 +147,25 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
         {fact.silence && <div data-testid="sweep-silence">{t(excluded ? "sweep.silence.excluded" : "sweep.silence")}</div>}
-        {fact.silence && !excluded && <LeaveOut evidenceId={fact.sweep_id} label={t("sweep.silence.exclude")} />}
+        {fact.silence && !excluded && cursor.value === null && !mission.value.ended && id && (
+          <button
+            type="button"
+            class="small"
+            data-testid="exclude"
+            onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.sweep_id, reason: "" })}
+          >
+            {t("sweep.silence.exclude")}
+          </button>
+        )}
+        {fact.turn && <TurnWords turn={fact.turn} />}
       </div>
     );
   }
   return (
     <div class="sweep-facts">
       <strong>
-        {t("sweep.place", { number: fact.place_number })}
-        {excluded && ` (${t("sweep.excluded")})`}
+        {whereOf(fact)}
+        {excluded && ` (${t(leftOut ? "sweep.excluded" : "sweep.muted")})`}
       </strong>
       <div class="sweep-bearing" data-testid="sweep-bearing" data-value={fact.bearing_deg}>
         {t("sweep.bearing", { bearing: formatBearing(fact.bearing_deg), sigma: formatNumber(fact.sigma_deg, 1) })}
@@ -103,12 +182,13 @@ function Facts({ sweep }: { sweep: Sweep }) {
           })}
         </div>
       )}
+      {fact.turn && <TurnWords turn={fact.turn} />}
       {fact.remarks.map((remark) => (
         <div class="refused" data-testid="sweep-remark" key={remark.code}>
           {reasonText(remark)}
         </div>
       ))}
-      {!excluded && <LeaveOut evidenceId={fact.bearing_id} label={t("sweep.exclude")} />}
+      {cursor.value === null && !mission.value.ended && id && <Counting id={id} fact={fact} leftOut={leftOut} />}
     </div>
   );
 }
@@ -134,7 +214,7 @@ export function SweepPanel() {
             <option value="">{t("sweep.latest")}</option>
             {sweeps.map((s) => (
               <option value={s.seq} key={s.seq}>
-                {t("sweep.place", { number: s.fact.place_number })}
+                {whereOf(s.fact)}
                 {s.fact.kind === "bearing_measured"
                   ? `, ${formatBearing(s.fact.bearing_deg)}`
                   : `, ${t("sweep.attempt", { attempt: s.fact.attempt })} ✕`}

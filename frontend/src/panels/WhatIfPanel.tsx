@@ -4,6 +4,7 @@ import { useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
+import type { Supposition } from "../sources/coursesApi";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { flownBearings, supposed, supposedHere } from "../state/supposed";
@@ -11,6 +12,7 @@ import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { AntennaReview, BearingMeasured, Problem, WhatIf, WhatIfRequest } from "../wire";
 import { bytesOf, decodeBeliefFrame } from "../wire/beliefFrame";
 import { ProblemBox } from "./ProblemNote";
+import { FurtherWishes, furtherWishes, KeepVariant } from "./WhatIfMore";
 
 const PLANNERS = {
   flown: {},
@@ -150,6 +152,23 @@ function Antenna() {
   );
 }
 
+/** What the fields ask for. */
+async function supposition(): Promise<Supposition> {
+  const share = typed(outliers.value);
+  return {
+    emitter_id: null,
+    sigma_deg: typed(sigma.value),
+    outlier_probability: share === null ? null : share / 100,
+    offset_to_nose_deg: typed(mounting.value),
+    pattern: pattern.value && { filename: pattern.value.name, text: await pattern.value.text() },
+    method: null,
+    base_policy: null,
+    selection: null,
+    ...PLANNERS[planner.value],
+    ...furtherWishes(),
+  };
+}
+
 export function WhatIfPanel() {
   const [asking, setAsking] = useState(false);
   const [problem, setProblem] = useState<Problem | null>(null);
@@ -160,17 +179,8 @@ export function WhatIfPanel() {
   const ask = async () => {
     setAsking(true);
     setProblem(null);
-    const share = typed(outliers.value);
     try {
-      const wanted = {
-        bearings: counted,
-        sigma_deg: typed(sigma.value),
-        outlier_probability: share === null ? null : share / 100,
-        offset_to_nose_deg: typed(mounting.value),
-        pattern: pattern.value && { filename: pattern.value.name, text: await pattern.value.text() },
-        ...PLANNERS[planner.value],
-      };
-      const answer = await api.whatIf(missionId, wanted as WhatIfRequest);
+      const answer = await api.whatIf(missionId, { ...(await supposition()), bearings: counted });
       supposed.value = { missionId, bearings: counted, answer, frame: decodeBeliefFrame(bytesOf(answer.frame_base64)) };
     } catch (error) {
       setProblem(asProblem(error));
@@ -226,6 +236,7 @@ export function WhatIfPanel() {
             ))}
           </select>
         </label>
+        <FurtherWishes />
       </div>
       <div class="decision">
         <button type="button" class="primary" data-testid="what-if-ask" disabled={asking || unreadable} onClick={() => void ask()}>
@@ -238,6 +249,7 @@ export function WhatIfPanel() {
         )}
       </div>
       {problem && <ProblemBox problem={problem} />}
+      <KeepVariant missionId={missionId} asked={supposition} />
     </details>
   );
 }

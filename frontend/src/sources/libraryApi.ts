@@ -1,4 +1,4 @@
-// The library: labels, deletion, what is told of an emitter, and what checked missions say together.
+// The library: labels, deletion, the ground truth of an emitter, and what checked missions say together.
 import type { Place } from "../wire";
 import type { components } from "../wire/generated";
 import { json, requestEmpty, withBody } from "./api";

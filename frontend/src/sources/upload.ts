@@ -3,17 +3,23 @@ import { t } from "../i18n";
 import { problemOf } from "./api";
 import { unreachable } from "./problem";
 
-export function upload(path: string, file: File, onProgress: (share: number) => void): Promise<void> {
+/** The answer's JSON. */
+export function upload<Answer>(
+  path: string,
+  file: File,
+  onProgress: (share: number) => void,
+  contentType = "application/octet-stream",
+): Promise<Answer> {
   return new Promise((resolve, reject) => {
     const request = new XMLHttpRequest();
     request.open("POST", `/api${path}`);
-    request.setRequestHeader("content-type", "application/octet-stream");
+    request.setRequestHeader("content-type", contentType);
     request.upload.onprogress = (event) => {
       if (event.lengthComputable) onProgress(event.loaded / event.total);
     };
     request.onerror = () => reject(unreachable(t("problem.upload")));
     request.onload = () => {
-      if (request.status < 300) resolve();
+      if (request.status < 300) resolve(JSON.parse(request.responseText) as Answer);
       else {
         const answer = new Response(request.responseText, {
           status: request.status,

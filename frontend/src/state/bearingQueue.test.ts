@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { add, answered, KEPT, lastOf, nextOf, pending, type Queue, read, takeBackLast, withdrawn } from "./bearingQueue";
+import { add, answered, KEPT, lastOf, nextOf, pending, type Queue, read, restore, takeBackLast, withdrawn } from "./bearingQueue";
 
 const report = (bearing_id: string) => ({
   bearing_id,
@@ -33,6 +33,14 @@ describe("bearings on their way", () => {
     queue = takeBackLast(withdrawn(queue, "a"), "m");
     expect(lastOf(queue, "m")).toBeUndefined();
     expect(pending(queue)).toBe(0);
+  });
+  it("count again when they were taken back by mistake, and say so when the server refuses that", () => {
+    const back = withdrawn(takeBackLast(answered(filled("a"), "a", null), "m"), "a");
+    const again = restore(back, "a");
+    expect(nextOf(again)!.stage).toBe("restoring");
+    expect(stages(answered(again, "a", null))).toEqual(["sent"]);
+    expect(answered(again, "a", "Ben left it out.")[0]).toMatchObject({ stage: "back", problem: "Ben left it out." });
+    expect(restore(filled("a"), "a")).toEqual(filled("a"));
   });
   it("answered after they were taken back are withdrawn all the same", () => {
     const queue = answered(takeBackLast(filled("a"), "m"), "a", null);

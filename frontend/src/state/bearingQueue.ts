@@ -3,8 +3,8 @@ import type { components } from "../wire/generated";
 
 type Report = components["schemas"]["BearingReport"];
 
-/** waiting: the server has not answered; sent: it has it; withdrawing: to be taken back there; back: taken back; refused: by the server, and why. */
-export type Stage = "waiting" | "sent" | "withdrawing" | "back" | "refused";
+/** waiting: the server has not answered; sent: it has it; withdrawing: to be taken back there; back: taken back; restoring: to count again there; refused: by the server, and why. */
+export type Stage = "waiting" | "sent" | "withdrawing" | "back" | "restoring" | "refused";
 
 export interface Queued {
   missionId: string;
@@ -29,13 +29,19 @@ export function answered(queue: Queue, bearingId: string, problem: string | null
   const one = queue.find((each) => each.report.bearing_id === bearingId);
   if (!one) return queue;
   if (one.stage === "withdrawing") return problem === null ? queue : change(queue, bearingId, { stage: "back" });
+  if (one.stage === "restoring") return change(queue, bearingId, problem === null ? { stage: "sent" } : { stage: "back", problem });
   return change(queue, bearingId, problem === null ? { stage: "sent" } : { stage: "refused", problem });
 }
 
 /** It is taken back at the server, or was never there. */
 export const withdrawn = (queue: Queue, bearingId: string): Queue => change(queue, bearingId, { stage: "back" });
 
-const COUNTS: readonly Stage[] = ["waiting", "sent"];
+/** One that the server may never have had is sent once more: what it has already, it does not count twice. */
+export const restore = (queue: Queue, bearingId: string): Queue =>
+  queue.map((one) => (one.report.bearing_id === bearingId && one.stage === "back" ? { ...one, stage: "restoring", problem: null } : one));
+
+const COUNTS: readonly Stage[] = ["waiting", "sent", "restoring"];
+const TO_SAY: readonly Stage[] = ["waiting", "withdrawing", "restoring"];
 
 /** The last own bearing that counts, or is on its way to. */
 export const lastOf = (queue: Queue, missionId: string): Queued | undefined =>
@@ -48,9 +54,9 @@ export function takeBackLast(queue: Queue, missionId: string): Queue {
 }
 
 /** What is to be said to the server next, the oldest first. */
-export const nextOf = (queue: Queue): Queued | undefined => queue.find((one) => one.stage === "waiting" || one.stage === "withdrawing");
+export const nextOf = (queue: Queue): Queued | undefined => queue.find((one) => TO_SAY.includes(one.stage));
 
-export const pending = (queue: Queue): number => queue.filter((one) => one.stage === "waiting" || one.stage === "withdrawing").length;
+export const pending = (queue: Queue): number => queue.filter((one) => TO_SAY.includes(one.stage)).length;
 
 const isQueued = (one: unknown): one is Queued =>
   typeof one === "object" && one !== null && "report" in one && "missionId" in one && "stage" in one;

@@ -36,6 +36,7 @@ export const NOBODY: Authority = {
   mode: null,
   given_back: false,
   perhaps_failsafe: false,
+  failsafe_landed: false,
   under_way: [],
   undone: false,
   commanded: [],
@@ -65,7 +66,8 @@ export const emptyCraft = (craftId: string, automatic: boolean): CraftState => (
 });
 
 /** A pilot has control, and no operator has taken it back since; after their landing, too. */
-export const pilotHas = ({ taken_by, who }: Authority): boolean => taken_by !== null && who !== "failsafe";
+export const pilotHas = ({ taken_by, who, failsafe_landed }: Authority): boolean =>
+  taken_by !== null && who !== "failsafe" && !failsafe_landed;
 
 /** Until now since the plan: the expected time runs only while the search goes on. */
 export function pausedMs(craft: Pick<CraftState, "plan" | "phaseSince" | "pausedMs"> & { phase: string }, nowMs: number): number {

@@ -1,5 +1,5 @@
 // What is known of one emitter: a fold of the mission's events.
-import type { BearingMeasured, BeliefUpdated, MissionEvent, SweepRejected, TruthNoted } from "../wire";
+import type { BearingMeasured, BearingSource, BeliefUpdated, MissionEvent, SweepRejected, TruthNoted } from "../wire";
 
 export interface At<T> {
   fact: T;
@@ -8,12 +8,29 @@ export interface At<T> {
 }
 
 export interface Bearing extends At<BearingMeasured> {
+  /** By itself; else it does not count because its source is muted. */
+  leftOut: boolean;
+  /** It does not count. */
   excluded: boolean;
 }
 
 export interface Rejected extends At<SweepRejected> {
   /** It heard nothing, and somebody left out what that tells. */
   excluded: boolean;
+}
+
+export type MutedSources = ReadonlySet<string>;
+
+/** One name for each source, as a muted one is remembered by. */
+export function sourceKey(source: BearingSource): string {
+  switch (source.kind) {
+    case "craft":
+      return `craft:${source.craft_id}`;
+    case "import":
+      return `import:${source.recording_id}`;
+    case "person":
+      return `person:${source.name}`;
+  }
 }
 
 export interface BeliefPoint {
@@ -25,6 +42,8 @@ export interface BeliefPoint {
 
 export interface EmitterState {
   emitterId: string;
+  /** Whose bearings do not count. */
+  muted: MutedSources;
   bearings: readonly Bearing[];
   rejected: readonly Rejected[];
   belief: At<BeliefUpdated> | null;
@@ -35,8 +54,9 @@ export interface EmitterState {
   truth: At<TruthNoted> | null;
 }
 
-export const emptyEmitter = (emitterId: string): EmitterState => ({
+export const emptyEmitter = (emitterId: string, muted: MutedSources = new Set()): EmitterState => ({
   emitterId,
+  muted,
   bearings: [],
   rejected: [],
   belief: null,
@@ -45,20 +65,36 @@ export const emptyEmitter = (emitterId: string): EmitterState => ({
   truth: null,
 });
 
+const counting = (bearing: Omit<Bearing, "excluded">, muted: MutedSources): Bearing => ({
+  ...bearing,
+  excluded: bearing.leftOut || muted.has(sourceKey(bearing.fact.source)),
+});
+
+const leaving = (state: EmitterState, bearingId: string, leftOut: boolean): EmitterState => ({
+  ...state,
+  claim: null,
+  bearings: state.bearings.map((b) => (b.fact.bearing_id === bearingId ? counting({ ...b, leftOut }, state.muted) : b)),
+  rejected: state.rejected.map((r) => (r.fact.sweep_id === bearingId ? { ...r, excluded: leftOut } : r)),
+});
+
+/** What was claimed was claimed of other bearings, where the source told anything. */
+export function muteEmitter(state: EmitterState, muted: MutedSources): EmitterState {
+  const bearings = state.bearings.map((b) => counting(b, muted));
+  const changed = bearings.some((b, index) => b.excluded !== state.bearings[index]!.excluded);
+  return { ...state, muted, bearings, claim: changed ? null : state.claim };
+}
+
 /** `event` is one that speaks of this emitter. */
 export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
   switch (event.kind) {
     case "sweep_rejected":
       return { ...state, rejected: [...state.rejected, { fact: event, seq, at, excluded: false }] };
     case "bearing_measured":
-      return { ...state, bearings: [...state.bearings, { fact: event, seq, at, excluded: false }] };
+      return { ...state, bearings: [...state.bearings, counting({ fact: event, seq, at, leftOut: false }, state.muted)] };
     case "bearing_excluded":
-      return {
-        ...state,
-        claim: null,
-        bearings: state.bearings.map((b) => (b.fact.bearing_id === event.bearing_id ? { ...b, excluded: true } : b)),
-        rejected: state.rejected.map((r) => (r.fact.sweep_id === event.bearing_id ? { ...r, excluded: true } : r)),
-      };
+      return leaving(state, event.bearing_id, true);
+    case "bearing_included":
+      return leaving(state, event.bearing_id, false);
     case "truth_noted":
       return { ...state, truth: { fact: event, seq, at } };
     case "belief_updated":

@@ -26,6 +26,8 @@ export function toneOf(event: MissionEvent): EventTone {
     case "bearing_measured":
     case "sweep_rejected":
     case "bearing_excluded":
+    case "bearing_included":
+    case "source_mute_changed":
     case "recording_imported":
       return "bearing";
     case "plan_chosen":

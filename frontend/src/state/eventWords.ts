@@ -3,7 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
-import { authorityWords, checkName, phaseName } from "./words";
+import { authorityWords, checkName, phaseName, sourceName } from "./words";
 
 /** null: the mission by itself. */
 const byWords = (by: string | null): string => (by === null ? t("by.mission") : personName(by));
@@ -22,6 +22,8 @@ const COMMANDS: Record<Command["kind"], MessageKey> = {
   set_automatic: "command.set_automatic",
   change_area: "command.change_area",
   exclude_bearing: "command.exclude_bearing",
+  include_bearing: "command.include_bearing",
+  mute_source: "command.mute_source",
   acknowledge_alert: "command.acknowledge_alert",
   take_control: "command.take_control",
   ask_control: "command.ask_control",
@@ -123,6 +125,10 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return event.reason
         ? t("event.bearing_excluded", { by: byWords(event.by), reason: event.reason })
         : t("event.bearing_excluded.plain", { by: byWords(event.by) });
+    case "bearing_included":
+      return t("event.bearing_included", { by: byWords(event.by) });
+    case "source_mute_changed":
+      return t(event.muted ? "event.source_muted" : "event.source_unmuted", { source: sourceName(event.source), by: byWords(event.by) });
     case "belief_updated":
       return beliefWords(event, units);
     case "hold_ordered":
@@ -184,6 +190,12 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.mission_labelled", { by: event.by });
     case "mission_deleted":
       return t("event.mission_deleted", { by: event.by });
+    case "variant_kept":
+      return t("event.variant_kept", { name: event.name, by: event.by });
+    case "variant_dropped":
+      return t("event.variant_dropped", { name: event.name, by: event.by });
+    case "mission_brought_in":
+      return t("event.mission_brought_in", { by: event.by });
     case "mission_restored":
       return t("event.mission_restored", { by: event.by });
     case "mission_ended":

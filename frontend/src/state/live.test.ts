@@ -41,6 +41,7 @@ describe("reduceLive", () => {
       heading_deg: [1],
       power_db: [-60],
       turned_deg: 3,
+      sector: null,
     };
     expect(run(progress).sweeps.get(CRAFT)?.get(EMITTER)?.value.turned_deg).toBe(3);
     expect(run(progress, ...told(someBearing())).sweeps.has(CRAFT)).toBe(false);
@@ -62,6 +63,7 @@ describe("reduceLive", () => {
       heading_deg: power_db.map((_, i) => i),
       power_db,
       turned_deg,
+      sector: null,
     });
     const turn = run(progress("a", [-60], 10), progress("b", [-70, -71], 20)).sweeps.get(CRAFT);
     expect(turnOf(turn, "a")).toMatchObject({ emitter_id: "a", power_db: [-60], turned_deg: 20 });

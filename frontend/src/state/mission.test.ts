@@ -6,6 +6,9 @@ import {
   ended,
   excluded,
   flown,
+  included,
+  mute,
+  person,
   phase,
   record,
   someBearing,
@@ -59,24 +62,34 @@ describe("the mission as a fold of its events", () => {
     ]);
   });
 
-  it("marks the silence of a turn that was left out", () => {
-    const silent = (sweepId: string): MissionEvent => ({
-      kind: "sweep_rejected",
-      emitter_id: someBearing().emitter_id,
-      source: someBearing().source,
-      sweep_id: sweepId,
-      place_number: 1,
-      attempt: 1,
-      quality: 0,
-      reason: { code: "no_pulse_heard" },
-      place: { lat: 1, lon: 2 },
-      binned_db: [],
-      fitted_db: [],
-      likelihood: null,
-      silence: { chances: [1], gain_db: [0] },
-    });
-    const state = seen(silent("a"), silent("b"), { ...excluded("b"), heard: false });
-    expect(state.rejected.map((r) => r.excluded)).toEqual([false, true]);
+  it("counts a bearing again that was left out, and no other way", () => {
+    const [a, b] = [someBearing({ bearing_id: "a" }), someBearing({ bearing_id: "b" })];
+    expect(seen(a, b, excluded("a"), included("a")).bearings.map((one) => one.excluded)).toEqual([false, false]);
+    expect(seen(a, b, excluded("a"), excluded("b"), included("a")).bearings.map((one) => one.excluded)).toEqual([false, true]);
+  });
+
+  it("counts nothing of a muted source, whenever it comes, and what was left out by itself not after it either", () => {
+    const [ada, ben] = [person("Ada"), person("Ben")];
+    const events = [
+      someBearing({ bearing_id: "a", source: ada }),
+      someBearing({ bearing_id: "b", source: ben }),
+      someBearing({ bearing_id: "c", source: ada }),
+      excluded("c"),
+      mute(ada, true),
+      someBearing({ bearing_id: "d", source: ada }),
+    ];
+    const counts = (state: ReturnType<typeof seen>) => state.bearings.filter((one) => !one.excluded).map((one) => one.fact.bearing_id);
+    expect(counts(seen(...events))).toEqual(["b"]);
+    expect(counts(seen(...events, mute(ada, false)))).toEqual(["a", "b", "d"]);
+    expect(counts(seen(...events, included("c")))).toEqual(["b"]);
+  });
+
+  it("takes a claim back with the muted bearings that it stood on, and with no others", () => {
+    const claim = someBelief({ localized: true });
+    const told = [someBearing({ bearing_id: "a", source: person("Ada") }), claim];
+    const claimed = (...more: MissionEvent[]) => fold(...told, ...more).emitters.get(EMITTER)?.claim?.fact;
+    expect(claimed(mute(person("Ada"), true))).toBeUndefined();
+    expect(claimed(mute(person("Ben"), true))).toEqual(claim);
   });
 
   it("forgets the plan that was vetoed", () => {

@@ -15,7 +15,7 @@ import type {
   SearchArea,
 } from "../wire";
 import { type CraftState, emptyCraft, foldCraft } from "./craft";
-import { type At, type EmitterState, emptyEmitter, foldEmitter } from "./emitter";
+import { type At, type EmitterState, emptyEmitter, foldEmitter, type MutedSources, muteEmitter, sourceKey } from "./emitter";
 
 /** craftId, emitterId: whom it concerns; null of both: the whole mission. */
 export interface Alert {
@@ -52,6 +52,8 @@ export interface MissionState {
   startedAt: string | null;
   /** The highest so far, of all craft and bearings. */
   placeNumber: number;
+  /** Sources whose bearings count for no emitter. */
+  muted: MutedSources;
   /** By id, in the specification's order. */
   emitters: ReadonlyMap<string, EmitterState>;
   /** By id, in the order in which they were started. */
@@ -71,6 +73,7 @@ export const emptyMission: MissionState = {
   home: null,
   startedAt: null,
   placeNumber: 0,
+  muted: new Set(),
   emitters: new Map(),
   crafts: new Map(),
   alerts: [],
@@ -91,7 +94,7 @@ const withSpec = (state: MissionState, spec: MissionSpec, seq: number): MissionS
   ...state,
   spec,
   specSeq: seq,
-  emitters: new Map(spec.emitters.map(({ emitter_id: id }) => [id, state.emitters.get(id) ?? emptyEmitter(id)])),
+  emitters: new Map(spec.emitters.map(({ emitter_id: id }) => [id, state.emitters.get(id) ?? emptyEmitter(id, state.muted)])),
 });
 
 const changeAlert = (state: MissionState, id: string, changes: Partial<Alert>): MissionState => ({
@@ -144,6 +147,7 @@ const emitterOf = (event: MissionEvent): string | null => {
     case "sweep_rejected":
     case "bearing_measured":
     case "bearing_excluded":
+    case "bearing_included":
     case "belief_updated":
     case "truth_noted":
       return event.emitter_id;
@@ -153,9 +157,15 @@ const emitterOf = (event: MissionEvent): string | null => {
 };
 
 function foldEmitters(state: MissionState, { event, at_utc: at, seq }: Recorded): MissionState {
+  if (event.kind === "source_mute_changed") {
+    const muted = new Set(state.muted);
+    if (event.muted) muted.add(sourceKey(event.source));
+    else muted.delete(sourceKey(event.source));
+    return { ...state, muted, emitters: new Map([...state.emitters].map(([id, one]) => [id, muteEmitter(one, muted)])) };
+  }
   const id = emitterOf(event);
   if (id === null) return state;
-  const emitter = state.emitters.get(id) ?? emptyEmitter(id);
+  const emitter = state.emitters.get(id) ?? emptyEmitter(id, state.muted);
   return { ...state, emitters: new Map(state.emitters).set(id, foldEmitter(emitter, event, seq, at)) };
 }
 

@@ -18,13 +18,21 @@ export const events = computed(() => live.value.events);
 export function settledSeq(all: readonly Recorded[], seq: number): number {
   const at = all.findIndex((e) => e.seq === seq);
   const chosen = all[at]?.event;
-  if (chosen?.kind !== "bearing_measured" && chosen?.kind !== "bearing_excluded") return seq;
+  if (!chosen || !COUNTED_ANOTHER_WAY.has(chosen.kind)) return seq;
+  const about = "emitter_id" in chosen ? chosen.emitter_id : null;
   for (const { event, seq: later } of all.slice(at + 1)) {
-    if (event.kind === "belief_updated" && event.emitter_id === chosen.emitter_id) return later;
+    if (event.kind === "belief_updated" && (about === null || event.emitter_id === about)) return later;
     if (SETTLES.has(event.kind)) break;
   }
   return seq;
 }
+
+const COUNTED_ANOTHER_WAY: ReadonlySet<EventKind> = new Set([
+  "bearing_measured",
+  "bearing_excluded",
+  "bearing_included",
+  "source_mute_changed",
+]);
 
 /** What begins with the next decision: a belief after it is not this bearing's. */
 const SETTLES: ReadonlySet<EventKind> = new Set(["plan_chosen", "flight_started", "sweep_started", "mission_ended"]);

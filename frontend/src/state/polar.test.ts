@@ -1,9 +1,29 @@
 import { describe, expect, it } from "vitest";
-import { binnedPath, polarPoint, polarScale, radius } from "./polar";
+import { arcPath, binnedPath, polarPoint, polarScale, radius } from "./polar";
 
 it("north is up, east is right", () => {
   expect(polarPoint(0, 1)).toEqual([expect.closeTo(0), expect.closeTo(-1)]);
   expect(polarPoint(90, 1)).toEqual([expect.closeTo(1), expect.closeTo(0)]);
+});
+
+describe("an arc", () => {
+  const numbers = (path: string) => path.match(/-?\d+(\.\d+)?(e-\d+)?/g)!.map(Number);
+  it("goes clockwise, the long way round when it is wider than half the circle", () => {
+    const [x0, y0, rx, , , long, clockwise, x1, y1] = numbers(arcPath(0, 270, 1));
+    expect([x0, y0, rx, long, clockwise, x1, y1]).toEqual([
+      expect.closeTo(0),
+      expect.closeTo(-1),
+      1,
+      1,
+      1,
+      expect.closeTo(-1),
+      expect.closeTo(0),
+    ]);
+    expect(numbers(arcPath(350, 40, 1))[5]).toBe(0);
+  });
+  it("is drawn in two halves when it is the whole circle, which one arc cannot be", () => {
+    expect(arcPath(90, 360, 1).match(/A/g)).toHaveLength(2);
+  });
 });
 
 describe("the scale", () => {

@@ -27,6 +27,14 @@ export function polarPoint(headingDeg: number, r: number): [number, number] {
   return [r * Math.sin(a), -r * Math.cos(a)];
 }
 
+/** An arc on the circle of radius r, clockwise from `beginDeg`; a whole circle for 360 degrees or more. */
+export function arcPath(beginDeg: number, widthDeg: number, r: number): string {
+  const [x0, y0] = polarPoint(beginDeg, r);
+  if (widthDeg >= 359.5) return `M${x0} ${y0}A${r} ${r} 0 1 1 ${-x0} ${-y0}A${r} ${r} 0 1 1 ${x0} ${y0}`;
+  const [x1, y1] = polarPoint(beginDeg + widthDeg, r);
+  return `M${x0} ${y0}A${r} ${r} 0 ${widthDeg > 180 ? 1 : 0} 1 ${x1} ${y1}`;
+}
+
 /**
  * One path over the bins (bin i covers headings i * 360/n .. (i+1) * 360/n); bins where nothing was heard are gaps. One
  * heard alone, as of a pulsed tag, is a line without length: a dot under round caps.

@@ -12,6 +12,7 @@ export type Route =
   | { page: "health" }
   | { page: "calibration" }
   | { page: "report"; missionIds: string[] }
+  | { page: "compare"; missionIds: string[] }
   | { page: "people" }
   | { page: "join"; code: string }
   | { page: "signIn"; fault: string };
@@ -21,7 +22,7 @@ export function parseRoute(hash: string): Route {
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
   if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people" || parts[0] === "calibration") return { page: parts[0] };
-  if (parts[0] === "report" && id) return { page: "report", missionIds: parts.slice(1) };
+  if ((parts[0] === "report" || parts[0] === "compare") && id) return { page: parts[0], missionIds: parts.slice(1) };
   if (parts[0] === "sign-in" && id) return { page: "signIn", fault: id };
   if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {

@@ -77,7 +77,9 @@ export function suppose(view: MissionView, { belief, plan, sweeps }: Pick<WhatIf
   const [seq, at] = [view.lastSeq, view.belief?.at ?? view.startedAt ?? ""];
   const flown = new Map([...view.bearings, ...view.rejected].map((s) => [s.fact.sweep_id, s]));
   const of = (id: string | null) => ({ seq: flown.get(id)?.seq ?? seq, at: flown.get(id)?.at ?? at });
-  const told = sweeps.flatMap((fact) => (fact.kind === "bearing_measured" ? [{ ...of(fact.sweep_id), fact, excluded: false }] : []));
+  const told = sweeps.flatMap((fact) =>
+    fact.kind === "bearing_measured" ? [{ ...of(fact.sweep_id), fact, leftOut: false, excluded: false }] : [],
+  );
   return {
     ...view,
     bearings: [...told, ...view.bearings.filter((b) => b.excluded)],

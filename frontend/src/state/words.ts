@@ -1,13 +1,25 @@
 // The state of the mission as sentences.
 import { type MessageKey, reasonText, t } from "../i18n";
 import { formatClock, formatDuration } from "../units/quantities";
-import type { Authority, CheckFact, LinkName, MissionPhase, Reason, ReasonCode } from "../wire";
+import type { Authority, BearingSource, CheckFact, LinkName, MissionPhase, Reason, ReasonCode } from "../wire";
 import { isOver } from "./mission";
 import type { MissionView } from "./view";
 
 export const phaseName = (phase: MissionPhase): string => t(`phase.${phase}` satisfies MessageKey);
 
 export const checkName = (name: CheckFact["name"]): string => t(`check.${name}` satisfies MessageKey);
+
+/** Who took a bearing. */
+export function sourceName(source: BearingSource): string {
+  switch (source.kind) {
+    case "craft":
+      return t("source.craft", { name: source.craft_id });
+    case "import":
+      return t("source.import");
+    case "person":
+      return source.name;
+  }
+}
 
 /** What holds a craft for as long as a link is away. */
 const HOLDING_LINK: Partial<Record<ReasonCode, LinkName>> = {

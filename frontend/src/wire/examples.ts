@@ -1,6 +1,7 @@
 // Events for tests: those of the recorded example, with what tests count on spelled out.
 import text from "../../public/example.json?raw";
 import type {
+  BearingSource,
   CraftStatus,
   EventKind,
   EventOf,
@@ -122,6 +123,23 @@ export const excluded = (bearingId: string): EventOf<"bearing_excluded"> => ({
   by: "operator",
   reason: "",
   heard: true,
+});
+
+export const included = (bearingId: string): EventOf<"bearing_included"> => ({
+  kind: "bearing_included",
+  emitter_id: EMITTER,
+  bearing_id: bearingId,
+  by: "operator",
+});
+
+export const person = (name: string): BearingSource => ({ kind: "person", name });
+
+export const mute = (source: BearingSource, muted: boolean): EventOf<"source_mute_changed"> => ({
+  kind: "source_mute_changed",
+  source,
+  muted,
+  by: "operator",
+  reason: "",
 });
 
 /** The events after its draft that bring a mission into a phase. */

@@ -704,6 +704,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/missions/{mission_id}/bearings/{bearing_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Bearing
+         * @description Count a bearing again that the same person, or the same machine, took back.
+         */
+        post: operations["restore_bearing"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/reporter": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Mute Reporter
+         * @description Stop counting one's own bearings, or count them again. Whoever controls the search does it for others.
+         */
+        put: operations["mute_reporter"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/missions/{mission_id}/events": {
         parameters: {
             query?: never;
@@ -941,6 +981,72 @@ export interface paths {
          */
         post: operations["read_exported_mission"];
         delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/bundles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Bring In Bundle
+         * @description Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
+         *     paths, so the same review. The same bundle again changes nothing: 200. 409: the mission is here with other facts.
+         */
+        post: operations["bring_in_bundle"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/courses": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Courses
+         * @description The course of a mission about an emitter (None: the first) and those of its variants, each computed from the
+         *     stored facts.
+         */
+        get: operations["get_courses"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/missions/{mission_id}/variants/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Keep Variant
+         * @description Keep a supposition by name beside the mission, which stays as it was flown.
+         */
+        put: operations["keep_variant"];
+        post?: never;
+        /**
+         * Drop Variant
+         * @description Forget a variant. Nothing happens to a name that is not kept.
+         */
+        delete: operations["drop_variant"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1752,6 +1858,7 @@ export interface components {
          *     the landing, where `who` is nobody. mode: the name of the mode in which they took it, to be shown only.
          *     given_back: the vehicle that somebody else took waits for commands again, or stands disarmed.
          *     perhaps_failsafe: the pilot has control, but every mode since may be the autopilot's failsafe just as well.
+         *     failsafe_landed: nobody has it since it stands disarmed, and no pilot had it before: the failsafe landed it.
          *     under_way: tokens of the modes of a command whose mode had not shown yet when they took control. undone: right after
          *     that the vehicle showed one of these: the command crossed their switch. They have control all the same, and have
          *     given nothing back.
@@ -1774,6 +1881,8 @@ export interface components {
             given_back: boolean;
             /** @default false */
             perhaps_failsafe: boolean;
+            /** @default false */
+            failsafe_landed: boolean;
             /** @default [] */
             under_way: number[];
             /** @default false */
@@ -1951,6 +2060,13 @@ export interface components {
              */
             code: "battery_unknown";
         };
+        BearingCountsAlready: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearing_counts_already";
+        };
         /**
          * @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. heard False: it is
          *     a turn that heard nothing, and bearing_id that of its sweep.
@@ -1975,6 +2091,17 @@ export interface components {
              */
             code: "bearing_excluded_already";
         };
+        /** @description A bearing that was left out counts again, in its old place in the order. */
+        BearingIncluded: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "bearing_included";
+            emitter_id: string;
+            bearing_id: string;
+            by: string;
+        };
         /**
          * @description sweep_id None, binned_db and fitted_db empty: no sweep was kept (a person's bearing). binned_db, fitted_db: 180
          *     bins of 2 degrees of antenna heading (true), None where nothing was heard.
@@ -1985,6 +2112,7 @@ export interface components {
          *     likelihood: what the sweep says of every direction (hardware's SweepLikelihood, packed); None: not kept.
          *     samples_without_heading: power samples that were left out, as no heading was heard near enough to them.
          *     taken_at_s: UTC epoch seconds of the middle of the turn; None: nobody said (imported, or before it was kept).
+         *     turn: how far the craft turned and why; None: once all the way round, as in every mission without sector turns.
          */
         BearingMeasured: {
             /**
@@ -2017,6 +2145,7 @@ export interface components {
             /** @default 0 */
             samples_without_heading: number;
             taken_at_s: number | null;
+            turn: components["schemas"]["TurnFact"] | null;
         };
         /** @description A single wedge of +-4 sigma has no point inside the area. */
         BearingMissesArea: {
@@ -2075,6 +2204,16 @@ export interface components {
              * @enum {string}
              */
             code: "bearing_too_far";
+        };
+        /** @description sigma_deg: of this sweep alone. */
+        BearingUncertain: {
+            sigma_deg: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bearing_uncertain";
         };
         /** @description All bearings of a source are turned by one angle, clockwise; the belief has taken it off. */
         BearingsCorrected: {
@@ -2199,6 +2338,27 @@ export interface components {
              * @enum {string}
              */
             code: "budget_too_small";
+        };
+        /** @description name: of the file in the bundle that cannot be brought in, and the whole bundle with it. */
+        BundleFileWrong: {
+            /** @enum {string} */
+            fault: "foreign" | "damaged" | "not_exported";
+            name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bundle_file_wrong";
+        };
+        /** @description What was sent cannot be brought in as a mission. */
+        BundleUnreadable: {
+            /** @enum {string} */
+            fault: "not_zip" | "too_large" | "later" | "under_way" | "differs";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "bundle_unreadable";
         };
         /**
          * @description Of all checked missions of a craft and antenna, or of all. within_1_sigma and within_2_sigma: of bearings, offset
@@ -2372,7 +2532,7 @@ export interface components {
              */
             code: "columns_unknown";
         };
-        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Land"] | components["schemas"]["Abort"] | components["schemas"]["KeepHolding"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
+        Command: components["schemas"]["Start"] | components["schemas"]["Hold"] | components["schemas"]["Resume"] | components["schemas"]["Return"] | components["schemas"]["Land"] | components["schemas"]["Abort"] | components["schemas"]["KeepHolding"] | components["schemas"]["Override"] | components["schemas"]["Accept"] | components["schemas"]["Veto"] | components["schemas"]["SetAutomatic"] | components["schemas"]["ChangeArea"] | components["schemas"]["ExcludeBearing"] | components["schemas"]["IncludeBearing"] | components["schemas"]["MuteSource"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
         /**
          * @description What makes commands idempotent across restarts: a repeated `command_id` gets the first answer again. order: the
          *     digest of all that was ordered. Both are None where nobody kept them.
@@ -2427,7 +2587,7 @@ export interface components {
         CommandRequest: {
             /** Format: uuid */
             command_id: string;
-            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["AbortInput"] | components["schemas"]["KeepHoldingInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
+            command: components["schemas"]["StartInput"] | components["schemas"]["HoldInput"] | components["schemas"]["ResumeInput"] | components["schemas"]["ReturnInput"] | components["schemas"]["LandInput"] | components["schemas"]["AbortInput"] | components["schemas"]["KeepHoldingInput"] | components["schemas"]["OverrideInput"] | components["schemas"]["AcceptInput"] | components["schemas"]["VetoInput"] | components["schemas"]["SetAutomaticInput"] | components["schemas"]["ChangeAreaInput"] | components["schemas"]["ExcludeBearingInput"] | components["schemas"]["IncludeBearing"] | components["schemas"]["MuteSourceInput"] | components["schemas"]["AcknowledgeAlert"] | components["schemas"]["TakeControl"] | components["schemas"]["AskControl"] | components["schemas"]["GiveControl"] | components["schemas"]["KeepControl"] | components["schemas"]["ReleaseControl"];
             fence?: number | null;
         };
         /** @description attempts: how often it was sent. */
@@ -2608,6 +2768,26 @@ export interface components {
              */
             code: "control_stale";
         };
+        /** @description Of a mission as it was flown (name None), or of one of its variants. problem: why a variant has no points. */
+        Course: {
+            name: string | null;
+            wanted: components["schemas"]["Supposition"] | null;
+            points: components["schemas"]["CoursePoint"][];
+            problem: components["schemas"]["Reason"] | null;
+        };
+        /**
+         * @description What was, or would have been, believed at a time. t_s: since the start. error_m: of the estimate, None while
+         *     nobody has said where the emitter was.
+         */
+        CoursePoint: {
+            t_s: number;
+            bearings: number;
+            expected_rmse_m: number | null;
+            c95_area_m2: number | null;
+            error_m: number | null;
+            inside: boolean | null;
+            localized: boolean;
+        };
         /**
          * @description `covered`: the whole area lies on at least one map fine enough to fly by (10 m a pixel or finer).
          *     `missing`: what no map covers so.
@@ -2748,6 +2928,16 @@ export interface components {
              */
             code: "does_not_hold";
         };
+        /** @description From what was heard and from what is believed. */
+        ElsewherePossible: {
+            elsewhere_percent: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "elsewhere_possible";
+        };
         /**
          * @description What is known of one emitter. `estimate`: of the last belief, None before the first bearing or when the bearings
          *     are inconsistent. `not_yet`: why "localized" is not said.
@@ -2850,7 +3040,7 @@ export interface components {
             minor_axis_m: number;
             major_axis_deg: number;
         };
-        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
+        Event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"] | components["schemas"]["MissionBroughtIn"] | components["schemas"]["VariantKept"] | components["schemas"]["VariantDropped"];
         /** @description Each event once, in order, without gaps. */
         EventMessage: {
             /**
@@ -2974,7 +3164,7 @@ export interface components {
         /** @description value: as the autopilot has it; wanted: one that makes it act. */
         FailsafeParameter: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             value: number;
             wanted: number;
@@ -2995,7 +3185,7 @@ export interface components {
         };
         FailsafeUnread: {
             /** @enum {string} */
-            watch: "station" | "station_id" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
             parameter: string;
             wanted: number;
             /**
@@ -3690,6 +3880,15 @@ export interface components {
              */
             code: "impossible_pulses";
         };
+        /** @description A bearing that was left out counts again. */
+        IncludeBearing: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "include_bearing";
+            bearing_id: string;
+        };
         InsideNoFly: {
             /** @enum {string} */
             what: "vehicle_stands" | "vehicle" | "home" | "place";
@@ -3879,6 +4078,14 @@ export interface components {
              * @enum {string}
              */
             code: "least_entropy";
+        };
+        LeftOutByAnother: {
+            by: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "left_out_by_another";
         };
         /** @description probability: that the sweep was heard with another antenna than the pattern's. */
         LikelyOtherAntenna: {
@@ -4149,6 +4356,28 @@ export interface components {
              */
             code: "map_unusable";
         };
+        /** @description edge: of the headings heard so far. */
+        MaximumAtEdge: {
+            /** @enum {string} */
+            edge: "beginning" | "end";
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "maximum_at_edge";
+        };
+        /** @description The bearing lies well within the headings heard, and little speaks for another direction. */
+        MaximumSeen: {
+            turned_deg: number;
+            inside_deg: number;
+            elsewhere_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "maximum_seen";
+        };
         /** @description Of a Gaussian belief. */
         MeanAtSensor: {
             /**
@@ -4202,6 +4431,39 @@ export interface components {
             localized: boolean;
             found: components["schemas"]["EmitterFound"][];
             outcome_reason: components["schemas"]["Reason"] | null;
+        };
+        /** @description A mission out of a bundle. already: it was here before, and nothing was changed. */
+        MissionBrought: {
+            mission_id: string;
+            already: boolean;
+            events: number;
+            sweeps: number;
+        };
+        /**
+         * @description All facts before this one are of another installation, brought in with a bundle.
+         *
+         *     software: that wrote the bundle, "" when it named none.
+         */
+        MissionBroughtIn: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mission_brought_in";
+            software: string;
+            by: string;
+        };
+        /**
+         * @description Of one emitter. ended_s: since the start, None of a mission that has not ended. bearings_s: when each bearing
+         *     that counts was taken.
+         */
+        MissionCourses: {
+            mission_id: string;
+            name: string;
+            emitter_id: string;
+            ended_s: number | null;
+            bearings_s: number[];
+            courses: components["schemas"]["Course"][];
         };
         /** @description Out of the list; everything of it is kept for some days more. */
         MissionDeleted: {
@@ -4477,6 +4739,48 @@ export interface components {
                 number,
                 number
             ][][][];
+        };
+        /**
+         * @description muted: no bearing of the source counts, whenever it comes; False: they count again. name: the person's, or the
+         *     recording's id. A craft is not muted: it would go on flying and measuring for nothing.
+         */
+        MuteSource: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mute_source";
+            /** @enum {string} */
+            of: "person" | "import";
+            name: string;
+            muted: boolean;
+            /** @default  */
+            reason: string;
+        };
+        /**
+         * @description muted: no bearing of the source counts, whenever it comes; False: they count again. name: the person's, or the
+         *     recording's id. A craft is not muted: it would go on flying and measuring for nothing.
+         */
+        MuteSourceInput: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "mute_source";
+            /** @enum {string} */
+            of: "person" | "import";
+            name: string;
+            muted: boolean;
+            /** @default  */
+            reason: string;
+        };
+        MutedAlready: {
+            muted: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "muted_already";
         };
         NameTaken: {
             name: string;
@@ -4854,6 +5158,13 @@ export interface components {
              */
             code: "no_such_emitter";
         };
+        NoSuchSource: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "no_such_source";
+        };
         NoTakeOff: {
             waited_s: number;
             because: components["schemas"]["AutopilotRefused"] | components["schemas"]["TakeOffIgnored"];
@@ -5089,6 +5400,14 @@ export interface components {
              * @enum {string}
              */
             code: "nothing_above_noise";
+        };
+        NothingFoundYet: {
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "nothing_found_yet";
         };
         NothingHeardInTurn: {
             /**
@@ -6157,6 +6476,15 @@ export interface components {
              */
             code: "put_by_hand";
         };
+        QualityPoor: {
+            quality: number;
+            by_deg: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "quality_poor";
+        };
         /** @description Cosine similarity of sweep and pattern, [0, 1]. */
         QualityTooLow: {
             quality: number;
@@ -6219,7 +6547,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["TooManyVariants"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["BundleUnreadable"] | components["schemas"]["BundleFileWrong"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -6292,7 +6620,7 @@ export interface components {
             mission_id: string;
             /** Format: date-time */
             at_utc: string;
-            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"];
+            event: components["schemas"]["MissionDrafted"] | components["schemas"]["MissionEdited"] | components["schemas"]["AreaChanged"] | components["schemas"]["PreflightChecked"] | components["schemas"]["AntennaChecked"] | components["schemas"]["MissionStarted"] | components["schemas"]["NetsNoted"] | components["schemas"]["NetsPutBack"] | components["schemas"]["PhaseChanged"] | components["schemas"]["TookOff"] | components["schemas"]["PlanChosen"] | components["schemas"]["PlanVetoed"] | components["schemas"]["PlaceRefused"] | components["schemas"]["FlightStarted"] | components["schemas"]["PlaceReached"] | components["schemas"]["SweepStarted"] | components["schemas"]["SweepRejected"] | components["schemas"]["BearingMeasured"] | components["schemas"]["RecordingImported"] | components["schemas"]["BearingExcluded"] | components["schemas"]["BearingIncluded"] | components["schemas"]["SourceMuteChanged"] | components["schemas"]["BeliefUpdated"] | components["schemas"]["HoldOrdered"] | components["schemas"]["ResumeOrdered"] | components["schemas"]["ReturnOrdered"] | components["schemas"]["LandOrdered"] | components["schemas"]["AbortOrdered"] | components["schemas"]["OrderTried"] | components["schemas"]["OrderNotDone"] | components["schemas"]["OrderDone"] | components["schemas"]["BatteryCountdownStarted"] | components["schemas"]["BatteryCountdownStopped"] | components["schemas"]["AutomaticChanged"] | components["schemas"]["AuthorityChanged"] | components["schemas"]["CommandAccepted"] | components["schemas"]["CommandRefused"] | components["schemas"]["ControlChanged"] | components["schemas"]["ControlAsked"] | components["schemas"]["ControlKept"] | components["schemas"]["SafetyVetoed"] | components["schemas"]["LinkLost"] | components["schemas"]["LinkRestored"] | components["schemas"]["AlertRaised"] | components["schemas"]["AlertAcknowledged"] | components["schemas"]["AlertCleared"] | components["schemas"]["ServerRestarted"] | components["schemas"]["MissionEnded"] | components["schemas"]["TruthNoted"] | components["schemas"]["MissionLabelled"] | components["schemas"]["MissionDeleted"] | components["schemas"]["MissionRestored"] | components["schemas"]["MissionBroughtIn"] | components["schemas"]["VariantKept"] | components["schemas"]["VariantDropped"];
         };
         RecordedElsewhere: {
             recorded_hz: number;
@@ -6432,6 +6760,11 @@ export interface components {
              * @enum {string}
              */
             code: "report_age";
+        };
+        /** @description by: whose bearings, as in BearingReport. muted: they do not count, those to come too. */
+        Reporter: {
+            by?: string | null;
+            muted: boolean;
         };
         /** @description field: path into the request of the first fault, empty for the whole. faults: how many there are. */
         RequestInvalid: {
@@ -6752,6 +7085,25 @@ export interface components {
             fence_margin_m: number;
             no_fly: (components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"])[];
         };
+        /** @description share: of the directions expected from here. */
+        SectorExpected: {
+            width_deg: number;
+            share_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "sector_expected";
+        };
+        /**
+         * @description What of the circle is turned through, as decided so far: clockwise from begin_deg (antenna heading, true).
+         *     because: why that far.
+         */
+        SectorMessage: {
+            begin_deg: number;
+            goal_deg: number;
+            because: components["schemas"]["Reason"] | null;
+        };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
          *
@@ -6759,6 +7111,8 @@ export interface components {
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
+         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          */
         SensorSpec: {
             /** @default 7 */
@@ -6781,6 +7135,10 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned: components["schemas"]["LearnedErrors"] | null;
+            /** @default false */
+            sector_turns: boolean;
+            /** @default 1 */
+            whole_turns: number;
             /**
              * @default peak
              * @enum {string}
@@ -6794,6 +7152,8 @@ export interface components {
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
+         *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -6816,6 +7176,10 @@ export interface components {
              */
             bearing_errors: "independent" | "joint";
             learned?: components["schemas"]["LearnedErrors"] | null;
+            /** @default false */
+            sector_turns: boolean;
+            /** @default 1 */
+            whole_turns: number;
             /**
              * @default peak
              * @enum {string}
@@ -7033,6 +7397,22 @@ export interface components {
             sigma_scale: number;
             outlier_rate: number;
         };
+        /**
+         * @description muted: the source's bearings, those to come too, are kept and count for nothing; False: they count again, but for
+         *     those that were left out one by one.
+         */
+        SourceMuteChanged: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "source_mute_changed";
+            source: components["schemas"]["CraftSource"] | components["schemas"]["ImportSource"] | components["schemas"]["PersonSource"];
+            muted: boolean;
+            by: string;
+            /** @default  */
+            reason: string;
+        };
         SpoolNotWritten: {
             detail: string;
             /**
@@ -7176,6 +7556,50 @@ export interface components {
             speed_m_s: number | null;
             constant_s: number | null;
         };
+        /**
+         * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
+         *
+         *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
+         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
+         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
+         *     decision.
+         */
+        Supposition: {
+            emitter_id: string | null;
+            without: string[];
+            sigma_deg: number | null;
+            outlier_probability: number | null;
+            bearing_errors: ("independent" | "joint") | null;
+            pattern: components["schemas"]["PatternUpload"] | null;
+            offset_to_nose_deg: number | null;
+            method: ("rollout" | "base_policy") | null;
+            base_policy: ("ellipse" | "fisher" | "dynamic_program") | null;
+            selection: ("uniform" | "sequential_halving") | null;
+            estimator: ("map" | "expected_value" | "geometric_median") | null;
+            budget: number | null;
+        };
+        /**
+         * @description What is to be otherwise in a flown mission; None, and no bearing named in `without`: as it was flown.
+         *
+         *     emitter_id None: the first one's. without: ids of bearings that are left out. sigma_deg: of every bearing, those
+         *     taken and those the planner expects. pattern, offset_to_nose_deg (clockwise, instead of the pattern's own): the
+         *     stored sweeps are taken through this antenna; None of both: their bearings stay. budget: simulated flights a
+         *     decision.
+         */
+        SuppositionInput: {
+            emitter_id?: string | null;
+            without?: string[];
+            sigma_deg?: number | null;
+            outlier_probability?: number | null;
+            bearing_errors?: ("independent" | "joint") | null;
+            pattern?: components["schemas"]["PatternUpload"] | null;
+            offset_to_nose_deg?: number | null;
+            method?: ("rollout" | "base_policy") | null;
+            base_policy?: ("ellipse" | "fisher" | "dynamic_program") | null;
+            selection?: ("uniform" | "sequential_halving") | null;
+            estimator?: ("map" | "expected_value" | "geometric_median") | null;
+            budget?: number | null;
+        };
         /** @description unknown: what of the sweep is not a number. */
         SweepIncomplete: {
             unknown: ("bearing" | "sigma" | "quality" | "altitude" | "drift")[];
@@ -7187,7 +7611,7 @@ export interface components {
         };
         /**
          * @description The running sweep of a craft: antenna heading (true) and power of one emitter's samples so far, thinned to at
-         *     most 360.
+         *     most 360. sector None: once all the way round.
          */
         SweepProgress: {
             /**
@@ -7202,6 +7626,7 @@ export interface components {
             heading_deg: number[];
             power_db: number[];
             turned_deg: number;
+            sector: components["schemas"]["SectorMessage"] | null;
         };
         /**
          * @description One raw sweep. at_s (since the first sample), heading_deg (the nose, true), power_db: one value a sample; None
@@ -7228,8 +7653,8 @@ export interface components {
             power_db: (number | null)[];
         };
         /**
-         * @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood: as in BearingMeasured.
-         *     silence: the emitter should have been heard, were it near; None: the turn says nothing of that.
+         * @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood, turn: as in
+         *     BearingMeasured. silence: the emitter should have been heard, were it near; None: the turn says nothing of that.
          */
         SweepRejected: {
             /**
@@ -7249,6 +7674,7 @@ export interface components {
             fitted_db: (number | null)[];
             likelihood: string | null;
             silence: components["schemas"]["SilenceFact"] | null;
+            turn: components["schemas"]["TurnFact"] | null;
         };
         /** @description attempt: counts the turns at this place from 1. */
         SweepStarted: {
@@ -7634,6 +8060,14 @@ export interface components {
              */
             code: "too_many_tries";
         };
+        TooManyVariants: {
+            most: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "too_many_variants";
+        };
         /** @description altitude_relative_m: above home, when the climb was confirmed. */
         TookOff: {
             /**
@@ -7711,6 +8145,20 @@ export interface components {
              * @enum {string}
              */
             code: "tuned_elsewhere";
+        };
+        /**
+         * @description How far a craft turned for a sweep. begin_deg: antenna heading at which it began, clockwise from true north.
+         *
+         *     planned_deg, turned_deg: clockwise from there. planned_because: why a sector of that width, or a whole turn.
+         *     went_on_because: one a look that was not enough. stopped_because: why the last one was.
+         */
+        TurnFact: {
+            begin_deg: number;
+            planned_deg: number;
+            turned_deg: number;
+            planned_because: components["schemas"]["Reason"];
+            went_on_because: components["schemas"]["Reason"][];
+            stopped_because: components["schemas"]["Reason"];
         };
         TurnIncomplete: {
             heard_deg: number;
@@ -7866,6 +8314,27 @@ export interface components {
              */
             code: "upload_incomplete";
         };
+        /** @description Nobody needs it any longer. */
+        VariantDropped: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "variant_dropped";
+            name: string;
+            by: string;
+        };
+        /** @description A supposition kept by name beside the mission, which stays as it was flown; the same name takes its place. */
+        VariantKept: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "variant_kept";
+            name: string;
+            wanted: components["schemas"]["Supposition"];
+            by: string;
+        };
         /** @description One layer of a vector map; `fields`: the names of its attributes. */
         VectorLayer: {
             id: string;
@@ -8013,23 +8482,21 @@ export interface components {
             name: string;
             offset_to_nose_deg: number;
         };
-        /**
-         * @description A flown mission's decision about an emitter after some of its bearings, taken again. None: as it was flown.
-         *     `sigma_deg`: of every bearing, those taken and those the planner expects. `pattern`, `offset_to_nose_deg`
-         *     (clockwise, instead of the pattern's own): the stored sweeps are taken through this antenna; None of both: their
-         *     bearings stay.
-         */
+        /** @description The decision after this many of the flown bearings that count, taken again. */
         WhatIfRequest: {
             emitter_id?: string | null;
-            bearings: number;
+            without?: string[];
             sigma_deg?: number | null;
             outlier_probability?: number | null;
+            bearing_errors?: ("independent" | "joint") | null;
             pattern?: components["schemas"]["PatternUpload"] | null;
             offset_to_nose_deg?: number | null;
             method?: ("rollout" | "base_policy") | null;
             base_policy?: ("ellipse" | "fisher" | "dynamic_program") | null;
             selection?: ("uniform" | "sequential_halving") | null;
             estimator?: ("map" | "expected_value" | "geometric_median") | null;
+            budget?: number | null;
+            bearings: number;
         };
         /** @description After this many flown bearings: what would have been said, and what was (None: nothing was said then). */
         WhatIfStep: {
@@ -8046,6 +8513,23 @@ export interface components {
              * @enum {string}
              */
             code: "which_emitter";
+        };
+        WholeCircleSeen: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "whole_circle_seen";
+        };
+        /** @description A sector is not turned here. */
+        WholeTurn: {
+            /** @enum {string} */
+            because: "first" | "again" | "unsure" | "wide" | "several" | "pulsed" | "second_place";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "whole_turn";
         };
         /** @description Another writer has used the place of event `seq`, or left a gap before it. */
         WrittenElsewhere: {
@@ -9414,6 +9898,71 @@ export interface operations {
             };
         };
     };
+    restore_bearing: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+                bearing_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    mute_reporter: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Reporter"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_events: {
         parameters: {
             query?: {
@@ -9818,6 +10367,148 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ExportedMission"];
                 };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    bring_in_bundle: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/zip": string;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionBrought"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionBrought"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_courses: {
+        parameters: {
+            query?: {
+                emitter?: string | null;
+            };
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MissionCourses"];
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    keep_variant: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SuppositionInput"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    drop_variant: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description The mission's id */
+                mission_id: string;
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description What went wrong and how to mend it */
             default: {

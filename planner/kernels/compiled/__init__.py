@@ -1,4 +1,4 @@
-"""The fast twin of reference.py: the same rollouts with the same signature, compiled by numba, without the GIL.
+"""The fast twin of `reference`: the same rollouts with the same signature, compiled by numba, without the GIL.
 
 What makes it fast (measured in docs/kernel.md): the grid is cropped before the likelihood is evaluated; of each row
 only the columns that the widened wedge touches are gathered (cells); one long loop then needs neither atan2 nor exp

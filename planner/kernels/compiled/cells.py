@@ -10,7 +10,7 @@ import numpy as np
 
 from planner.compiling import inlined, jit
 from planner.kernels.compiled.lanes import BLOCK, copy_block, copy_doubled_block, store_ramp
-from planner.kernels.reference import NEARLY
+from planner.kernels.reference.belief import NEARLY
 
 
 @inlined

@@ -6,12 +6,12 @@ import numpy as np
 
 from planner.compiling import inlined, jit
 from planner.kernels.compiled.lanes import bits
-from planner.kernels.reference import CONFIDENCE, HISTOGRAM_BINS, HISTOGRAM_SHIFT, NEARLY
+from planner.kernels.reference.belief import CONFIDENCE, HISTOGRAM_BINS, HISTOGRAM_SHIFT, NEARLY
 
 
 @inlined
 def confidence_hull(work, now, cells, heaviest, m0, x0, y0, h, ny):
-    """Counter-clockwise hull of the 95 % cells in work.chain, see reference.confidence_hull; returns its corners."""
+    """Hull of the 95 % cells in work.chain, counter-clockwise (see reference.belief); returns its corners."""
     weight, histogram, chain = work.weight[now], work.histogram, work.chain
     top = bits(weight[heaviest]) >> HISTOGRAM_SHIFT
     for i in range(HISTOGRAM_BINS):

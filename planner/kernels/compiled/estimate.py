@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from planner.compiling import jit
-from planner.kernels.reference import MEDIAN_STEPS, NEARLY
+from planner.kernels.reference.belief import MEDIAN_STEPS, NEARLY
 
 _CHUNK = 128
 

@@ -6,12 +6,12 @@ import numpy as np
 
 from planner.compiling import inlined, jit
 from planner.kernels.compiled.confidence import clear, confidence_hull, distance_to_hull
-from planner.kernels.reference import NEARLY
+from planner.kernels.reference.belief import NEARLY
 
 
 @jit
 def ellipse_action(ex, ey, xx, xy, yy, px, py, ratios, distances):
-    """See reference.ellipse_action."""
+    """See reference.policy.ellipse_action."""
     mean, difference = 0.5 * (xx + yy), 0.5 * (xx - yy)
     spread = np.hypot(difference, xy)
     minor = 0.5 * np.pi
@@ -31,7 +31,7 @@ def ellipse_action(ex, ey, xx, xy, yy, px, py, ratios, distances):
 
 @inlined
 def fisher_action(ex, ey, xx, xy, yy, rules, work, now, cells, heaviest, m0, x0, y0, h, nx, ny):
-    """See reference.fisher_action. Places are held against C95 only as far as the answer needs it."""
+    """See reference.policy.fisher_action. Places are held against C95 only as far as the answer needs it."""
     fixed = len(rules.places) > 0
     left, bottom, step_x, step_y = _action_grid(rules, x0, y0, h, nx, ny)
     n = len(rules.places) if fixed else rules.grid_x * rules.grid_y
@@ -92,7 +92,7 @@ def affordable_standoff(rules, fixed, n, left, bottom, step_x, step_y, hull, cor
 
 @inlined
 def _action_grid(rules, x0, y0, h, nx, ny):
-    """South-west corner and cell sizes of the action grid; see reference.grid_places."""
+    """South-west corner and cell sizes of the action grid; see reference.policy.grid_places."""
     width, height = nx * h, ny * h
     left, right = max(x0 - width, rules.window[0]), min(x0 + 2.0 * width, rules.window[2])
     bottom, top = max(y0 - height, rules.window[1]), min(y0 + 2.0 * height, rules.window[3])

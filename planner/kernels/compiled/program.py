@@ -1,4 +1,4 @@
-"""The Gaussian dynamic program's choice inside a rollout. See reference.program_action."""
+"""The Gaussian dynamic program's choice inside a rollout. See reference.policy.program_action."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from planner.compiling import inlined, jit
 from planner.kernels.compiled.confidence import clear, confidence_hull
 from planner.kernels.compiled.policies import affordable_standoff
 from planner.kernels.model import FULL
-from planner.kernels.reference import NEARLY
+from planner.kernels.reference.belief import NEARLY
 from planner.kernels.value.lookup import ROUND
 from planner.kernels.value.model import NEAR, NODE_STEP, RATIO_STEP, SCALE_STEP, SMALLEST_SCALE
 

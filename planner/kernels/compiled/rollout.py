@@ -27,7 +27,7 @@ from planner.kernels.model import (
     Start,
     Tasks,
 )
-from planner.kernels.reference import HISTOGRAM_BINS, MEDIAN_REACH
+from planner.kernels.reference.belief import HISTOGRAM_BINS, MEDIAN_REACH
 from planner.observation import WEDGE_SIGMAS
 from planner.types import FloatArray
 
@@ -200,7 +200,7 @@ def _bearing(dx, dy, noise):
 
 @inlined
 def _flight_time(rules, distance, turn):
-    """See reference.flight_time."""
+    """See reference.policy.flight_time."""
     if rules.motion != FULL:
         return distance / rules.speed + rules.constant
     turned = abs((turn + np.pi) % (2.0 * np.pi) - np.pi) / rules.turn_rate

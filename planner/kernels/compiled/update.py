@@ -1,4 +1,4 @@
-"""One bearing: clip, crop, multiply by the likelihood, take the moments. See reference.measure."""
+"""One bearing: clip, crop, multiply by the likelihood, take the moments. See reference.belief.measure."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS
 from planner.compiling import inlined, jit
 from planner.kernels.compiled.cells import gather, gather_all
 from planner.kernels.compiled.lanes import bits
-from planner.kernels.reference import DEEPEST_DOUBLING, NEARLY
+from planner.kernels.reference.belief import DEEPEST_DOUBLING, NEARLY
 
 _INDEX_MASK = (1 << TIE_BITS) - 1
 _ALIGN = 1e-9
@@ -115,7 +115,7 @@ def _weigh(weight, along, across, cells, likelihood, edge, ahead):
 
 @jit
 def _weigh_means(weight, along, across, cells, likelihood, edge, ahead, blurred, nearest):
-    """The same for the mean over a cell (reference.likelihood). blurred: h^2 / (12 sigma^2), nearest: h^2 / 6, m^2."""
+    """The same for the mean over a cell, see reference.belief. blurred: h^2 / (12 sigma^2), nearest: h^2 / 6, m^2."""
     p0, p1, p2, p3, p4, p5 = likelihood[0], likelihood[1], likelihood[2], likelihood[3], likelihood[4], likelihood[5]
     for i in range(cells):
         a, b = along[i], across[i]

@@ -109,6 +109,23 @@ async def client(app: FastAPI) -> AsyncIterator[httpx.AsyncClient]:
 
 
 @pytest.fixture
+async def elsewhere(tmp_path: Path, workers: Workers) -> AsyncIterator[tuple[httpx.AsyncClient, Services]]:
+    """Another installation: its own database, its own vehicle."""
+    settings = Settings(data_dir=tmp_path / "elsewhere", page_dir=tmp_path)
+
+    @asynccontextmanager
+    async def nothing(_: FastAPI) -> AsyncIterator[None]:
+        yield
+
+    async with running_services(settings, PaperVehicle(), workers) as services:
+        app = make_application(settings, nothing)
+        app.state.services = services
+        transport = httpx.ASGITransport(app, raise_app_exceptions=False)
+        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
+            yield client, services
+
+
+@pytest.fixture
 async def served(app: FastAPI) -> AsyncIterator[str]:
     """host:port of the application on a real socket."""
     config = uvicorn.Config(

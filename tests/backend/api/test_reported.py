@@ -6,8 +6,12 @@ from datetime import UTC, datetime, timedelta
 
 import httpx
 import pytest
+from fastapi import FastAPI
 
 from backend.api.suggestion import suggested_mission
+from backend.commands import ExcludeBearing
+from backend.mission.reports import Reports
+from backend.search.inputs import SearchOrdered
 from backend.spec import EmitterSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place
@@ -55,6 +59,54 @@ async def test_two_people_localize_without_a_craft_and_one_takes_a_bearing_back(
     assert (await client.delete(f"{address}/phone-0002")).status_code == 204
     assert len(await events(client, mission, "bearing_excluded")) == 1
     assert (await events(client, mission, "belief_updated"))[-1]["bearings"] == 1
+
+
+async def test_what_was_taken_back_counts_again_and_the_belief_is_the_one_of_before(client: httpx.AsyncClient) -> None:
+    mission = await drafted(client)
+    address = f"/api/missions/{mission}/bearings"
+    for number, (east, bearing) in enumerate([(-100.0, 63.4), (100.0, 296.6)]):
+        await client.post(address, json=report(number, east, 50.0, bearing))
+    before = (await events(client, mission, "belief_updated"))[-1]
+    await client.delete(f"{address}/phone-0000")
+    for _ in range(2):
+        assert (await client.post(f"{address}/phone-0000/restore")).status_code == 204
+    assert len(await events(client, mission, "bearing_included")) == 1
+    assert (await events(client, mission, "belief_updated"))[-1] == before
+    assert (await client.post(f"{address}/phone-0009/restore")).status_code == 422
+
+
+async def test_a_reporter_mutes_themselves_and_nobody_else_and_the_console_has_the_last_word(
+    client: httpx.AsyncClient,
+) -> None:
+    mission = await drafted(client)
+    address = f"/api/missions/{mission}"
+    for name in ("Ada", "Ben"):
+        await client.post(f"{address}/bearings", json=report(ord(name[0]), -100.0, 50.0, 63.4, by=name))
+    for muted in (True, True, False):
+        reply = await client.put(f"{address}/reporter", json={"by": "Ada", "muted": muted})
+        assert reply.status_code == 204, reply.text
+    counts = [one["bearings"] for one in await events(client, mission, "belief_updated")]
+    assert counts == [1, 2, 1, 2]
+    order = {"kind": "mute_source", "of": "person", "name": "Ben", "muted": True}
+    request = {"command_id": "0f3c1a52-8ba1-4f0e-9d2c-5b7c0e1d2a11", "command": order}
+    assert (await client.post(f"{address}/commands", json=request)).json()["accepted"]
+    assert (await events(client, mission, "belief_updated"))[-1]["bearings"] == 1
+    refused = await client.put(f"{address}/reporter", json={"by": "Ben", "muted": False})
+    assert (refused.status_code, "left_out_by_another" in refused.text) == (422, True)
+    unheard = await client.put(f"{address}/reporter", json={"by": "Eve", "muted": True})
+    assert "no_such_source" in unheard.text
+
+
+async def test_what_somebody_else_left_out_is_not_restored_by_its_reporter(
+    app: FastAPI, client: httpx.AsyncClient
+) -> None:
+    mission = await drafted(client)
+    await client.post(f"/api/missions/{mission}/bearings", json=report(1, -100.0, 50.0, 63.4))
+    reports: Reports = app.state.services.missions.reports
+    await reports.flights.give(mission, SearchOrdered("Anna", ExcludeBearing(bearing_id="phone-0001")))
+    refused = await client.post(f"/api/missions/{mission}/bearings/phone-0001/restore")
+    assert (refused.status_code, "left_out_by_another" in refused.text) == (422, True)
+    assert await events(client, mission, "bearing_included") == []
 
 
 async def test_the_same_bearing_sent_again_counts_once(client: httpx.AsyncClient) -> None:

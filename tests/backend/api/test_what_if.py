@@ -12,7 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from backend.events import BearingExcluded, BearingMeasured, CraftSource, MissionDrafted, MissionStarted, SweepRejected
+from backend.events import (
+    BearingExcluded,
+    BearingMeasured,
+    CraftSource,
+    MissionDrafted,
+    MissionStarted,
+    SweepRejected,
+    TruthNoted,
+)
 from backend.search.antenna import antenna_fact
 from backend.search.localization import localization
 from backend.spec import EmitterSpec, MissionSpec, Polygon
@@ -269,3 +277,66 @@ async def test_an_antenna_that_cannot_be_tried_is_refused_with_its_reason(client
     answer = await client.post(f"/api/missions/{flown}/what-if", json={"bearings": 2} | changed)
     assert answer.status_code == status, answer.text
     assert reason.items() <= answer.json()["reason"].items()
+
+
+async def courses(client, mission_id: str) -> dict[str | None, dict[str, Any]]:
+    reply = await client.get(f"/api/missions/{mission_id}/courses")
+    assert reply.status_code == 200, reply.text
+    return {course["name"]: course for course in reply.json()["courses"]}
+
+
+async def keep(client, mission_id: str, name: str, **wanted: Any) -> int:
+    return (await client.put(f"/api/missions/{mission_id}/variants/{name}", json=wanted)).status_code
+
+
+async def test_variants_stand_by_name_beside_a_mission_that_never_changes(client, flown, services):
+    place = TASK.place(*EMITTER)
+    truth = TruthNoted(emitter_id="emitter-1", place=place, accuracy_m=1.0, how="map", by="Ada")
+    await services.journal.append(flown, [truth])
+    original = (await courses(client, flown))[None]
+    assert [point["bearings"] for point in original["points"]] == [1, 2, 3]
+    assert all(point["error_m"] is not None for point in original["points"])
+    assert original["points"][-1]["inside"]
+
+    assert await keep(client, flown, "as flown") == 204
+    assert await keep(client, flown, "blunter", sigma_deg=15.0) == 204
+    assert await keep(client, flown, "without two", without=["b2"]) == 204
+    assert await keep(client, flown, "planner", budget=20, estimator="expected_value") == 204
+    found = await courses(client, flown)
+    assert list(found) == [None, "as flown", "blunter", "without two", "planner"]
+    assert found[None] == original, "the original never changes"
+    assert found["as flown"]["points"] == original["points"]
+    for flown_point, blunt in zip(original["points"], found["blunter"]["points"], strict=True):
+        assert blunt["expected_rmse_m"] > flown_point["expected_rmse_m"]
+    assert [point["bearings"] for point in found["without two"]["points"]] == [1, 2]
+    assert found["without two"]["points"][1]["t_s"] == original["points"][2]["t_s"], "on the same axis of time"
+
+    assert await keep(client, flown, "blunter", sigma_deg=3.0) == 204
+    again = await courses(client, flown)
+    assert again["blunter"]["points"][0]["expected_rmse_m"] < found["blunter"]["points"][0]["expected_rmse_m"]
+    assert (await client.delete(f"/api/missions/{flown}/variants/blunter")).status_code == 204
+    assert list(await courses(client, flown)) == [None, "as flown", "without two", "planner"]
+
+
+async def test_a_bearing_left_out_of_a_question_is_not_believed(client, flown):
+    base = f"/api/missions/{flown}/what-if"
+    asked = {"bearings": 3, "method": "base_policy", "base_policy": "ellipse"}
+    whole, fewer = [(await client.post(base, json=asked | more)).json() for more in ({}, {"without": ["b1"]})]
+    assert (whole["belief"]["bearings"], fewer["belief"]["bearings"]) == (3, 2)
+    assert [sweep["sweep_id"] for sweep in fewer["sweeps"]] == ["s2", "s3"]
+
+
+async def test_a_variant_that_cannot_be_computed_says_why_and_the_others_stand(client, flown):
+    """The samples of this flight were not stored, so no other mounting can hear them."""
+    assert await keep(client, flown, "turned", offset_to_nose_deg=10.0) == 204
+    found = await courses(client, flown)
+    assert (found["turned"]["points"], found["turned"]["problem"]["code"]) == ([], "samples_not_stored")
+    assert len(found[None]["points"]) == 3
+
+
+async def test_no_more_variants_than_can_be_compared(client, flown):
+    answers = [await keep(client, flown, f"v{number}") for number in range(13)]
+    assert answers == [204] * 12 + [409]
+    assert await keep(client, flown, "v0", sigma_deg=9.0) == 204, "one that is there may change"
+    for wrong in ("%20", "x" * 61, "a%0Ab"):
+        assert await keep(client, flown, wrong) == 422, wrong

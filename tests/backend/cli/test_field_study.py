@@ -1,13 +1,18 @@
 """Whole searches in the field world, by the command that flies them."""
 
 import json
+import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from backend.cli.field_missions import FieldMission, FieldOptions, FieldStudy, summary
+from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldMission, FieldOptions, FieldStudy, summary
 from backend.cli.main import app
+from backend.search.sector import planned_turn, whole_turn
+from backend.simulation.field_world import drawn_field
+from planner.geometry import bounds
 
 
 def run(*arguments):
@@ -34,6 +39,25 @@ def test_a_mission_is_its_seed():
     assert first == again
     assert first.time_s != other.time_s
     assert first.turned_deg == 360.0 * (first.bearings + first.rejected)
+
+
+def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
+    study = FieldStudy.of(FieldOptions(turns="sector"), 4.0)
+    field = drawn_field(5, study.task.frame, bounds(study.task.problem.area), 0.0)
+    east, north = field.truth
+    off = (np.arange(360) - math.degrees(math.atan2(east, north)) + 180.0) % 360.0 - 180.0
+    towards = np.exp(-0.5 * (off / 10.0) ** 2)
+    plan = planned_turn(towards / towards.sum())
+    found, turned_deg, looks = study.measured(field, (0.0, 0.0), 0, plan)
+    assert found is not None
+    assert found.turn is not None
+    assert plan.width_deg <= turned_deg <= 360.0
+    assert found.turn.turned_deg == turned_deg
+    assert looks == 1 + len(found.turn.went_on_because)
+    assert found.measurement_time_s == pytest.approx(turned_deg / 30.0 + (looks - 1) * LOOK_S + SETTLE_S)
+    whole, whole_deg, once = study.measured(field, (0.0, 0.0), 0, whole_turn("first"))
+    assert whole is not None
+    assert (whole_deg, once) == (360.0, 1)
 
 
 def test_a_row_counts_claims_and_bearings_from_afar():
@@ -72,6 +96,7 @@ def test_the_command_flies_a_row_a_planner():
         (("--seed", "1", "--seed", "2"), "by itself"),
         (("--runs", "0"), "--runs"),
         (("--turn-rate", "1"), "--turn-rate"),
+        (("--turns", "half"), "--turns"),
         (("--compass-sd", "-1"), "--compass-sd"),
     ],
 )

@@ -10,6 +10,7 @@ from facts import (
     FAILSAFE,
     GIVEN_BACK,
     HOME,
+    LANDED_BY_FAILSAFE,
     LINK_LOST,
     NO_ANSWER,
     NO_TAKE_OFF,
@@ -181,6 +182,29 @@ def test_a_restart_does_not_interrupt_the_failsafe_that_brings_the_vehicle_home(
     assert (why.reason, why_homeward.reason) == (FailsafeFlies("server_away"), FailsafeFlies("ordered_before"))
     assert effects.TakeControl() in walk.order(commands.Resume())
     assert not walk.topics
+
+
+@pytest.mark.parametrize("phase", ["taking_off", "flying"])
+def test_a_vehicle_that_the_failsafe_landed_while_the_server_started_is_no_pilots(phase: str) -> None:
+    """On a busy machine a server needs a minute, and the autopilot is home before that."""
+    walk = CraftWalk().to(phase)  # type: ignore[arg-type]
+    assert not sent(walk.give(inputs.Restarted(LANDED_BY_FAILSAFE)))
+    assert (walk.craft.phase, walk.craft.phase_reason) == ("hold", FailsafeFlies("server_away"))
+    walk.give(inputs.Landed())
+    assert (walk.craft.phase, walk.last_alert.reason) == ("hold", Landed("hold"))
+    assert not any(isinstance(alert.reason, PilotFlies) for alert in walk.of_kind(AlertRaised))
+    asked = walk.order(commands.Resume())
+    first = next(k for k, effect in enumerate(asked) if isinstance(effect, VEHICLE))
+    assert effects.TakeControl() in asked[:first]
+    assert walk.craft.authority.taken_by is None
+
+
+def test_the_failsafes_landing_is_no_takeover_by_a_pilot() -> None:
+    walk = CraftWalk().to("flying")
+    walk.give(inputs.AuthorityHeard(FAILSAFE))
+    walk.give(inputs.AuthorityHeard(LANDED_BY_FAILSAFE))
+    assert (walk.craft.phase, walk.craft.taken_over) == ("hold", False)
+    assert not any(isinstance(alert.reason, PilotFlies) for alert in walk.of_kind(AlertRaised))
 
 
 @pytest.mark.parametrize("heard", [OURS, FAILSAFE])

@@ -86,12 +86,14 @@ def test_where_there_are_no_accounts_no_lease_binds_and_none_is_made() -> None:
 
 
 def orders() -> list[Command]:
-    """One of every kind that can be made without values, which is every kind of both tables but these four."""
+    """One of every kind that can be made without values, which is every kind of both tables but these."""
     kinds = {
         "override",
         "set_automatic",
         "change_area",
         "exclude_bearing",
+        "include_bearing",
+        "mute_source",
         "acknowledge_alert",
     }
     made: list[Command] = [

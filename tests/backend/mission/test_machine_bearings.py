@@ -98,6 +98,31 @@ def test_after_a_silent_place_the_next_is_planned_with_what_the_silence_tells() 
     assert fold(walk.recorded) == walk.state
 
 
+def test_a_muted_person_sends_a_craft_on_its_way_home_back_to_no_search_and_the_end_says_so() -> None:
+    walk = Walk().to("flying")
+    walk.give(BearingsArrived((bearing(1, source=PERSON, bearing_id="p"),)))
+    walk.believe(localized=True)
+    assert walk.craft.phase == "returning"
+    asked = walk.command(commands.MuteSource(of="person", name=PERSON.name, muted=True))
+    assert sent(asked) == []
+    assert UpdateBelief(FIRST_EMITTER) in asked
+    walk.to_craft(inputs.Landed())
+    assert walk.search.outcome == "not_localized"
+    assert fold(walk.recorded) == walk.state
+
+
+@pytest.mark.parametrize("phase", ["waiting", "flying", "hold"])
+def test_muting_and_unmuting_moves_no_craft(phase: str) -> None:
+    walk = Walk(WAITING_SPEC if phase == "waiting" else SPEC).to(phase)
+    walk.give(BearingsArrived((bearing(1, source=PERSON, bearing_id="p"),)))
+    walk.believe()
+    for muted in (True, False):
+        assert sent(walk.command(commands.MuteSource(of="person", name=PERSON.name, muted=muted))) == []
+        assert walk.search.emitters[FIRST_EMITTER].bearing_ids == (() if muted else ("p",))
+        assert sent(walk.believe()) == []
+    assert fold(walk.recorded) == walk.state
+
+
 def test_an_excluded_bearing_is_taken_out_of_the_belief_without_moving_the_vehicle() -> None:
     walk = Walk().to("measuring")
     walk.to_craft(inputs.SweepTaken((bearing(1),)))

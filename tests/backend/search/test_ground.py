@@ -69,6 +69,29 @@ def test_a_way_over_a_hill_is_flown_higher_and_over_the_plain_as_the_mission_say
     assert altitude_at(FRAME.to_geo(300.0, 0.0), ground, FLIGHT) == pytest.approx(high, abs=1.0)
 
 
+@pytest.mark.parametrize("drifted_m", [(2.0, 0.0), (-2.0, 0.0), (0.0, 2.0), (0.0, -2.0)])
+def test_a_vehicle_that_drifts_while_it_hovers_over_a_slope_may_still_fly_its_way(
+    drifted_m: tuple[float, float],
+) -> None:
+    """40 % steep. The altitude is chosen for a way from where it was; the vetoes ask from where it is."""
+    ground = over(lambda east, north: 100.0 + 0.4 * east, home_amsl_m=140.0)
+    flight = FlightSpec(maximum_altitude_relative_m=200.0)
+    start, end = (100.0, 0.0), (60.0, 40.0)
+    for here in (start, (start[0] + drifted_m[0], start[1] + drifted_m[1])):
+        below = known(ground.below([here, end]))
+        clearance = level_altitude([start, end], ground, flight) - VERTICAL_TOLERANCE_M - below.highest_m
+        assert clearance >= flight.minimum_clearance_m
+
+
+def test_where_the_band_leaves_too_little_for_drift_an_altitude_still_keeps_what_the_vetoes_ask() -> None:
+    ground = over(lambda east, north: 100.0 + 0.4 * east)
+    least = known(ground.below([(0.0, 0.0)])).highest_m + 20.0 + VERTICAL_TOLERANCE_M
+    for room in (0.0, 0.5, 2.0):
+        ceiling_m = least - ground.home_amsl_m + room
+        tight = FlightSpec(altitude_relative_m=12.0, minimum_clearance_m=20.0, maximum_altitude_relative_m=ceiling_m)
+        assert least <= level_altitude([(0.0, 0.0)], ground, tight) <= least + room + 1e-9
+
+
 def test_over_a_hollow_it_is_flown_lower_when_the_ceiling_says_so() -> None:
     ground, flight = over(hill(300.0, 0.0, -60.0)), FlightSpec(maximum_above_ground_m=80.0)
     low = altitude_at(FRAME.to_geo(300.0, 0.0), ground, flight)

@@ -35,6 +35,7 @@ from backend.events import (
     MissionDrafted,
     MissionEnded,
     MissionStarted,
+    PersonSource,
     RecordingImported,
 )
 from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals
@@ -64,6 +65,10 @@ def facts_of(asked: tuple[SearchEffect, ...]) -> list[Event]:
 
 def refusal(asked: tuple[SearchEffect, ...]) -> Reason | None:
     return next((effect.reason for effect in asked if isinstance(effect, Refuse)), None)
+
+
+def muting(person: str, muted: bool) -> commands.MuteSource:
+    return commands.MuteSource(of="person", name=person, muted=muted)
 
 
 class SearchWalk:
@@ -113,6 +118,9 @@ def every_input(state: SearchState) -> list[SearchInput]:
         commands.ChangeArea(search=OTHER_AREA),
         commands.ExcludeBearing(bearing_id=known),
         commands.ExcludeBearing(bearing_id="unknown"),
+        commands.IncludeBearing(bearing_id=known),
+        commands.IncludeBearing(bearing_id="unknown"),
+        *(muting(name, muted) for name in (PERSON.name, "unheard of") for muted in (True, False)),
         commands.AcknowledgeAlert(alert_id="storage-1"),
     )
     return [
@@ -333,6 +341,53 @@ def test_a_turn_that_heard_nothing_outruns_the_belief_and_can_be_left_out_like_a
     again = walk.order(commands.ExcludeBearing(bearing_id="r3-1"))
     assert refusal(again) == refusals.BearingExcludedAlready()
     assert refusal(walk.order(commands.ExcludeBearing(bearing_id="r2-1"))) == refusals.NoSuchBearing()
+
+
+def test_a_bearing_counts_again_in_its_old_place_and_the_belief_is_the_same() -> None:
+    walk = SearchWalk().to("open")
+    walk.arrive(bearing(1, source=PERSON), bearing(2, source=PERSON))
+    before = walk.state.emitters[FIRST_EMITTER].bearings
+    walk.order(commands.ExcludeBearing(bearing_id="b1"))
+    walk.believe(localized=True)
+    assert walk.order(commands.IncludeBearing(bearing_id="b1"))[-1] == UpdateBelief(FIRST_EMITTER)
+    emitter = walk.state.emitters[FIRST_EMITTER]
+    assert (emitter.bearings, emitter.claim, emitter.belief_current) == (before, None, False)
+    again, other = (walk.order(commands.IncludeBearing(bearing_id=name)) for name in ("b1", "b9"))
+    assert (refusal(again), refusal(other)) == (refusals.BearingCountsAlready(), refusals.NoSuchBearing())
+
+
+def test_a_muted_person_counts_for_nothing_until_unmuted_and_what_was_left_out_stays_so() -> None:
+    walk = SearchWalk().to("open")
+    ben = PersonSource(name="Ben")
+    walk.arrive(bearing(1, source=PERSON), bearing(2, source=ben), bearing(3, source=PERSON))
+    walk.order(commands.ExcludeBearing(bearing_id="b3"))
+    walk.believe(localized=True)
+    assert walk.order(muting(PERSON.name, True))[-1] == UpdateBelief(FIRST_EMITTER)
+    walk.arrive(bearing(4, source=PERSON))
+    emitter = walk.state.emitters[FIRST_EMITTER]
+    assert (emitter.bearing_ids, emitter.claim) == (("b2",), None)
+    assert refusal(walk.order(muting(PERSON.name, True))) == refusals.MutedAlready(True)
+    walk.order(muting(PERSON.name, False))
+    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1", "b2", "b4")
+    assert refusal(walk.order(muting(PERSON.name, False))) == refusals.MutedAlready(False)
+
+
+def test_a_source_that_told_nothing_is_not_muted_nor_a_recording_that_is_named_as_a_person() -> None:
+    walk = SearchWalk().to("open")
+    walk.arrive(bearing(1, source=PERSON), bearing(2, source=IMPORT))
+    for unknown in (muting("Eve", True), muting(IMPORT.recording_id, True)):
+        assert refusal(walk.order(unknown)) == refusals.NoSuchSource()
+    walk.order(commands.MuteSource(of="import", name=IMPORT.recording_id, muted=True))
+    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
+
+
+def test_muting_leaves_the_emitters_alone_that_the_source_told_nothing_of() -> None:
+    walk = SearchWalk(TWO_SPEC).to("open")
+    walk.arrive(bearing(1, source=PERSON), bearing(2, emitter_id=SECOND, source=PersonSource(name="Ben")))
+    walk.believe(localized=True)
+    walk.believe(localized=True, emitter_id=SECOND)
+    walk.order(muting(PERSON.name, True))
+    assert [walk.state.emitters[name].localized for name in (FIRST_EMITTER, SECOND)] == [False, True]
 
 
 def test_an_offset_common_to_all_bearings_is_an_alert_until_there_is_none() -> None:

@@ -95,6 +95,20 @@ async def test_it_takes_off_flies_turns_and_returns_each_seen_by_telemetry(rig: 
     assert not [news for news in rig.news if isinstance(news, TakenOver | TakenOverBySticks)]
 
 
+async def test_it_turns_by_a_part_of_the_circle_either_way_and_goes_on_from_there(rig: Rig) -> None:
+    vehicle = rig.vehicle
+    await rig.airborne()
+    place = rig.place(east=0.0, north=15.0)
+    await vehicle.goto(place, rig.amsl(), 5.0, 120.0)  # where the nose is by then is the autopilot's matter
+    for by_deg in (-70.0, 160.0, 45.0):
+        began = rig.clock.now()
+        await vehicle.turn(30.0, by_deg)
+        headings = [sample.heading_deg for sample in vehicle.headings(began)]
+        turned = sum(math.remainder(b - a, 360.0) for a, b in pairwise(headings))
+        assert math.copysign(1.0, by_deg) * turned == pytest.approx(abs(by_deg), abs=20.0)
+    assert rig.off_by(place) < 3.0
+
+
 async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
     vehicle = rig.vehicle
     await rig.airborne()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 from paper import IN_AIR, ON_GROUND, PLACE, POSCTL, Scene, heartbeat
 
@@ -108,6 +110,37 @@ async def test_a_return_begun_soon_after_a_silence_is_the_failsafes_a_later_one_
     holding.mode(RETURNING)
     authority = holding.monitor.telemetry().authority
     assert (authority.who, authority.perhaps_failsafe) == ("pilot", True)
+
+
+async def test_a_return_that_waited_to_be_read_while_the_server_was_being_loaded_is_the_failsafes(
+    holding: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What loads a server stops its loop: for a minute on a busy machine, longer than the failsafe takes to act."""
+    now_s = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    holding.monitor.restore(holding.monitor.control.authority)
+    holding.mode(HOLD)
+    now_s += 60.0
+    holding.clock.at += 60.0
+    holding.mode(RETURNING)
+    assert holding.monitor.telemetry().authority.who == "failsafe"
+
+
+async def test_a_vehicle_that_was_listened_to_for_long_enough_returns_for_its_pilot(
+    holding: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now_s = time.monotonic()
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    holding.monitor.restore(holding.monitor.control.authority)
+    holding.mode(HOLD)
+    for _ in range(int(AFTER_SILENCE_S / 0.1) + 1):
+        now_s += 0.1
+        holding.clock.at += 0.1
+        holding.mode(HOLD)
+        holding.monitor.look_at_link(0.1)
+    holding.monitor.control.see(CommandSent(frozenset({HOLD})))
+    holding.mode(RETURNING)
+    assert holding.monitor.telemetry().authority.who == "pilot"
 
 
 async def test_the_autopilots_report_of_the_sticks_is_a_takeover_before_its_mode_shows_one(holding: Scene) -> None:

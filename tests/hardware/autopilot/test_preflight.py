@@ -37,6 +37,7 @@ READY = Telemetry(
 )
 SAFE_PX4 = {
     "NAV_DLL_ACT": 2.0,
+    "COM_DL_LOSS_T": 10.0,
     "COM_RC_OVERRIDE": 1.0,
     "GF_ACTION": 2.0,
     "COM_OBL_RC_ACT": 0.0,
@@ -44,6 +45,7 @@ SAFE_PX4 = {
 }
 SAFE_ARDUPILOT = {
     "FS_GCS_ENABLE": 1.0,
+    "FS_GCS_TIMEOUT": 5.0,
     "MAV_GCS_SYSID": 255.0,
     "FENCE_ACTION": 1.0,
     "FS_THR_ENABLE": 1.0,
@@ -163,6 +165,14 @@ def test_safe_parameters_pass_and_each_one_that_would_not_act_refuses(
         assert (bad.name, bad.ok, bad.blocking) == ("failsafe", False, rule.blocking)
         assert bad.reason == FailsafeParameter(rule.watch, rule.parameter, unsafe, rule.wanted(unsafe))
         assert f"Set {rule.parameter} to {rule.wanted(unsafe)}" in remedy_of(bad.reason)
+
+
+@pytest.mark.parametrize(("dialect", "name"), [(PX4, "COM_DL_LOSS_T"), (ARDUPILOT, "FS_GCS_TIMEOUT")])
+def test_a_lost_station_must_be_noticed_within_half_a_minute(dialect: Dialect, name: str) -> None:
+    (rule,) = [rule for rule in dialect.failsafes if rule.watch == "station_time"]
+    assert (rule.parameter, rule.blocking) == (name, True)
+    held = {seconds: rule.holds(seconds) for seconds in (0.0, 1.0, 2.0, 5.0, 10.0, 30.0, 30.5, 120.0, 300.0)}
+    assert held == dict.fromkeys(held, False) | dict.fromkeys((2.0, 5.0, 10.0, 30.0), True)
 
 
 def test_a_parameter_that_cannot_be_read_is_not_taken_for_safe() -> None:

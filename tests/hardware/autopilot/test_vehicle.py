@@ -114,7 +114,10 @@ async def test_headings_are_true_at_their_own_time_while_turning(slow: Rig) -> N
 
 async def test_unsafe_failsafes_are_mended_on_wish_and_then_pass(rig: Rig) -> None:
     flavour = rig.vehicle.telemetry().autopilot
-    unsafe = {"px4": {"NAV_DLL_ACT": 0, "COM_RC_OVERRIDE": 2}, "ardupilot": {"FS_GCS_ENABLE": 0, "MAV_GCS_SYSID": 1}}
+    unsafe = {
+        "px4": {"NAV_DLL_ACT": 0, "COM_DL_LOSS_T": 300, "COM_RC_OVERRIDE": 2},
+        "ardupilot": {"FS_GCS_ENABLE": 0, "FS_GCS_TIMEOUT": 120, "MAV_GCS_SYSID": 1},
+    }
     for name, value in unsafe[flavour].items():
         await rig.sim.order("set_param", name=name, value=value)
 

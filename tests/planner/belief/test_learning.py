@@ -1,5 +1,7 @@
 """Flights without truth narrow what is assumed of a source, and never to nothing."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,7 @@ def flight(rng, bias_sd_deg, own=SIGMA, outliers=0.0, prior=UNKNOWN):
     return flight_evidence(belief, "")
 
 
+@cache
 def after(count, bias_sd_deg, **more):
     rng = np.random.default_rng(5)
     return learned([flight(rng, bias_sd_deg, **more) for _ in range(count)], UNKNOWN)
@@ -60,7 +63,7 @@ def test_outliers_are_learned():
 
 
 def test_nothing_is_ever_excluded():
-    prior = after(20, 0.5)
+    prior = after(12, 0.5)
     assert (prior.spread_weight >= 0.99 * SURPRISE * UNKNOWN.spread_weight).all()
     for weights in (prior.spread_weight, prior.scale_weight, prior.rate_weight):
         assert weights.sum() == pytest.approx(1.0)

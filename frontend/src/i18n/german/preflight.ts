@@ -2,12 +2,14 @@
 import type { ReasonTable } from "../reasons";
 
 const WATCH =
-  "{watch?station=Bodenstation verloren|station_id=Die Bodenstation, auf die sein Ausfallschutz achtet|fence=Zaun verlassen" +
+  "{watch?station=Bodenstation verloren|station_id=Die Bodenstation, auf die sein Ausfallschutz achtet" +
+  "|station_time=Sekunden, bis er eine stumme Bodenstation für verloren hält|fence=Zaun verlassen" +
   "|transmitter=Verbindung zum Handsender verloren|sticks=Die Steuerknüppel des Piloten beenden den automatischen Flug" +
   "|offboard=Offboard-Verbindung verloren, die Crossfix nicht benutzt|battery=Akku schwach|battery_critical=Akku fast leer}";
 const SET_IT =
   "{parameter} auf {wanted} setzen{watch?station=: Sonst schwebt ein Fluggerät ohne seine Station, bis der Akku leer ist" +
   "|station_id=, die MAVLink-Kennung von Crossfix: Den Verlust einer anderen bemerkt der Autopilot nicht" +
+  "|station_time=: 2 bis 30 s; später bliebe ein Fluggerät ohne seine Station zu lange sich selbst überlassen" +
   "|fence=: Sonst meldet der Autopilot nur, dass der Zaun verlassen wird|transmitter=, wenn ein Pilot mit Handsender bereitsteht" +
   "|sticks=: Die Steuerknüppel des Piloten müssen den automatischen Flug sofort beenden|offboard=" +
   "|battery=: Sonst fliegt ein Fluggerät, dem niemand etwas befiehlt, bis der Akku leer ist" +

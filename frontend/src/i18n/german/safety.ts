@@ -80,9 +80,20 @@ export const safety = {
     remedy: "Einen Bediener bitten, sie wegzulassen.",
   },
   bearing_excluded_already: { text: "Die Peilung ist schon weggelassen.", remedy: "" },
+  bearing_counts_already: { text: "Die Peilung wurde nicht weggelassen.", remedy: "" },
+  left_out_by_another: {
+    text: "{by} hat es weggelassen.",
+    remedy: "{by} oder wer die Suche steuert kann es wieder zählen lassen.",
+  },
+  no_such_source: { text: "Von dort hat diese Suche keine Peilung.", remedy: "Die Seite neu laden." },
+  muted_already: { text: "Die Quelle ist {muted?true=schon stumm|false=nicht stumm}.", remedy: "" },
   no_such_alert: { text: "Diesen offenen Alarm gibt es nicht.", remedy: "Er ist vielleicht von selbst vorbei." },
   no_such_craft: { text: "Für diese Mission fliegt kein Fluggerät {craft_id}.", remedy: "Die Seite neu laden." },
   no_such_emitter: { text: "Diese Mission sucht keinen Sender {emitter_id}.", remedy: "Die Seite neu laden." },
+  too_many_variants: {
+    text: "Diese Mission hat {most} Varianten, mehr darf sie nicht haben.",
+    remedy: "Zuerst eine davon vergessen.",
+  },
   vehicle_unknown: {
     text: "Vom Fluggerät ist nichts bekannt.",
     remedy: "Das Fluggerät verbinden und noch einmal fragen.",

@@ -56,6 +56,15 @@ export const server = {
     text: "{fault?not_json=Das ist kein JSON|not_exported=Das ist keine von Crossfix ausgegebene Mission|later=Das wurde von einem neueren Crossfix ausgegeben}.",
     remedy: "{fault?later=Mit jenem Crossfix öffnen.|*=Die Datei mission.json einer ausgegebenen Mission wählen.}",
   },
+  bundle_unreadable: {
+    text: "{fault?not_zip=Das ist keine ZIP-Datei|too_large=Die Dateien im Bündel sind größer als die jeder Mission|later=Dieses Bündel hat ein neueres Crossfix geschrieben|under_way=Die Mission lief noch, als das Bündel geschrieben wurde|differs=Dieselbe Mission gibt es hier schon, mit anderen Ereignissen}.",
+    remedy:
+      "{fault?later=Mit jenem Crossfix öffnen.|under_way=Nach ihrem Ende noch einmal mitnehmen.|differs=Nichts wurde geändert. Die Mission öffnen, die hier ist.|*=Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.}",
+  },
+  bundle_file_wrong: {
+    text: "{fault?foreign=Eine solche Datei schreibt Crossfix nicht in ein Bündel|damaged=Eine Datei im Bündel ist beschädigt|not_exported=Eine Datei im Bündel stammt nicht von Crossfix}: {name}.",
+    remedy: "Die ZIP-Datei wählen, die „Alles“ beim Mitnehmen speichert, unverändert.",
+  },
   upload_broke_off: {
     text: "Das Hochladen brach ab; nichts wurde behalten.",
     remedy: "Die Datei noch einmal hochladen.",

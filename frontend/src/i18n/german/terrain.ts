@@ -9,11 +9,11 @@ export const terrain = {
     remedy: "Gelände für den ganzen Zaun hochladen oder das Gelände entfernen: Der Boden gilt dann als so hoch wie der Startplatz.",
   },
   clearance_short: {
-    text: `${WAY} liegt mit {altitude_relative_m} über dem Startplatz nur {clearance_m} über dem Boden; nötig sind {least_m}.`,
+    text: `${WAY} liegt mit {altitude_relative_m} über dem Startplatz nur {clearance_m:1} über dem Boden; nötig sind {least_m:1}.`,
     remedy: "Einen anderen Ort wählen oder mehr Höhe über dem Startplatz erlauben.",
   },
   too_high_above_ground: {
-    text: `${WAY} liegt mit {altitude_relative_m} über dem Startplatz {height_m} über dem Boden; erlaubt sind {most_m}.`,
+    text: `${WAY} liegt mit {altitude_relative_m} über dem Startplatz {height_m:1} über dem Boden; erlaubt sind {most_m:1}.`,
     remedy: "Einen näheren Ort wählen: Unter einem ebenen Weg fällt der Boden zu weit ab.",
   },
   not_terrain: {

@@ -1,0 +1,46 @@
+"""Bundles of other installations, opened as missions."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request, Response
+
+from backend.api.dependencies import PrincipalDep, ServicesDep
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem
+from backend.reasons import carried
+from backend.reasons.request import BundleUnreadable
+from backend.store.brought import BundleRefused, read_bundle
+from backend.store.entries import JournalConflict
+from backend.wire.library import MissionBrought
+
+router = APIRouter(prefix="/api", tags=["library"], responses=PROBLEM_RESPONSES)
+
+BODY = {
+    "required": True,
+    "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
+}
+
+
+@router.post(
+    "/bundles", status_code=201, responses={200: {"model": MissionBrought}}, openapi_extra={"requestBody": BODY}
+)
+async def bring_in_bundle(
+    request: Request, services: ServicesDep, principal: PrincipalDep, response: Response
+) -> MissionBrought:
+    """Bring in the bundle of another installation as a mission with the id it had there: the same events, sweeps and
+    paths, so the same review. The same bundle again changes nothing: 200. 409: the mission is here with other facts."""
+    content = await request.body()
+    try:
+        brought = await services.workers.run(read_bundle, content)
+    except BundleRefused as refused:
+        raise ApiProblem(422, carried(refused.reason)) from refused
+    size_bytes = sum(len(sweep.samples) for sweep in brought.sweeps)
+    await services.stocks["recordings"].must_take(len(brought.sweeps), size_bytes)
+    try:
+        new = await services.journal.bring_in(brought, principal.name)
+    except JournalConflict as conflict:
+        raise ApiProblem(409, BundleUnreadable("differs")) from conflict
+    if not new:
+        response.status_code = 200
+    return MissionBrought(
+        mission_id=brought.mission_id, already=not new, events=len(brought.rows), sweeps=len(brought.sweeps)
+    )

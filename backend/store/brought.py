@@ -1,0 +1,287 @@
+"""A mission out of a bundle of another installation: read with distrust, written whole.
+
+`read_bundle` runs in a worker process (backend.workers) and opens nothing on the disk: names inside the zip are
+compared with those that Crossfix writes and used for nothing else.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import TypeAdapter, ValidationError
+from sqlalchemy import exc
+from sqlalchemy.ext.asyncio import AsyncEngine
+
+from backend.events import FORM, MissionBroughtIn, Recorded
+from backend.mission.state import fold as fold_mission
+from backend.ports import JournalUnavailable, TrackPoint
+from backend.reasons.request import BundleFileWrong, BundleUnreadable
+from backend.reasons.storage import DatabaseSilent
+from backend.store.digest import MissionDigest, fold, to_columns
+from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
+from backend.store.exported import RECORDED, ExportedLater, NotExported, export_of_today
+from backend.store.patience import patience
+from backend.store.reading import why
+from backend.store.tables import events, missions
+from planner.reason import ReasonedError
+
+SCHEMA, SCHEMA_VERSION = "crossfix bundle", 1
+JOURNAL, MANIFEST, SWEEPS, TRACKS = "mission.json", "bundle.json", "sweeps.jsonl", "tracks.jsonl"
+BESIDE = frozenset({"README.txt", "mission.geojson", "mission.kml", "bearings.csv", "mission.mcap", "tak.zip"})
+"""Made from the journal; not read."""
+READ = frozenset({JOURNAL, MANIFEST, SWEEPS, TRACKS})
+
+MOST_FILES = 32
+MOST_BYTES = 96 * 2**20
+"""Of what is read, unpacked: a mission of hours with some hundred sweeps takes a tenth of it."""
+MOST_EVENTS, MOST_SWEEPS, MOST_POINTS = 100_000, 2_000, 500_000
+MOST_SAMPLES_BYTES = 16 * 2**20
+"""Of one sweep, unpacked."""
+ROW_BYTES = 3 * 8
+POINTS_A_LINE = 5_000
+WRITE_S = 10.0
+AT_ONCE = 500
+
+SWEEP = TypeAdapter(SweepEntry)
+TRACK = TypeAdapter(TrackEntry)
+
+Whole = Literal["not_zip", "too_large", "later", "under_way"]
+InFile = Literal["foreign", "damaged", "not_exported"]
+
+
+class BundleRefused(ReasonedError):
+    """It is no bundle that can be brought in."""
+
+    def __init__(self, reason: BundleUnreadable | BundleFileWrong) -> None:
+        super().__init__(reason)
+
+
+def _refused(fault: Whole) -> BundleRefused:
+    return BundleRefused(BundleUnreadable(fault))
+
+
+def _wrong(fault: InFile, name: str) -> BundleRefused:
+    return BundleRefused(BundleFileWrong(fault, name[:80]))
+
+
+@dataclass(frozen=True, slots=True)
+class Brought:
+    """rows: from number 1 on, in today's form. digest: after them. software: that wrote the bundle."""
+
+    mission_id: str
+    rows: tuple[EventRow, ...]
+    digest: MissionDigest
+    sweeps: tuple[SweepEntry, ...]
+    tracks: tuple[TrackEntry, ...]
+    software: str
+
+
+def raw_files(
+    mission_id: str, sweeps: Sequence[SweepEntry], tracks: Mapping[str, Sequence[TrackPoint]]
+) -> dict[str, bytes]:
+    """The files of a bundle that only Crossfix reads, exact to the last bit."""
+    pieces = [
+        TrackEntry(mission_id, craft_id, tuple(points[at : at + POINTS_A_LINE]))
+        for craft_id, points in tracks.items()
+        for at in range(0, len(points), POINTS_A_LINE)
+    ]
+    return {
+        SWEEPS: b"".join(entry.encode() + b"\n" for entry in sweeps),
+        TRACKS: b"".join(piece.encode() + b"\n" for piece in pieces),
+    }
+
+
+def read_bundle(content: bytes) -> Brought:
+    """Raises BundleRefused."""
+    files = _unpacked(content)
+    software = _software(files.get(MANIFEST))
+    recorded, paths = _journal(files[JOURNAL])
+    mission_id = recorded[0].mission_id
+    sweeps = tuple(_sweep(line, mission_id) for line in _lines(files, SWEEPS, MOST_SWEEPS))
+    tracks = tuple(_track(line, mission_id) for line in _lines(files, TRACKS, MOST_POINTS))
+    if TRACKS not in files:
+        tracks = _thin_tracks(paths, mission_id)
+    if sum(len(track.points) for track in tracks) > MOST_POINTS:
+        raise _refused("too_large")
+    try:
+        fold_mission(recorded)
+        digest = fold(None, recorded)
+        rows = tuple(to_row(record.seq, record.at_utc, record.event) for record in recorded)
+    except (ValueError, LookupError, TypeError, OverflowError, ArithmeticError, AssertionError) as error:
+        raise _wrong("not_exported", JOURNAL) from error
+    if digest.unfinished:
+        raise _refused("under_way")
+    return Brought(mission_id, rows, digest, sweeps, tracks, software)
+
+
+def _unpacked(content: bytes) -> dict[str, bytes]:
+    """The files that are read."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            entries = archive.infolist()
+            names = [entry.filename for entry in entries]
+            for name in names:
+                if name not in READ | BESIDE:
+                    raise _wrong("foreign", _spoken(name))
+            if len(names) != len(set(names)) or len(names) > MOST_FILES:
+                raise _wrong("damaged", _spoken(names[-1]))
+            wanted = [entry for entry in entries if entry.filename in READ]
+            if sum(entry.file_size for entry in wanted) > MOST_BYTES:
+                raise _refused("too_large")
+            if JOURNAL not in names:
+                raise _wrong("not_exported", JOURNAL)
+            return {entry.filename: _read(archive, entry) for entry in wanted}
+    except zipfile.BadZipFile as error:
+        raise _refused("not_zip") from error
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    """No more than its head says, which was counted."""
+    try:
+        with archive.open(entry) as stream:
+            return stream.read(MOST_BYTES + 1)
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError, ValueError) as error:
+        raise _wrong("damaged", entry.filename) from error
+
+
+def _spoken(name: str) -> str:
+    return "".join(c if c.isprintable() else "?" for c in name)
+
+
+def _software(manifest: bytes | None) -> str:
+    """A bundle without a manifest is of a Crossfix before there was one."""
+    if manifest is None:
+        return ""
+    told = _parsed(manifest, MANIFEST)
+    if not isinstance(told, dict) or told.get("schema") != SCHEMA or not isinstance(told.get("version"), int):
+        raise _wrong("not_exported", MANIFEST)
+    if told["version"] > SCHEMA_VERSION:
+        raise _refused("later")
+    software = told.get("software", "")
+    return _spoken(software)[:80] if isinstance(software, str) else ""
+
+
+def _parsed(text: bytes, name: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise _wrong("damaged", name) from error
+
+
+def _journal(text: bytes) -> tuple[list[Recorded], Mapping[str, Any]]:
+    exported = _parsed(text, JOURNAL)
+    try:
+        today = export_of_today(exported)
+        recorded = RECORDED.validate_python(today["events"])
+    except ExportedLater as error:
+        raise _refused("later") from error
+    except (NotExported, ValidationError, RecursionError) as error:
+        raise _wrong("not_exported", JOURNAL) from error
+    mission_id = today["mission_id"]
+    if len(recorded) > MOST_EVENTS:
+        raise _refused("too_large")
+    in_order = all(r.seq == seq and r.mission_id == mission_id for seq, r in enumerate(recorded, start=1))
+    if not in_order or not _is_id(mission_id) or any(r.at_utc.tzinfo is None for r in recorded):
+        raise _wrong("not_exported", JOURNAL)
+    return recorded, today["tracks"]
+
+
+def _is_id(text: Any) -> bool:
+    plain = isinstance(text, str) and text.isascii() and text.replace("-", "").replace("_", "").isalnum()
+    return plain and len(text) <= 64
+
+
+def _lines(files: Mapping[str, bytes], name: str, most: int) -> Iterable[tuple[bytes, str]]:
+    lines = [line for line in files.get(name, b"").split(b"\n") if line]
+    if len(lines) > most:
+        raise _refused("too_large")
+    return ((line, name) for line in lines)
+
+
+def _sweep(told: tuple[bytes, str], mission_id: str) -> SweepEntry:
+    line, name = told
+    try:
+        sweep = SWEEP.validate_python(decode(line))
+        found = zlib.decompressobj()
+        samples = found.decompress(sweep.samples, MOST_SAMPLES_BYTES)
+        numbers = (sweep.frequency_hz, sweep.altitude_amsl_m, sweep.drift_m, sweep.noise_floor_db)
+        sound = (
+            sweep.mission_id == mission_id
+            and _is_id(sweep.sweep_id)
+            and found.eof
+            and len(samples) % ROW_BYTES == 0
+            and _on_earth(sweep.lat_deg, sweep.lon_deg)
+            and all(number is None or math.isfinite(number) for number in numbers)
+        )
+    except (ValueError, LookupError, TypeError, RecursionError, zlib.error) as error:
+        raise _wrong("damaged", name) from error
+    if not sound:
+        raise _wrong("damaged", name)
+    return sweep
+
+
+def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
+    line, name = told
+    try:
+        track = TRACK.validate_python(decode(line))
+    except (ValueError, LookupError, TypeError, RecursionError) as error:
+        raise _wrong("damaged", name) from error
+    if track.mission_id != mission_id or not _is_id(track.craft_id) or not all(map(_sound, track.points)):
+        raise _wrong("damaged", name)
+    return track
+
+
+def _sound(point: TrackPoint) -> bool:
+    return 0 <= point.at_s < 1e11 and _on_earth(point.lat_deg, point.lon_deg)
+
+
+def _on_earth(lat_deg: float, lon_deg: float) -> bool:
+    return abs(lat_deg) <= 90 and abs(lon_deg) <= 180
+
+
+def _thin_tracks(paths: Mapping[str, Any], mission_id: str) -> tuple[TrackEntry, ...]:
+    """Of an older bundle: what mission.json says of the flown paths."""
+    found: list[TrackEntry] = []
+    try:
+        for craft_id, rows in paths.items():
+            points = [
+                TrackPoint(datetime.fromisoformat(at).timestamp(), lat, lon, amsl_m, math.nan, heading, None, None)
+                for at, lat, lon, amsl_m, heading in rows
+            ]
+            entry = TRACK.validate_python(TrackEntry(mission_id, craft_id, tuple(points)))
+            if not _is_id(craft_id) or not all(map(_sound, points)):
+                raise _wrong("not_exported", JOURNAL)
+            found.append(entry)
+    except (ValueError, TypeError, AttributeError, OverflowError) as error:
+        raise _wrong("not_exported", JOURNAL) from error
+    return tuple(found)
+
+
+async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: str) -> None:
+    """One transaction. A flight that writes meanwhile waits in the spool. Raises JournalUnavailable."""
+    fact = MissionBroughtIn(software=brought.software, by=by)
+    last = to_row(len(brought.rows) + 1, at_utc, fact)
+    columns = to_columns(fold(brought.digest, to_records(brought.mission_id, [last])))
+    columns["name"] = columns["name"].replace("\x00", "")
+    rows = [
+        {"mission_id": brought.mission_id, "seq": row.seq, "at_us": row.at_us, "kind": row.kind, "form": FORM}
+        | {"body": row.body}
+        for row in (*brought.rows, last)
+    ]
+    try:
+        async with patience(WRITE_S), engine.execution_options(write=True).begin() as connection:
+            await connection.execute(missions.insert().values(columns))
+            for at in range(0, len(rows), AT_ONCE):
+                await connection.execute(events.insert(), rows[at : at + AT_ONCE])
+            for entry in (*brought.sweeps, *brought.tracks):
+                await entry.write(connection)
+    except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
+        raise JournalUnavailable(DatabaseSilent(why(error))) from error

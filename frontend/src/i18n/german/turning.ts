@@ -1,0 +1,38 @@
+// German: how far a craft turned for a sweep, and why.
+import type { ReasonTable } from "../reasons";
+
+export const turning = {
+  whole_turn: {
+    text: "Ganze Drehung: {because?first=bisher war noch nichts zu hören|again=die Drehung davor ergab keine Peilung|unsure=die bisherigen Peilungen widersprechen sich|wide=der Sender kann fast überall liegen|several=mehrere Sender werden abgehört|pulsed=ein gepulster Sender braucht jede Richtung|second_place=die ersten Orte dieser Suche hören in alle Richtungen}.",
+    remedy: "",
+  },
+  sector_expected: {
+    text: "Ein Sektor von {width_deg}: in ihm liegen {share_percent} der von hier erwarteten Richtungen und ein Rand.",
+    remedy: "",
+  },
+  maximum_seen: {
+    text: "Angehalten nach {turned_deg}: Das Maximum liegt {inside_deg} vom Rand, und eine andere Richtung hat eine Wahrscheinlichkeit von {elsewhere_percent}.",
+    remedy: "",
+  },
+  whole_circle_seen: { text: "Angehalten nach dem ganzen Kreis.", remedy: "" },
+  maximum_at_edge: {
+    text: "Um {by_deg} weitergedreht: Das Maximum lag am {edge?beginning=Anfang|end=Ende} des Sektors.",
+    remedy: "",
+  },
+  quality_poor: {
+    text: "Um {by_deg} weitergedreht: Das Gehörte glich dem Antennendiagramm nur zu {quality:2}.",
+    remedy: "",
+  },
+  elsewhere_possible: {
+    text: "Um {by_deg} weitergedreht: Eine noch nicht gehörte Richtung hatte eine Wahrscheinlichkeit von {elsewhere_percent}.",
+    remedy: "",
+  },
+  bearing_uncertain: {
+    text: "Um {by_deg} weitergedreht: Die Peilung war noch um {sigma_deg:1} unsicher.",
+    remedy: "",
+  },
+  nothing_found_yet: {
+    text: "Um {by_deg} weitergedreht: Das Gehörte ergab noch keine Peilung.",
+    remedy: "",
+  },
+} satisfies Partial<ReasonTable>;

@@ -1,0 +1,15 @@
+// A mission's course over time, and its variants kept by name.
+import type { components } from "../wire/generated";
+import { json, requestEmpty, withBody } from "./api";
+
+type Schemas = components["schemas"];
+export type MissionCourses = Schemas["MissionCourses"];
+export type Course = Schemas["Course"];
+export type CoursePoint = Schemas["CoursePoint"];
+export type Supposition = Schemas["Supposition"];
+
+const variant = (id: string, name: string) => `/missions/${encodeURIComponent(id)}/variants/${encodeURIComponent(name)}`;
+
+export const courses = (id: string) => json<MissionCourses>(`/missions/${encodeURIComponent(id)}/courses`);
+export const keepVariant = (id: string, name: string, wanted: Supposition) => requestEmpty(variant(id, name), withBody("PUT", wanted));
+export const dropVariant = (id: string, name: string) => requestEmpty(variant(id, name), { method: "DELETE" });

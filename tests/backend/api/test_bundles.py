@@ -1,0 +1,320 @@
+"""A mission taken from one installation to another with a bundle: the same event for event, and the same review."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import io
+import json
+import pickle
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from backend.events import BearingMeasured, MissionDrafted, MissionEnded, NetsNoted, TruthNoted
+from backend.ports import TrackPoint
+from backend.reasons.request import BundleFileWrong, BundleUnreadable
+from backend.settings import REPOSITORY
+from backend.store.brought import BundleRefused, raw_files, read_bundle
+from backend.store.entries import EventRow, sweep_entry, to_records
+from backend.store.upgrade import FIRST_FORM
+from backend.wire.bundle import bundle
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.fence import Nets
+from hardware.readings import Sweep
+
+STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
+FLOWN = to_records(
+    STORED["mission_id"], [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in STORED["rows"]]
+)
+ID = STORED["mission_id"]
+PATH = [
+    TrackPoint(1.7e9 + n / 3, 50.6 + n * 1e-5, 7.2, 140.1, 40.0, None if n == 1 else 90.0, 80.0, "AUTO")
+    for n in range(3)
+]
+YAGI = load_pattern(SMALL_YAGI)
+
+
+def sweep_of(fact: BearingMeasured) -> Sweep:
+    """One turn with an emitter at the fact's bearing, heard by the small Yagi over the nose."""
+    nose = np.arange(0.0, 360.0, 1.0)
+    return Sweep(
+        at_s=1.7e9 + nose / 30.0,
+        heading_deg=nose,
+        power_db=-60.0 + YAGI.gain_at(fact.bearing_deg - nose),
+        frequency_hz=148.5e6,
+        position=fact.place,
+        altitude_amsl_m=140.0,
+        noise_floor_db=-110.0,
+    )
+
+
+@pytest.fixture
+async def flown(services) -> str:
+    """The recorded flight with its sweeps and its path, checked against the truth."""
+    await services.journal.append(ID, [record.event for record in FLOWN])
+    for record in FLOWN:
+        fact = record.event
+        if isinstance(fact, BearingMeasured) and fact.sweep_id:
+            number, sweep = fact.place_number, sweep_of(fact)
+            await services.journal.save_sweep(ID, fact.sweep_id, "craft-1", fact.emitter_id, number, 1, sweep)
+    await services.journal.save_track(ID, "craft-1", PATH)
+    emitter_id = next(r.event.emitter_id for r in FLOWN if isinstance(r.event, BearingMeasured))
+    place = next(r.event.place for r in FLOWN if isinstance(r.event, BearingMeasured))
+    await services.journal.append(
+        ID, [TruthNoted(emitter_id=emitter_id, place=place, accuracy_m=3.0, how="phone", by="Ada")]
+    )
+    return ID
+
+
+async def exported(client: httpx.AsyncClient, mission_id: str) -> bytes:
+    reply = await client.get(f"/api/missions/{mission_id}/export/bundle")
+    assert reply.status_code == 200, reply.text
+    return reply.content
+
+
+async def reviewed(client: httpx.AsyncClient) -> dict[str, Any]:
+    """All that a review shows."""
+    base = f"/api/missions/{ID}"
+    summary = (await client.get(base)).json()
+    events = (await client.get(f"{base}/events", params={"limit": 5000})).json()["events"]
+    sweep_ids = sorted(e["event"]["sweep_id"] for e in events if e["event"]["kind"] == "bearing_measured")
+    supposed = {"bearings": summary["bearings"], "sigma_deg": 12.0, "method": "base_policy", "base_policy": "ellipse"}
+    turned = {"bearings": 2, "offset_to_nose_deg": 10.0, "method": "base_policy", "base_policy": "ellipse"}
+    answers = [await client.post(f"{base}/what-if", json=asked) for asked in (supposed, turned)]
+    assert [answer.status_code for answer in answers] == [200, 200], [answer.text for answer in answers]
+    answered = [answer.json() for answer in answers]
+    for told in answered:
+        told["plan"].pop("plan_ms")  # how long it took this time
+    return {
+        "summary": {name: value for name, value in summary.items() if name != "last_seq"},
+        "events": events,
+        "belief": (await client.get(f"{base}/beliefs", params={"seq": len(FLOWN)})).content,
+        "track": (await client.get(f"{base}/track")).json(),
+        "sweeps": [(await client.get(f"{base}/sweeps/{each}")).json() for each in sweep_ids],
+        "what_if": answered,
+        "antenna": (await client.get(f"{base}/antenna")).json(),
+        "files": [(await client.get(f"{base}/export/{each}")).content for each in ("geojson", "kml", "csv")],
+        "calibration": (await client.get("/api/calibration")).json(),
+    }
+
+
+async def test_a_mission_is_reviewed_elsewhere_as_it_is_at_home(client, flown, elsewhere):
+    there, other = elsewhere
+    reply = await there.post("/api/bundles", content=await exported(client, flown))
+    assert reply.status_code == 201, reply.text
+    told = {"mission_id": ID, "already": False, "events": len(FLOWN) + 1, "sweeps": len(SWEEPS)}
+    assert reply.json() == told
+    at_home, brought = await reviewed(client), await reviewed(there)
+    *events, last = brought.pop("events")
+    assert events == at_home.pop("events"), "event for event, with numbers, times and values"
+    assert last["event"]["kind"] == "mission_brought_in"
+    assert last["event"]["software"].startswith("crossfix ")
+    for part, shown in at_home.items():
+        assert brought[part] == shown, part
+    assert await other.journal.unfinished() == [], "no restart takes it for a flight of its own"
+
+
+async def test_the_same_bundle_again_changes_nothing_and_one_that_differs_is_refused(client, flown, elsewhere):
+    there, _ = elsewhere
+    content = await exported(client, flown)
+    assert (await there.post("/api/bundles", content=content)).status_code == 201
+    before = (await there.get(f"/api/missions/{ID}/events", params={"limit": 5000})).json()
+    again = await there.post("/api/bundles", content=content)
+    assert (again.status_code, again.json()["already"]) == (200, True)
+    assert (await client.post("/api/bundles", content=content)).status_code == 200, "at home nothing is brought in"
+    changed = repacked(content, "mission.json", lambda text: text.replace(b'"bearing_deg": ', b'"bearing_deg": 1', 1))
+    reply = await there.post("/api/bundles", content=changed)
+    assert (reply.status_code, reply.json()["reason"]["fault"]) == (409, "differs")
+    assert (await there.get(f"/api/missions/{ID}/events", params={"limit": 5000})).json() == before
+
+
+async def test_a_bundle_of_a_bundle_is_the_same_mission(client, flown, elsewhere):
+    """Brought in a second time, with the fact of the first in it."""
+    there, _ = elsewhere
+    await there.post("/api/bundles", content=await exported(client, flown))
+    reply = await client.post("/api/bundles", content=await exported(there, ID))
+    assert reply.status_code == 409, "the other installation has said more of it since"
+    brought = read_bundle(await exported(there, ID))
+    assert brought.rows[-1].kind == "mission_brought_in"
+
+
+async def test_nets_of_a_foreign_vehicle_are_never_put_back_here(services, client, elsewhere):
+    there, other = elsewhere
+    spec = next(r.event.spec for r in FLOWN if isinstance(r.event, MissionDrafted))
+    noted = NetsNoted(craft_id="craft-1", before=Nets(), after=Nets())
+    ended = next(r.event for r in FLOWN if isinstance(r.event, MissionEnded))
+    await services.journal.append("m-nets", [MissionDrafted(spec=spec), noted, ended])
+    assert [r.event for r in await services.journal.of_nets()] == [noted]
+    reply = await there.post("/api/bundles", content=await exported(client, "m-nets"))
+    assert reply.status_code == 201, reply.text
+    assert await other.journal.of_nets() == []
+
+
+async def test_a_bundle_from_before_brings_the_path_that_it_has(client, flown, elsewhere):
+    there, _ = elsewhere
+    content = without(await exported(client, flown), "bundle.json", "sweeps.jsonl", "tracks.jsonl")
+    reply = await there.post("/api/bundles", content=content)
+    assert (reply.status_code, reply.json()["sweeps"]) == (201, 0)
+    points = (await there.get(f"/api/missions/{ID}/track")).json()["points"]
+    assert [point["lat"] for point in points] == [point.lat_deg for point in PATH]
+
+
+def files_of(content: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def packed(files: dict[str, bytes]) -> bytes:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return stream.getvalue()
+
+
+def repacked(content: bytes, name: str, change: Callable[[bytes], bytes]) -> bytes:
+    files = files_of(content)
+    changed = change(files[name])
+    assert changed != files[name]
+    return packed(files | {name: changed})
+
+
+def without(content: bytes, *names: str) -> bytes:
+    return packed({name: text for name, text in files_of(content).items() if name not in names})
+
+
+def added(name: str, text: bytes = b"x") -> Callable[[bytes], bytes]:
+    return lambda content: packed(files_of(content) | {name: text})
+
+
+def changed(name: str, change: Callable[[bytes], bytes]) -> Callable[[bytes], bytes]:
+    return lambda content: repacked(content, name, change)
+
+
+def bomb(content: bytes) -> bytes:
+    return packed(files_of(content) | {"sweeps.jsonl": bytes(100 * 2**20)})
+
+
+def lying_bomb(content: bytes) -> bytes:
+    """Its head says that the file is short."""
+    packed_bomb = bytearray(packed({"mission.json": b" " * (4 * 2**20)}))
+    at = packed_bomb.index(b"PK\x01\x02")
+    packed_bomb[at + 24 : at + 28] = struct.pack("<I", 100)
+    return bytes(packed_bomb)
+
+
+def swollen_sweep(content: bytes) -> bytes:
+    """A sweep whose samples unpack to far more than any turn has."""
+    line = json.loads(files_of(content)["sweeps.jsonl"].split(b"\n")[0])
+    line["fields"]["samples"] = base64.b64encode(zlib.compress(bytes(24 * 2**20))).decode()
+    return packed(files_of(content) | {"sweeps.jsonl": json.dumps(line).encode()})
+
+
+SWEEPS = [
+    sweep_entry(ID, record.event.sweep_id, "craft-1", record.event.emitter_id, 1, 1, sweep_of(record.event))
+    for record in FLOWN
+    if isinstance(record.event, BearingMeasured) and record.event.sweep_id
+]
+SOUND = bundle(FLOWN, {"craft-1": PATH}, raw_files(ID, SWEEPS, {"craft-1": PATH}))
+
+
+def test_the_bundle_that_is_spoiled_below_is_sound():
+    brought = read_bundle(SOUND)
+    assert (brought.mission_id, len(brought.rows), brought.sweeps) == (ID, len(FLOWN), tuple(SWEEPS))
+
+
+def other_schema(text: bytes) -> bytes:
+    return json.dumps(json.loads(text) | {"schema": "holiday pictures"}).encode()
+
+
+def later_schema(text: bytes) -> bytes:
+    return json.dumps(json.loads(text) | {"version": 2}).encode()
+
+
+def renumbered(text: bytes) -> bytes:
+    told = json.loads(text)
+    told["events"][3]["seq"] = 99
+    return json.dumps(told).encode()
+
+
+def of_two(text: bytes) -> bytes:
+    told = json.loads(text)
+    told["events"][3]["mission_id"] = "another"
+    return json.dumps(told).encode()
+
+
+def elsewhere_named(text: bytes) -> bytes:
+    return text.replace(ID.encode(), b"../../../etc/passwd")
+
+
+def still_flying(text: bytes) -> bytes:
+    told = json.loads(text)
+    end = next(at for at, record in enumerate(told["events"]) if record["event"]["kind"] == "mission_ended")
+    return json.dumps(told | {"events": told["events"][:end]}).encode()
+
+
+@pytest.mark.parametrize(
+    ("spoil", "fault"),
+    [
+        (lambda content: b"", "not_zip"),
+        (lambda content: b"PK\x03\x04" + bytes(100), "not_zip"),
+        (lambda content: content[: len(content) // 2], "not_zip"),
+        (lambda content: packed({}), "not_exported"),
+        (lambda content: without(content, "mission.json"), "not_exported"),
+        (added("../../../../tmp/evil.sh"), "foreign"),
+        (added("/etc/cron.d/evil"), "foreign"),
+        (added("..\\evil.exe"), "foreign"),
+        (added("nested.zip"), "foreign"),
+        (bomb, "too_large"),
+        (lying_bomb, "damaged"),
+        (swollen_sweep, "damaged"),
+        (changed("mission.json", lambda text: b"[" * 100_000), "damaged"),
+        (changed("mission.json", lambda text: b"{}"), "not_exported"),
+        (changed("mission.json", renumbered), "not_exported"),
+        (changed("mission.json", of_two), "not_exported"),
+        (changed("mission.json", elsewhere_named), "not_exported"),
+        (changed("mission.json", still_flying), "under_way"),
+        (changed("bundle.json", other_schema), "not_exported"),
+        (changed("bundle.json", later_schema), "later"),
+        (changed("bundle.json", lambda text: b"\xff"), "damaged"),
+        (changed("sweeps.jsonl", lambda text: text.replace(b'"lat_deg":', b'"lat_deg":9')), "damaged"),
+        (changed("sweeps.jsonl", lambda text: text.replace(b'"entry":"sweep"', b'"entry":"track"')), "damaged"),
+        (changed("tracks.jsonl", lambda text: text.replace(b'"at_s":1', b'"at_s":-1')), "damaged"),
+        (changed("tracks.jsonl", lambda text: text.replace(b'"craft-1"', b'"../x"')), "damaged"),
+    ],
+)
+def test_a_hostile_bundle_is_refused_with_a_reason(spoil, fault):
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(spoil(SOUND))
+    assert isinstance(refused.value.reason, BundleUnreadable | BundleFileWrong)
+    assert refused.value.reason.fault == fault
+
+
+@pytest.mark.parametrize(
+    ("spoil", "code"),
+    [
+        (bomb, "bundle_unreadable"),
+        (added("../../evil.sh"), "bundle_file_wrong"),
+        (changed("bundle.json", later_schema), "bundle_unreadable"),
+    ],
+)
+async def test_a_refused_bundle_leaves_nothing(client, spoil, code):
+    reply = await client.post("/api/bundles", content=spoil(SOUND))
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (422, code)
+    assert reply.json()["detail"].strip()
+    assert reply.json()["remedy"].strip()
+    assert (await client.get("/api/missions")).json()["missions"] == []
+
+
+def test_a_refusal_comes_out_of_the_worker_as_it_went_in():
+    with pytest.raises(BundleRefused) as refused:
+        read_bundle(b"")
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert again.reason == refused.value.reason
