@@ -56,7 +56,7 @@ def shortest_arc(mass: FloatArray, share: float) -> Arc:
     count = mass.size
     twice = np.concatenate(([0.0], np.cumsum(np.concatenate((mass, mass)))))
     # the first end at which the mass since each begin is enough
-    ends: IntArray = np.searchsorted(twice, twice[:count] + share * twice[count] - 1e-12)
+    ends = np.asarray(np.searchsorted(twice, twice[:count] + share * twice[count] - 1e-12), dtype=np.int64)
     widths = np.minimum(ends - np.arange(count), count)
     first = int(np.argmin(widths))
     step = 2.0 * math.pi / count

@@ -20,6 +20,7 @@ FOLDED_KINDS = (
     "bearing_included",
     "source_mute_changed",
     "belief_updated",
+    "sweep_rejected",
 )
 """The events that a belief depends on."""
 
@@ -37,7 +38,8 @@ def belief_frame(
     if state.spec is None or (emitter_id is not None and emitter_id not in state.emitters):
         return None
     task = localization(state.mission, state.home or corner_of(state.mission.area), emitter_id)
-    fact, belief = task.belief_fact(state.emitters[task.emitter_id].bearings if seq else ())
+    emitter = state.emitters[task.emitter_id]
+    fact, belief = task.after(emitter.unheard).belief_fact(emitter.bearings) if seq else task.belief_fact(())
     corners = task.corners_lon_lat(belief)
     return encode_belief(mission_id, task.emitter_id, seq, fact.bearings, belief.density, corners, lite=lite)
 

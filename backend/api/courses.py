@@ -146,9 +146,8 @@ def _points(
 
 def _point(t_s: float, bearings: int, then: BeliefUpdated, truth: Place | None) -> CoursePoint:
     estimate = then.estimate
-    known = estimate is not None and truth is not None
     error_m = inside = None
-    if known:
+    if estimate is not None and truth is not None:
         error_m = float(pymap3d.vincenty.vdist(estimate.lat, estimate.lon, truth.lat, truth.lon)[0])
         inside = bool(shape(estimate.c95.model_dump()).covers(Point(truth.lon, truth.lat)))
     return CoursePoint(

@@ -24,7 +24,7 @@ from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.types import PlannerError
 
-SUPPOSED_KINDS = (*FOLDED_KINDS, "sweep_rejected", "recording_imported")
+SUPPOSED_KINDS = (*FOLDED_KINDS, "recording_imported")
 """The events that the answer depends on: a sweep that was rejected may tell something through another antenna, and
 the antenna that flew is named at the start or the import."""
 
@@ -83,9 +83,12 @@ def suppose(
     task = localization(mission, home, wanted.emitter_id)
     counted = state.emitters[task.emitter_id].bearings
     supposed: list[SweepFact] = []
-    said = [task.belief_fact([])]
+    said, bare = [task.belief_fact([])], task
+    unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
     for sweeps in _sweeps_of_each(recorded, counted):
         supposed += _taken(sweeps, supposed, mission, wanted, antenna)
+        silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
+        task = bare.after(silent)
         said.append(task.belief_fact(_bearings(supposed)))
     return Supposed(task, home, counted, flown, supposed, said)
 

@@ -15,12 +15,13 @@ import numpy as np
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.sector_turns import Turned, TurnShown, turn_as_planned
-from backend.events import BearingMeasured, CraftSource, SweepRejected
+from backend.events import BearingMeasured, CraftSource, SilenceFact, SweepRejected
 from backend.ports import SectorShown
 from backend.reasons import carried
 from backend.search.sector import TurnPlan
 from backend.search.sweep_facts import Taken, rejected, sweep_fact
 from backend.spec import EmitterSpec, MissionSpec
+from hardware.direction_finding.silence import chances_by_heading, relative_gain_db
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.ports import ReceiverError, VehicleError
 from hardware.readings import PowerSample, Sweep
@@ -104,11 +105,20 @@ async def _result(
     sweep_id = str(uuid4())
     source = CraftSource(craft_id=equipment.craft_id)
     taken = Taken(emitter.emitter_id, source, sweep_id, place_number, attempt, turned.turn)
-    telemetry = equipment.vehicle.telemetry()
+    telemetry, headings = equipment.vehicle.telemetry(), equipment.vehicle.headings(turned.began_s - 1.0)
+    silence = SilenceFact(
+        chances=chances_by_heading(
+            [sample.at_s for sample in samples],
+            headings,
+            equipment.pattern.offset_to_nose_deg,
+            pulsed=emitter.kind == "pulsed",
+        ),
+        gain_db=relative_gain_db(equipment.pattern),
+    )
     try:
         sweep = assemble_sweep(
             [sample for sample in samples if sample.detected],
-            equipment.vehicle.headings(turned.began_s - 1.0),
+            headings,
             frequency_hz=emitter.frequency_hz,
             altitude_amsl_m=math.nan if telemetry.altitude_amsl_m is None else telemetry.altitude_amsl_m,
             position=None,
@@ -119,11 +129,12 @@ async def _result(
             raise VehicleError(PositionLost()) from error
         unheard = emitter.kind == "pulsed" and not any(sample.detected for sample in samples)
         reason = NoPulseHeard() if unheard else carried(error.reason)
-        return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason))
+        told = silence if unheard and samples else None
+        return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
     sweep = turned.as_turned(sweep)
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
     middle_s = fmean((turned.began_s, turned.ended_s))
-    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s))
+    return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s, silence))
 
 
 async def _show_progress(

@@ -59,6 +59,14 @@ class Peak(Fact):
     weight: float
 
 
+class SilenceFact(Fact):
+    """The emitter was listened to and not heard. chances: (16,) to hear it, with the antenna pointing to 0, 22.5, ..
+    degrees from north. gain_db: (36,) of the antenna, 0, 10, .. degrees clockwise of its front, below its maximum."""
+
+    chances: Annotated[list[Annotated[float, Field(ge=0)]], Field(min_length=1, max_length=360)]
+    gain_db: Annotated[list[Annotated[float, Field(le=0)]], Field(min_length=1, max_length=360)]
+
+
 class TurnFact(Fact):
     """How far a craft turned for a sweep. begin_deg: antenna heading at which it began, clockwise from true north.
 
@@ -81,7 +89,7 @@ class TurnFact(Fact):
 
 class SweepRejected(Fact):
     """No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood, turn: as in
-    BearingMeasured."""
+    BearingMeasured. silence: the emitter should have been heard, were it near; None: the turn says nothing of that."""
 
     kind: Literal["sweep_rejected"] = "sweep_rejected"
     emitter_id: Id
@@ -95,6 +103,7 @@ class SweepRejected(Fact):
     binned_db: list[Known]
     fitted_db: list[Known]
     likelihood: str | None = None
+    silence: SilenceFact | None = None
     turn: TurnFact | None = None
 
 
@@ -155,7 +164,8 @@ class RecordingImported(Fact):
 
 
 class BearingExcluded(Fact):
-    """An operator's wish: the belief is folded again without it, the bearing stays in the journal."""
+    """An operator's wish: the belief is folded again without it, the bearing stays in the journal. heard False: it is
+    a turn that heard nothing, and bearing_id that of its sweep."""
 
     kind: Literal["bearing_excluded"] = "bearing_excluded"
     emitter_id: Id
@@ -163,6 +173,7 @@ class BearingExcluded(Fact):
     by: str
     reason: str
     """In the operator's own words."""
+    heard: bool = True
 
 
 class BearingIncluded(Fact):

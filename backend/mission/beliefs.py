@@ -6,6 +6,7 @@ import asyncio
 import logging
 from collections.abc import Callable
 
+from backend.events import BeliefUpdated
 from backend.search.inputs import BeliefReady
 from backend.search.state import EmitterState
 from backend.search.task import SearchTask
@@ -37,14 +38,16 @@ class Beliefs:
         self._running[emitter.emitter_id] = asyncio.create_task(self._fold(emitter))
 
     async def _fold(self, emitter: EmitterState) -> None:
-        localization = self._task.emitters[emitter.emitter_id]
         try:
-            fact, belief = await asyncio.to_thread(localization.belief_fact, emitter.bearings)
+            fact, belief = await asyncio.to_thread(self._folded, emitter)
         except PlannerError as error:
             log.error("the belief about %s cannot be computed: %s", emitter.emitter_id, error)
             return
         self._newest[emitter.emitter_id] = belief
         self._give(BeliefReady(emitter.bearing_ids, fact))
+
+    def _folded(self, emitter: EmitterState) -> tuple[BeliefUpdated, GridBelief]:
+        return self._task.emitters[emitter.emitter_id].after(emitter.unheard).belief_fact(emitter.bearings)
 
     def newest(self, emitter_id: str) -> tuple[GridBelief, list[tuple[float, float]]] | None:
         """The last belief computed, and its corners (lon, lat): SW, SE, NE, NW."""

@@ -47,6 +47,7 @@ from backend.events import (
     MissionStarted,
     ServerRestarted,
     SourceMuteChanged,
+    SweepRejected,
 )
 from backend.mission import control
 from backend.mission.effects import Effect, OfCraft, Reply
@@ -111,7 +112,7 @@ class _Transition:
     def react(self) -> None:
         """What the facts so far mean to the others: beliefs to fold, craft that waited for them."""
         facts, self.facts = self.facts, []
-        if any(isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted) for fact in facts):
+        if any(_outruns_beliefs(fact) for fact in facts):
             self.update_beliefs()
         if any(_changes_the_search(fact) for fact in facts):
             for craft in self.state.engaged:
@@ -124,6 +125,12 @@ class _Transition:
             stale = not emitter.belief_current and (emitter.measured or not drafted)
             if stale and emitter.emitter_id not in asked:
                 self.effects.append(UpdateBelief(emitter.emitter_id))
+
+
+def _outruns_beliefs(fact: Event) -> bool:
+    """A turn that heard nothing counts where it says what it listened to."""
+    silent = isinstance(fact, SweepRejected) and fact.silence is not None
+    return silent or isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted)
 
 
 def _changes_the_search(fact: Event) -> bool:

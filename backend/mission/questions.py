@@ -62,7 +62,7 @@ class Questions:
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
         emitters = search.wanted or search.sought[:1]
-        wanted = [(task.emitters[one.emitter_id], one.bearings) for one in emitters]
+        wanted = [(task.emitters[one.emitter_id].after(one.unheard), one.bearings) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:
             runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
@@ -93,7 +93,7 @@ class Questions:
         return (
             emitter.emitter_id,
             len(emitter.bearings),
-            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s, hops),
+            await asyncio.to_thread(advise, task.after(emitter.unheard), emitter.bearings, here, speed_m_s, hops),
         )
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:

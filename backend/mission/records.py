@@ -69,7 +69,7 @@ class Records:
             home = search.home or corner_of(search.mission.area)
             try:
                 task = await asyncio.to_thread(localization, search.mission, home, emitter.emitter_id)
-                belief, _ = await asyncio.to_thread(task.belief_fact, emitter.bearings)
+                belief, _ = await asyncio.to_thread(task.after(emitter.unheard).belief_fact, emitter.bearings)
             except (MissionInputError, PlannerError) as error:
                 log.warning("mission %s: no belief can be made of its bearings: %s", mission_id, error)
                 continue

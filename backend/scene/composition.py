@@ -49,7 +49,7 @@ def story_belief(story: Story) -> GridBelief:
     off the event loop.
     """
     task = localization(story.state.search.mission, story.frame.origin, story.emitter.emitter_id)
-    return task.planning_belief(task.planner_bearings(story.emitter.bearings))
+    return task.after(story.emitter.unheard).planning_belief(task.planner_bearings(story.emitter.bearings))
 
 
 def middle_and_extent(shown: Content) -> tuple[tuple[float, float], float]:

@@ -118,7 +118,8 @@ def import_facts(
         facts.append(fact)
         state = evolve(state, fact, began_s or 0.0)
         if isinstance(fact, BearingMeasured):
-            belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
+            known = state.emitters[emitter.emitter_id]
+            belief, _ = task.after(known.unheard).belief_fact(known.bearings)
             facts.append(belief)
     return Import(tuple(facts), tuple(kept))
 

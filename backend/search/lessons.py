@@ -60,7 +60,7 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
     emitter, localized = search.emitters[most], task.emitters[most]
     if (found := found_at(emitter)) is not None:
         return _lesson_at(mission_id, localized, taken(most), source, found)
-    return _lesson(mission_id, localized, emitter.bearings, source)
+    return _lesson(mission_id, localized.after(emitter.unheard), emitter.bearings, source)
 
 
 def found_at(emitter: EmitterState) -> TruthNoted | None:

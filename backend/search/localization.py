@@ -24,6 +24,7 @@ from backend.events import (
     ImportSource,
     PersonSource,
     SourceErrorsFact,
+    SweepRejected,
 )
 from backend.reasons import Reason, carried
 from backend.reasons.search import HeadingsAskew
@@ -39,8 +40,10 @@ from hardware.readings import Place
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief, digest, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
+from planner.belief.joint import unheard as silent_prior
 from planner.belief.moving import Assumed, MovingBelief, moving_prior, predicted, update_moving
 from planner.belief.verdict import verdict
+from planner.detection import Silence
 from planner.movement import DRIFTING_S, PURPOSEFUL_S, WALKING_S, Movement
 from planner.types import (
     Bearing,
@@ -91,6 +94,7 @@ class Localization:
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
+    _after: dict[tuple[Silence, ...], Localization] = field(default_factory=lambda: {}, repr=False, compare=False)
 
     @property
     def home(self) -> Place:
@@ -113,6 +117,28 @@ class Localization:
     def _takes_whole_sweeps(self) -> bool:
         """An emitter that moves is followed by peaks and sigmas: its Kalman filters know no other densities."""
         return isinstance(self.prior, JointBelief) and self.mission.sensor.sweep_evidence == "whole"
+
+    def after(self, unheard: Sequence[SweepRejected]) -> Localization:
+        """The same after turns that heard nothing of the emitter: what they tell is known before any bearing."""
+        told = tuple(self._silence(one) for one in unheard if one.silence is not None)
+        if not told or not isinstance(self.prior, JointBelief):
+            return self
+        found = self._after.get(told)
+        if found is None:
+            found = replace(self, prior=silent_prior(self.prior, told), _folds={}, _after={})
+            self._after.clear()
+            self._after[told] = found
+        return replace(found, problem=self.problem)
+
+    def _silence(self, fact: SweepRejected) -> Silence:
+        """Sectors and pattern turn the other way round in the planner's frame."""
+        said = fact.silence
+        assert said is not None
+        east, north = self.frame.to_enu(fact.place)
+        count = len(said.chances)
+        sectors = (round(count * EAST_DEG / 360.0) - np.arange(count)) % count
+        gain = np.array(said.gain_db)[-np.arange(len(said.gain_db)) % len(said.gain_db)]
+        return Silence(east, north, tuple(np.array(said.chances)[sectors].tolist()), tuple(gain.tolist()))
 
     def without(self, closed: BaseGeometry | None) -> Localization:
         """The same with these places (m ENU) closed to the planner, too."""

@@ -195,17 +195,21 @@ def _change_area(step: SearchStep, given: SearchOrdered, command: ChangeArea) ->
 
 
 def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) -> None:
-    found = step.state.bearing(command.bearing_id)
+    found = step.state.bearing(command.bearing_id) or step.state.silent(command.bearing_id)
     if found is None:
         raise Refused(refusals.NoSuchBearing())
-    emitter, bearing = found
-    if bearing.bearing_id in emitter.excluded:
+    emitter, left_out = found
+    if command.bearing_id in emitter.excluded:
         raise Refused(refusals.BearingExcludedAlready())
     if step.state.stage == "ended":
         raise Refused(refusals.MissionOver())
     step.record(
         BearingExcluded(
-            emitter_id=emitter.emitter_id, bearing_id=command.bearing_id, by=given.by, reason=command.reason
+            emitter_id=emitter.emitter_id,
+            bearing_id=command.bearing_id,
+            by=given.by,
+            reason=command.reason,
+            heard=isinstance(left_out, BearingMeasured),
         )
     )
     update_stale_beliefs(step)

@@ -28,6 +28,7 @@ from backend.events import (
     PreflightChecked,
     ServerRestarted,
     SourceMuteChanged,
+    SweepRejected,
     Topic,
     TruthNoted,
 )
@@ -58,7 +59,7 @@ class EmitterState:
 
     belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
     epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
-    really was; no belief about it depends on that.
+    really was; no belief about it depends on that. silences: turns that heard nothing of it and tell something by that.
     """
 
     emitter_id: str
@@ -71,6 +72,7 @@ class EmitterState:
     claim: BeliefUpdated | None = None
     claimed_at_s: float | None = None
     truth: TruthNoted | None = None
+    silences: tuple[SweepRejected, ...] = ()
 
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
@@ -83,8 +85,13 @@ class EmitterState:
 
     @property
     def bearing_ids(self) -> tuple[str, ...]:
-        """Of those that count, in the order in which they are folded."""
-        return tuple(b.bearing_id for b in self.bearings)
+        """Of those that count, in the order in which they are folded, and of the turns that heard nothing."""
+        return (*(b.bearing_id for b in self.bearings), *(one.sweep_id for one in self.unheard))
+
+    @property
+    def unheard(self) -> tuple[SweepRejected, ...]:
+        """The turns that heard nothing of it and count, in their order."""
+        return tuple(one for one in self.silences if one.sweep_id not in self.excluded)
 
     @property
     def localized(self) -> bool:
@@ -193,6 +200,14 @@ class SearchState:
         """The bearings of all emitters."""
         return tuple(bearing for emitter in self.emitters.values() for bearing in emitter.measured)
 
+    def silent(self, sweep_id: str) -> tuple[EmitterState, SweepRejected] | None:
+        """A turn that heard nothing of an emitter, also one that was excluded; None for an unknown id."""
+        for emitter in self.emitters.values():
+            for one in emitter.silences:
+                if one.sweep_id == sweep_id:
+                    return emitter, one
+        return None
+
     def bearing(self, bearing_id: str) -> tuple[EmitterState, BearingMeasured] | None:
         """Also one that was excluded; None for an unknown id."""
         for emitter in self.emitters.values():
@@ -223,7 +238,9 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(begun, spec=spec, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
         case PlanChosen(place_number=number):
             return replace(state, place_number=max(state.place_number, number))
-        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated():
+        case SweepRejected(silence=None):
+            return state
+        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated() | SweepRejected():
             return _evolve_emitter(state, event, at_s)
         case SourceMuteChanged(source=source, muted=muted):
             sources = state.muted.union((source,)) if muted else state.muted.difference((source,))
@@ -245,7 +262,9 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
 
 
 def _evolve_emitter(
-    state: SearchState, event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated, at_s: float
+    state: SearchState,
+    event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected,
+    at_s: float,
 ) -> SearchState:
     emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id, muted=state.muted))
     number = state.place_number
@@ -253,6 +272,8 @@ def _evolve_emitter(
         case BearingMeasured():
             emitter = replace(emitter, measured=(*emitter.measured, event), belief_current=False)
             number = max(number, event.place_number)
+        case SweepRejected():
+            emitter = replace(emitter, silences=(*emitter.silences, event), belief_current=False)
         case BearingExcluded(bearing_id=bearing_id):
             emitter = _recounted(replace(emitter, excluded=emitter.excluded | {bearing_id}))
         case BearingIncluded(bearing_id=bearing_id):

@@ -8,11 +8,12 @@ from uuid import uuid4
 
 import numpy as np
 
-from backend.events import BearingMeasured, BearingSource, Peak, SweepRejected, TurnFact
+from backend.events import BearingMeasured, BearingSource, Peak, SilenceFact, SweepRejected, TurnFact
 from backend.reasons import Reason, carried
 from backend.reasons.search import QualityTooLow, SweepIncomplete, SweepValue
 from backend.spec import Place, SensorSpec
 from hardware.readings import BearingReading, Sweep
+from hardware.reasons.sweep import NothingAboveNoise
 
 BINS = 180
 
@@ -37,8 +38,10 @@ def sweep_fact(
     reading: BearingReading,
     measurement_time_s: float | None,
     taken_at_s: float | None = None,
+    silence: SilenceFact | None = None,
 ) -> BearingMeasured | SweepRejected:
-    """measurement_time_s None: nobody waited for it. taken_at_s: UTC epoch seconds of the middle of the turn."""
+    """measurement_time_s None: nobody waited for it. taken_at_s: UTC epoch seconds of the middle of the turn. silence:
+    what it tells if nothing was above the noise."""
     binned, fitted = _bins(reading.binned_db), _bins(reading.fitted_db)
     needed: tuple[tuple[SweepValue, float], ...] = (
         ("bearing", reading.bearing_deg),
@@ -54,7 +57,8 @@ def sweep_fact(
     if not reading.accepted or reading.quality < sensor.minimum_quality:
         low = QualityTooLow(reading.quality, sensor.minimum_quality)
         reason = low if reading.reason is None else carried(reading.reason)
-        return rejected(taken, sweep.position, reading.quality, reason, binned, fitted, reading.likelihood)
+        told = silence if isinstance(reading.reason, NothingAboveNoise) else None
+        return rejected(taken, sweep.position, reading.quality, reason, binned, fitted, reading.likelihood, told)
     return BearingMeasured(
         emitter_id=taken.emitter_id,
         source=taken.source,
@@ -90,6 +94,7 @@ def rejected(
     binned_db: list[float | None] | None = None,
     fitted_db: list[float | None] | None = None,
     likelihood: str | None = None,
+    silence: SilenceFact | None = None,
 ) -> SweepRejected:
     """binned_db, fitted_db: (180,) dB, None for a sweep that never got that far. likelihood: packed."""
     nothing: list[float | None] = [None] * BINS
@@ -105,6 +110,7 @@ def rejected(
         binned_db=nothing if binned_db is None else binned_db,
         fitted_db=nothing if fitted_db is None else fitted_db,
         likelihood=likelihood,
+        silence=silence,
         turn=taken.turn,
     )
 

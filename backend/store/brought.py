@@ -160,8 +160,9 @@ def _software(manifest: bytes | None) -> str:
     """A bundle without a manifest is of a Crossfix before there was one."""
     if manifest is None:
         return ""
-    told = _parsed(manifest, MANIFEST)
-    if not isinstance(told, dict) or told.get("schema") != SCHEMA or not isinstance(told.get("version"), int):
+    parsed = _parsed(manifest, MANIFEST)
+    told = cast("dict[str, Any]", parsed) if isinstance(parsed, dict) else {}
+    if told.get("schema") != SCHEMA or not isinstance(told.get("version"), int):
         raise _wrong("not_exported", MANIFEST)
     if told["version"] > SCHEMA_VERSION:
         raise _refused("later")

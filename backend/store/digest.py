@@ -129,7 +129,7 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             return _with_craft(digest, craft_id, after, engaged=after != "ground")
         case BearingMeasured():
             return replace(digest, bearings=digest.bearings + 1)
-        case BearingExcluded():
+        case BearingExcluded(heard=True):
             return replace(digest, bearings=digest.bearings - 1)
         case BearingIncluded():
             return replace(digest, bearings=digest.bearings + 1)

@@ -28,11 +28,16 @@ from planner.belief.grid import (
     smallest_set,
 )
 from planner.belief.source_errors import ErrorPrior, Nodes, SourceErrors, nodes
+from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
-from planner.types import Bearing, FloatArray, Problem
+from planner.types import Bearing, FloatArray, IntArray, Problem
 
 UNKNOWN_SOURCE = ErrorPrior()
 """What is assumed of a source of which nothing is known."""
+
+UNKNOWN_EMITTER = DetectionModel(margin_db=10.0)
+"""Of an emitter of which nothing is known but that it can be heard at all: in the median from 215 m, in one of six from
+less than 100."""
 
 MANY_CELLS = 128 * 128
 """A larger grid is refined only where COARSEST_CELLS are too few: every bearing is weighed on every cell."""
@@ -45,7 +50,8 @@ DEEPEST_REFINEMENT = 16
 class JointBelief(GridBelief):
     """prior: (ny, nx) mass of the cells before any bearing. folded: all bearings so far. priors: what was known of a
     source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
-    now of the errors of each source that took a bearing.
+    now of the errors of each source that took a bearing. silences: turns in which the emitter was not heard, and by
+    what model of detection they count.
     """
 
     prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -53,6 +59,8 @@ class JointBelief(GridBelief):
     priors: Mapping[str, ErrorPrior] = field(default_factory=dict[str, ErrorPrior])
     otherwise: ErrorPrior = UNKNOWN_SOURCE
     errors: tuple[SourceErrors, ...] = ()
+    silences: tuple[Silence, ...] = ()
+    detection: DetectionModel = UNKNOWN_EMITTER
 
     def errors_of(self, source: str) -> SourceErrors | None:
         """None for a source that took no bearing."""
@@ -69,6 +77,19 @@ def joint_prior(
     found = prior_belief(problem)
     same = {one.name: getattr(found, one.name) for one in fields(GridBelief)}
     return JointBelief(**same, prior=found.density, priors={} if priors is None else priors, otherwise=otherwise)
+
+
+def unheard(
+    belief: JointBelief, silences: Sequence[Silence], detection: DetectionModel = UNKNOWN_EMITTER
+) -> JointBelief:
+    """The belief, so far without bearings, with these silences instead of those that it had."""
+    return _weighed(replace(belief, silences=tuple(silences), detection=detection), compiled_evidence.evidence)
+
+
+def log_prior(belief: JointBelief, rows: IntArray, columns: IntArray, x: FloatArray, y: FloatArray) -> FloatArray:
+    """(c,) what is known of cells, with their centres, besides the bearings: the prior's mass and what silence says."""
+    log = np.log(belief.prior[rows, columns])
+    return log + silence_log_likelihood(belief.detection, belief.silences, x, y) if belief.silences else log
 
 
 Weighing = Callable[..., Evidence]
@@ -100,7 +121,7 @@ def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     """All bearings on the cells of the grid: mass of each cell, and of the errors of each source."""
     rows, columns = np.nonzero(belief.prior)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = np.log(belief.prior[rows, columns])
+    log = log_prior(belief, rows, columns, x, y)
     found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
     for source, taken in by_source(belief.folded).items():
         seen, prior = sightings(taken), belief.priors.get(source, belief.otherwise)

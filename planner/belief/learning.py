@@ -19,7 +19,7 @@ import numpy as np
 
 from planner.belief import compiled_evidence
 from planner.belief.evidence import Sightings, sightings
-from planner.belief.joint import JointBelief, by_source
+from planner.belief.joint import JointBelief, by_source, log_prior
 from planner.belief.source_errors import ErrorPrior, Nodes, bias_weights, nodes
 from planner.types import Bearing, FloatArray
 
@@ -37,7 +37,7 @@ def flight_evidence(belief: JointBelief, source: str) -> FloatArray:
     """
     rows, columns = np.nonzero(belief.prior)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = np.log(belief.prior[rows, columns])
+    log = log_prior(belief, rows, columns, x, y)
     taken = by_source(belief.folded)
     for other in (name for name in taken if name != source):
         prior, seen = belief.priors.get(other, belief.otherwise), sightings(taken[other])

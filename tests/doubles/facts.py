@@ -13,6 +13,7 @@ from backend.events import (
     ImportSource,
     PersonSource,
     PlanChosen,
+    SilenceFact,
     SweepRejected,
 )
 from backend.reasons.flight import Ordered, VehicleLinkLost, WatchBroke
@@ -163,6 +164,12 @@ def rejected(attempt: int = 1, number: int = 1, emitter_id: str = FIRST_EMITTER)
         binned_db=[],
         fitted_db=[],
     )
+
+
+def silent(attempt: int = 1, number: int = 1, emitter_id: str = FIRST_EMITTER) -> SweepRejected:
+    """Listened all around with an antenna that hears to every side, and heard nothing."""
+    told = SilenceFact(chances=[1.0] * 16, gain_db=[0.0] * 36)
+    return rejected(attempt, number, emitter_id).model_copy(update={"silence": told})
 
 
 def belief(bearings: int = 0, localized: bool = False, emitter_id: str = FIRST_EMITTER) -> BeliefUpdated:

@@ -9,17 +9,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner.detection import DetectionModel, silence_log_likelihood
+from planner.detection import LATTICE, DetectionModel, Silence, silence_log_likelihood
 
 MODEL = DetectionModel(margin_db=20.0)
 AHEAD = -np.minimum(12.0 * (((np.arange(360) + 180) % 360 - 180) / 60.0) ** 2, 15.0)
 EVERYWHERE = np.full(16, 3.0)
 
 
+def silence(chances: np.ndarray, x: float = 0.0, y: float = 0.0) -> Silence:
+    return Silence(x, y, tuple(chances.tolist()), tuple(AHEAD.tolist()))
+
+
 def at(model: DetectionModel, chances: np.ndarray, distance: float, direction_deg: float) -> float:
     x = np.array([distance * math.cos(math.radians(direction_deg))])
     y = np.array([distance * math.sin(math.radians(direction_deg))])
-    return float(silence_log_likelihood(model, AHEAD, chances, (0.0, 0.0), x, y)[0])
+    return float(silence_log_likelihood(model, [silence(chances)], x, y)[0])
 
 
 def test_silence_speaks_against_near_places_and_not_against_far_ones() -> None:
@@ -39,6 +43,21 @@ def test_a_hundred_pulses_are_not_a_hundred_witnesses() -> None:
     once, often = at(MODEL, EVERYWHERE, 400.0, 0.0), at(MODEL, 30.0 * EVERYWHERE, 400.0, 0.0)
     assert often < once
     assert often > 6.0 * once  # thirty times as many chances, but one emitter of one unknown power
+
+
+def test_ten_turns_at_one_place_are_not_ten_witnesses_and_never_exclude() -> None:
+    x, y = np.array([300.0]), np.array([0.0])
+    one, ten = (float(silence_log_likelihood(MODEL, [silence(EVERYWHERE)] * count, x, y)[0]) for count in (1, 10))
+    assert max(math.log(MODEL.never), 2.0 * one) < ten < one
+
+
+def test_many_places_get_what_each_would_get_alone() -> None:
+    side = np.linspace(-400.0, 400.0, 2 * LATTICE)
+    x, y = np.meshgrid(side, side)
+    turns = [silence(EVERYWHERE), silence(EVERYWHERE, 200.0, -150.0)]
+    found = silence_log_likelihood(MODEL, turns, x, y)
+    some = np.s_[::37, ::29]
+    assert found[some] == pytest.approx(silence_log_likelihood(MODEL, turns, x[some], y[some]), abs=0.05)
 
 
 def test_a_known_strong_emitter_is_excluded_further_out_than_an_unknown_one() -> None:

@@ -20,7 +20,7 @@ type Sweep = { seq: number; fact: BearingMeasured | SweepRejected; leftOut: bool
 function sweepsOf(mission: Pick<MissionView, "bearings" | "rejected">): Sweep[] {
   return [
     ...mission.bearings.map(({ seq, fact, leftOut, excluded }) => ({ seq, fact, leftOut, excluded })),
-    ...mission.rejected.map(({ seq, fact }) => ({ seq, fact, leftOut: false, excluded: false })),
+    ...mission.rejected.map(({ seq, fact, excluded }) => ({ seq, fact, leftOut: excluded, excluded })),
   ].toSorted((a, b) => b.seq - a.seq);
 }
 
@@ -146,6 +146,17 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.attempt", { attempt: fact.attempt })}</div>
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
+        {fact.silence && <div data-testid="sweep-silence">{t(excluded ? "sweep.silence.excluded" : "sweep.silence")}</div>}
+        {fact.silence && !excluded && cursor.value === null && !mission.value.ended && id && (
+          <button
+            type="button"
+            class="small"
+            data-testid="exclude"
+            onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.sweep_id, reason: "" })}
+          >
+            {t("sweep.silence.exclude")}
+          </button>
+        )}
         {fact.turn && <TurnWords turn={fact.turn} />}
       </div>
     );

@@ -14,6 +14,11 @@ export interface Bearing extends At<BearingMeasured> {
   excluded: boolean;
 }
 
+export interface Rejected extends At<SweepRejected> {
+  /** It heard nothing, and somebody left out what that tells. */
+  excluded: boolean;
+}
+
 export type MutedSources = ReadonlySet<string>;
 
 /** One name for each source, as a muted one is remembered by. */
@@ -40,7 +45,7 @@ export interface EmitterState {
   /** Whose bearings do not count. */
   muted: MutedSources;
   bearings: readonly Bearing[];
-  rejected: readonly At<SweepRejected>[];
+  rejected: readonly Rejected[];
   belief: At<BeliefUpdated> | null;
   beliefs: readonly BeliefPoint[];
   /** The last belief that said localized: of an emitter that moves it stands for its moment. */
@@ -69,6 +74,7 @@ const leaving = (state: EmitterState, bearingId: string, leftOut: boolean): Emit
   ...state,
   claim: null,
   bearings: state.bearings.map((b) => (b.fact.bearing_id === bearingId ? counting({ ...b, leftOut }, state.muted) : b)),
+  rejected: state.rejected.map((r) => (r.fact.sweep_id === bearingId ? { ...r, excluded: leftOut } : r)),
 });
 
 /** What was claimed was claimed of other bearings, where the source told anything. */
@@ -82,7 +88,7 @@ export function muteEmitter(state: EmitterState, muted: MutedSources): EmitterSt
 export function foldEmitter(state: EmitterState, event: MissionEvent, seq: number, at: string): EmitterState {
   switch (event.kind) {
     case "sweep_rejected":
-      return { ...state, rejected: [...state.rejected, { fact: event, seq, at }] };
+      return { ...state, rejected: [...state.rejected, { fact: event, seq, at, excluded: false }] };
     case "bearing_measured":
       return { ...state, bearings: [...state.bearings, counting({ fact: event, seq, at, leftOut: false }, state.muted)] };
     case "bearing_excluded":

@@ -121,6 +121,7 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "recording_imported":
       return t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: byWords(event.by) });
     case "bearing_excluded":
+      if (!event.heard) return t("event.silence_excluded", { by: byWords(event.by) });
       return event.reason
         ? t("event.bearing_excluded", { by: byWords(event.by), reason: event.reason })
         : t("event.bearing_excluded.plain", { by: byWords(event.by) });

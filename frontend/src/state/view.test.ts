@@ -26,6 +26,7 @@ it("shows what the sweeps would have told in the place of what they told, each a
     binned_db: [],
     fitted_db: [],
     likelihood: null,
+    silence: null,
     turn: null,
   };
   const belief = { kind: "belief_updated", emitter_id: EMITTER, bearings: 1 } as BeliefUpdated;

@@ -1,7 +1,7 @@
 // A mission as one craft and one emitter show it: what the panels and the map draw. With one of each that is all of it.
-import type { LinkName, MissionPhase, PlanChosen, Reason, SweepRejected, WhatIf } from "../wire";
+import type { LinkName, MissionPhase, PlanChosen, Reason, WhatIf } from "../wire";
 import { type CraftState, emptyCraft, type Lost, pilotHas } from "./craft";
-import { type At, type Bearing, type BeliefPoint, type EmitterState, emptyEmitter } from "./emitter";
+import { type At, type Bearing, type BeliefPoint, type EmitterState, emptyEmitter, type Rejected } from "./emitter";
 import type { MissionState } from "./mission";
 
 export interface Pilot {
@@ -25,7 +25,7 @@ export interface MissionView extends Omit<MissionState, "emitters" | "crafts" | 
   nextPlaceNumber: number;
   attempt: number;
   bearings: readonly Bearing[];
-  rejected: readonly At<SweepRejected>[];
+  rejected: readonly Rejected[];
   belief: EmitterState["belief"];
   beliefs: readonly BeliefPoint[];
   truth: EmitterState["truth"];
@@ -83,7 +83,7 @@ export function suppose(view: MissionView, { belief, plan, sweeps }: Pick<WhatIf
   return {
     ...view,
     bearings: [...told, ...view.bearings.filter((b) => b.excluded)],
-    rejected: sweeps.flatMap((fact) => (fact.kind === "sweep_rejected" ? [{ ...of(fact.sweep_id), fact }] : [])),
+    rejected: sweeps.flatMap((fact) => (fact.kind === "sweep_rejected" ? [{ ...of(fact.sweep_id), fact, excluded: false }] : [])),
     belief: { fact: belief, seq, at },
     plan: plan && { fact: plan, seq, at },
   };

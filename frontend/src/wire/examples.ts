@@ -122,6 +122,7 @@ export const excluded = (bearingId: string): EventOf<"bearing_excluded"> => ({
   bearing_id: bearingId,
   by: "operator",
   reason: "",
+  heard: true,
 });
 
 export const included = (bearingId: string): EventOf<"bearing_included"> => ({

@@ -2071,7 +2071,10 @@ export interface components {
              */
             code: "bearing_counts_already";
         };
-        /** @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. */
+        /**
+         * @description An operator's wish: the belief is folded again without it, the bearing stays in the journal. heard False: it is
+         *     a turn that heard nothing, and bearing_id that of its sweep.
+         */
         BearingExcluded: {
             /**
              * @description discriminator enum property added by openapi-typescript
@@ -2082,6 +2085,8 @@ export interface components {
             bearing_id: string;
             by: string;
             reason: string;
+            /** @default true */
+            heard: boolean;
         };
         BearingExcludedAlready: {
             /**
@@ -7320,6 +7325,14 @@ export interface components {
             admin: boolean;
             has_password: boolean;
         };
+        /**
+         * @description The emitter was listened to and not heard. chances: (16,) to hear it, with the antenna pointing to 0, 22.5, ..
+         *     degrees from north. gain_db: (36,) of the antenna, 0, 10, .. degrees clockwise of its front, below its maximum.
+         */
+        SilenceFact: {
+            chances: number[];
+            gain_db: number[];
+        };
         /** @description above_db: the strongest reading over the noise. */
         SilentAt: {
             file: string;
@@ -7652,7 +7665,7 @@ export interface components {
         };
         /**
          * @description No bearing came of this turn. quality: in [0, 1]. binned_db, fitted_db, likelihood, turn: as in
-         *     BearingMeasured.
+         *     BearingMeasured. silence: the emitter should have been heard, were it near; None: the turn says nothing of that.
          */
         SweepRejected: {
             /**
@@ -7671,6 +7684,7 @@ export interface components {
             binned_db: (number | null)[];
             fitted_db: (number | null)[];
             likelihood: string | null;
+            silence: components["schemas"]["SilenceFact"] | null;
             turn: components["schemas"]["TurnFact"] | null;
         };
         /** @description attempt: counts the turns at this place from 1. */

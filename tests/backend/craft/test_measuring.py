@@ -67,6 +67,9 @@ async def test_an_emitter_that_was_not_heard_rejects_its_own_sweep_only() -> Non
     assert isinstance(carrier.fact, BearingMeasured)
     assert isinstance(unheard.fact, SweepRejected)
     assert unheard.fact.reason == NoPulseHeard()
+    assert unheard.fact.silence is not None
+    assert sum(unheard.fact.silence.chances) > 0.0
+    assert max(unheard.fact.silence.gain_db) == 0.0
     assert unheard.sweep is None
 
 

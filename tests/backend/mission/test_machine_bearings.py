@@ -13,6 +13,7 @@ from facts import (
     bearing,
     plan,
     rejected,
+    silent,
 )
 from walks import Walk, commanded, of_craft, refusal, sent
 
@@ -79,6 +80,21 @@ def test_one_craft_finds_two_emitters_with_the_same_turns_and_comes_home_when_bo
     assert sent(walk.believe(True, SECOND)) == [effects.ReturnHome()]
     walk.to_craft(inputs.Landed())
     assert walk.search.outcome == "localized"
+    assert fold(walk.recorded) == walk.state
+
+
+def test_after_a_silent_place_the_next_is_planned_with_what_the_silence_tells() -> None:
+    walk = Walk().to("measuring")
+    for attempt in range(1, SPEC.sensor.maximum_retakes + 1):
+        asked = walk.to_craft(inputs.SweepTaken((silent(attempt),)))
+        assert UpdateBelief(FIRST_EMITTER) in asked
+        assert walk.craft.phase == "measuring"
+        assert sent(walk.believe()) == [], "a belief does not disturb the turn that is taken again"
+    walk.to_craft(inputs.SweepTaken((silent(SPEC.sensor.maximum_retakes + 1),)))
+    assert walk.craft.phase == "planning"
+    (planned,) = of_craft(walk.believe())
+    assert isinstance(planned, effects.PlanNext)
+    assert planned.avoid == (walk.craft.avoid[-1],)
     assert fold(walk.recorded) == walk.state
 
 

@@ -7,18 +7,20 @@ import math
 
 import numpy as np
 import pytest
+from facts import rejected
 from ground import AREA, FRAME, HOME, towards
 
-from backend.events import BearingMeasured, BeliefUpdated, PersonSource
+from backend.events import BearingMeasured, BeliefUpdated, PersonSource, SilenceFact, SweepRejected
 from backend.reasons.search import BearingsCorrected
 from backend.search.localization import Localization, localization, source_name
 from backend.search.machine import SearchStep, doubt_headings
 from backend.search.planning import foreseen
 from backend.search.source_priors import priors_of, unknown_errors
 from backend.search.state import SearchState
-from backend.spec import MissionSpec, SensorSpec
+from backend.spec import MissionSpec, Polygon, SensorSpec
 from hardware.direction_finding.circle import SweepLikelihood
 from hardware.readings import Place
+from planner.belief.estimate import mass_within
 from planner.belief.joint import JointBelief
 
 TARGET = (120.0, 60.0)
@@ -73,6 +75,54 @@ def test_a_mission_takes_of_a_sweep_what_its_specification_says() -> None:
     assert whole.belief_fact(damaged)[0].digest == peak.belief_fact(bare)[0].digest
     independent = task(sweep_evidence="whole")
     assert independent.belief_fact(echoed)[0].digest == task().belief_fact(bare)[0].digest
+
+
+def silence(x: float, y: float, sectors: tuple[int, ...] = tuple(range(16))) -> SweepRejected:
+    """Heard nothing with an antenna that hears ahead only, while it pointed to these sectors, clockwise from north."""
+    told = SilenceFact(
+        chances=[5.0 if k in sectors else 0.0 for k in range(16)],
+        gain_db=[0.0 if min(k, 36 - k) <= 4 else -40.0 for k in range(36)],
+    )
+    return rejected(1, int(x + y)).model_copy(update={"place": FRAME.to_geo(x, y), "silence": told})
+
+
+def wide() -> Localization:
+    """Two kilometres square about the home."""
+    corners = [FRAME.to_geo(x, y) for x, y in ((-1e3, -1e3), (1e3, -1e3), (1e3, 1e3), (-1e3, 1e3), (-1e3, -1e3))]
+    area = Polygon(coordinates=[[(c.lon, c.lat) for c in corners]])
+    return localization(MissionSpec(name="m", area=area, sensor=SensorSpec(bearing_errors="joint")), HOME)
+
+
+def mass_near(task_: Localization, x: float, y: float, reach_m: float = 100.0) -> float:
+    return mass_within(task_.planning_belief(()), x, y, reach_m)
+
+
+def test_what_was_not_heard_makes_places_less_likely_where_the_antenna_pointed() -> None:
+    before = wide()
+    all_round, east = before.after([silence(0.0, 0.0)]), before.after([silence(0.0, 0.0, sectors=(3, 4, 5))])
+    assert mass_near(all_round, 0.0, 0.0) < 0.4 * mass_near(before, 0.0, 0.0)
+    assert mass_near(all_round, 800.0, 0.0) > mass_near(before, 800.0, 0.0)
+    assert mass_near(east, 150.0, 0.0) < 0.6 * mass_near(before, 150.0, 0.0)
+    for x, y in ((-150.0, 0.0), (0.0, 200.0), (0.0, -200.0)):
+        assert mass_near(east, x, y) > 0.95 * mass_near(before, x, y)
+
+
+def test_silence_counts_with_bearings_in_any_order_of_calls_and_gives_way_to_them() -> None:
+    seen, quiet = turned(0.0), [silence(*TARGET)]
+    heard = JOINT.after(quiet)
+    assert heard.after([]) is heard
+    digests = [task(bearing_errors="joint").after(quiet).belief_fact(seen)[0].digest, heard.belief_fact(seen)[0].digest]
+    assert digests[0] == digests[1] != JOINT.belief_fact(seen)[0].digest
+    assert JOINT.after(quiet).belief_fact(seen[:3])[0].digest == heard.belief_fact(seen[:3])[0].digest
+    found = heard.belief_fact(seen)[0].estimate
+    assert found is not None
+    assert math.dist(FRAME.to_enu(Place(lat=found.lat, lon=found.lon)), TARGET) < 6.0
+
+
+def test_silence_tells_nothing_where_errors_are_independent_or_the_turn_says_not_what_it_listened_to() -> None:
+    assert task().after([silence(*TARGET)]).belief_fact(turned(0.0))[0] == task().belief_fact(turned(0.0))[0]
+    bare = silence(*TARGET).model_copy(update={"silence": None})
+    assert JOINT.after([bare]) is JOINT
 
 
 def test_a_turned_compass_is_found_used_and_said_clockwise() -> None:

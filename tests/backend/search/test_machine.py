@@ -23,6 +23,8 @@ from facts import (
     WAITING_SPEC,
     bearing,
     belief,
+    rejected,
+    silent,
 )
 
 from backend import commands
@@ -319,6 +321,26 @@ def test_a_bearing_is_excluded_once_and_only_where_it_is_known() -> None:
     assert next(fact for fact in walk.recorded if isinstance(fact, BearingExcluded)).emitter_id == FIRST_EMITTER
     again, other = (walk.order(commands.ExcludeBearing(bearing_id=name)) for name in ("b1", "b9"))
     assert (refusal(again), refusal(other)) == (refusals.BearingExcludedAlready(), refusals.NoSuchBearing())
+
+
+def test_a_turn_that_heard_nothing_outruns_the_belief_and_can_be_left_out_like_a_bearing() -> None:
+    walk = SearchWalk().to("open")
+    walk.arrive(bearing(1, source=PERSON))
+    walk.believe(localized=True)
+    walk.fold(rejected(1, 2))
+    assert walk.state.localized, "a turn that was refused for another reason tells nothing"
+    walk.fold(silent(1, 3))
+    emitter = walk.state.emitters[FIRST_EMITTER]
+    assert (emitter.bearing_ids, emitter.localized, len(emitter.bearings)) == (("b1", "r3-1"), False, 1)
+    assert not facts_of(walk.give(BeliefReady(("b1",), belief(1)))), "a belief without it is no longer current"
+    walk.believe(localized=True)
+    assert walk.order(commands.ExcludeBearing(bearing_id="r3-1"))[-1] == UpdateBelief(FIRST_EMITTER)
+    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
+    (left_out,) = [fact for fact in walk.recorded if isinstance(fact, BearingExcluded)]
+    assert not left_out.heard
+    again = walk.order(commands.ExcludeBearing(bearing_id="r3-1"))
+    assert refusal(again) == refusals.BearingExcludedAlready()
+    assert refusal(walk.order(commands.ExcludeBearing(bearing_id="r2-1"))) == refusals.NoSuchBearing()
 
 
 def test_a_bearing_counts_again_in_its_old_place_and_the_belief_is_the_same() -> None:
