@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.belief.grid import GridBelief
-from planner.types import FloatArray, IntArray, SectorTurns
+from planner.types import FloatArray, SectorTurns
 
 DIRECTIONS = 360
 COARSE = 72

@@ -30,7 +30,7 @@ from backend.mission.review import variants_of
 from backend.reasons import Reason, carried
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.spec import Place
-from backend.wire.resources import Course, CoursePoint, MissionCourses
+from backend.wire.courses import Course, CoursePoint, MissionCourses
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
