@@ -177,7 +177,7 @@ class BearingExcluded(Fact):
 
 
 class BearingIncluded(Fact):
-    """A bearing that was left out counts again, in its old place in the order."""
+    """A bearing, or a turn that heard nothing, that was left out counts again, in its old place in the order."""
 
     kind: Literal["bearing_included"] = "bearing_included"
     emitter_id: Id

@@ -216,7 +216,7 @@ def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) ->
 
 
 def _include(step: SearchStep, given: SearchOrdered, command: IncludeBearing) -> None:
-    found = step.state.bearing(command.bearing_id)
+    found = step.state.bearing(command.bearing_id) or step.state.silent(command.bearing_id)
     if found is None:
         raise Refused(refusals.NoSuchBearing())
     emitter, _ = found

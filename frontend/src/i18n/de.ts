@@ -310,6 +310,7 @@ export const de: Record<MessageKey, string> = {
   "sweep.silence": "Hier war nichts zu hören: Orte in der Nähe gelten als weniger wahrscheinlich.",
   "sweep.silence.excluded": "Hier war nichts zu hören; das zählt nicht mehr.",
   "sweep.silence.exclude": "Diese Stille weglassen",
+  "sweep.silence.include": "Diese Stille wieder zählen",
   "sweep.include": "Diese Peilung wieder zählen",
   "sweep.muted": "stumm",
   "sweep.mute": "{source} stummschalten",

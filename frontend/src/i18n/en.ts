@@ -208,6 +208,7 @@ export const en = {
   "sweep.silence": "Nothing was heard here: places nearby count as less likely.",
   "sweep.silence.excluded": "Nothing was heard here; that is left out.",
   "sweep.silence.exclude": "Leave this silence out",
+  "sweep.silence.include": "Count this silence again",
   "sweep.include": "Count this bearing again",
   "sweep.muted": "muted",
   "sweep.mute": "Mute {source}",

@@ -1,7 +1,7 @@
 // The newest sweep, or the one picked: plot, bearing, quality, why it was refused, leave it out.
 import { useState } from "preact/hooks";
 import { send } from "../commands/send";
-import { reasonText, t } from "../i18n";
+import { type MessageKey, reasonText, t } from "../i18n";
 import { sourceKey } from "../state/emitter";
 import { sweep as sweepHeard } from "../state/heard";
 import { cursor } from "../state/moment";
@@ -104,6 +104,18 @@ function mutableOf(source: BearingSource): { of: "person" | "import"; name: stri
   }
 }
 
+/** of: the bearing, or the sweep of a turn that heard nothing. */
+function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
+  const order = leftOut
+    ? ({ kind: "include_bearing", bearing_id: of } as const)
+    : ({ kind: "exclude_bearing", bearing_id: of, reason: "" } as const);
+  return (
+    <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={() => void send("sweep", id, order)}>
+      {t(words)}
+    </button>
+  );
+}
+
 /** Whether a bearing counts is an operator's wish, and can be undone. */
 function Counting({ id, fact, leftOut }: { id: string; fact: BearingMeasured; leftOut: boolean }) {
   const { source, bearing_id } = fact;
@@ -111,16 +123,7 @@ function Counting({ id, fact, leftOut }: { id: string; fact: BearingMeasured; le
   const muted = mission.value.muted.has(sourceKey(source));
   return (
     <div class="sweep-counting">
-      <button
-        type="button"
-        class="small"
-        data-testid={leftOut ? "include" : "exclude"}
-        onClick={() =>
-          void send("sweep", id, leftOut ? { kind: "include_bearing", bearing_id } : { kind: "exclude_bearing", bearing_id, reason: "" })
-        }
-      >
-        {t(leftOut ? "sweep.include" : "sweep.exclude")}
-      </button>
+      <CountButton id={id} of={bearing_id} leftOut={leftOut} words={leftOut ? "sweep.include" : "sweep.exclude"} />
       {mutable && (
         <button
           type="button"
@@ -147,15 +150,8 @@ function Facts({ sweep }: { sweep: Sweep }) {
         <div>{t("sweep.quality", { quality: formatNumber(fact.quality, 2) })}</div>
         <div class="refused">{t("sweep.rejected", { reason: reasonText(fact.reason) })}</div>
         {fact.silence && <div data-testid="sweep-silence">{t(excluded ? "sweep.silence.excluded" : "sweep.silence")}</div>}
-        {fact.silence && !excluded && cursor.value === null && !mission.value.ended && id && (
-          <button
-            type="button"
-            class="small"
-            data-testid="exclude"
-            onClick={() => void send("sweep", id, { kind: "exclude_bearing", bearing_id: fact.sweep_id, reason: "" })}
-          >
-            {t("sweep.silence.exclude")}
-          </button>
+        {fact.silence && cursor.value === null && !mission.value.ended && id && (
+          <CountButton id={id} of={fact.sweep_id} leftOut={excluded} words={excluded ? "sweep.silence.include" : "sweep.silence.exclude"} />
         )}
         {fact.turn && <TurnWords turn={fact.turn} />}
       </div>

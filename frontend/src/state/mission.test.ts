@@ -92,6 +92,28 @@ describe("the mission as a fold of its events", () => {
     expect(claimed(mute(person("Ben"), true))).toEqual(claim);
   });
 
+  it("marks the silence of a turn that was left out, until it counts again", () => {
+    const silent = (sweepId: string): MissionEvent => ({
+      kind: "sweep_rejected",
+      emitter_id: someBearing().emitter_id,
+      source: someBearing().source,
+      sweep_id: sweepId,
+      place_number: 1,
+      attempt: 1,
+      quality: 0,
+      reason: { code: "no_pulse_heard" },
+      place: { lat: 1, lon: 2 },
+      binned_db: [],
+      fitted_db: [],
+      likelihood: null,
+      silence: { chances: [1], gain_db: [0] },
+      turn: null,
+    });
+    const left = [silent("a"), silent("b"), { ...excluded("b"), heard: false }];
+    expect(seen(...left).rejected.map((r) => r.excluded)).toEqual([false, true]);
+    expect(seen(...left, included("b")).rejected.map((r) => r.excluded)).toEqual([false, false]);
+  });
+
   it("forgets the plan that was vetoed", () => {
     const vetoed: MissionEvent = { kind: "plan_vetoed", craft_id: CRAFT, place: { lat: 1, lon: 2 }, by: "operator" };
     expect(seen(somePlan(), vetoed).plan).toBeNull();

@@ -2095,7 +2095,7 @@ export interface components {
              */
             code: "bearing_excluded_already";
         };
-        /** @description A bearing that was left out counts again, in its old place in the order. */
+        /** @description A bearing, or a turn that heard nothing, that was left out counts again, in its old place in the order. */
         BearingIncluded: {
             /**
              * @description discriminator enum property added by openapi-typescript
