@@ -49,6 +49,8 @@ OUT = os.environ.get("CROSSFIX_FUZZ_OUT")
 WITHOUT = set(os.environ.get("CROSSFIX_FUZZ_WITHOUT", "").split(","))
 """Tags of operations to leave alone."""
 
+schemathesis.serializer.alias("application/zip", "application/octet-stream")  # a bundle
+
 CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance, response_schema_conformance]
 
 
