@@ -226,7 +226,9 @@ class Restarted:
 
 @dataclass(frozen=True, slots=True)
 class Leaving:
-    """This server is about to end; nobody is there to fly on."""
+    """This server is about to end; nobody is there to fly on. homeward: the autopilot returns or lands by itself."""
+
+    homeward: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -155,8 +155,9 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _timer(step, given)
         case Restarted(authority=authority):
             restarted(step, authority)
-        case Leaving():
-            if craft.engaged and craft.phase in AUTOMATIC and not craft.taken_over:
+        case Leaving(homeward=homeward):
+            needs_us = craft.phase in AUTOMATIC or (craft.phase == "returning" and not homeward)
+            if craft.engaged and needs_us and not craft.taken_over:
                 reason = flight.ServerEnds()
                 step.record(HoldOrdered(craft_id=craft.craft_id, by=None, reason=reason))
                 hold(step, reason)

@@ -160,9 +160,10 @@ class MissionRunner:
             self.give(ToCraft(craft.equipment.craft_id, craft_inputs.Restarted(authority)))
 
     def leave(self) -> None:
-        """The server is about to end: what flies by itself is held."""
-        for craft_id in self.crafts:
-            self.give(ToCraft(craft_id, craft_inputs.Leaving()))
+        """The server is about to end: what only flies on with it is held, a return by our own way points too."""
+        for craft_id, craft in self.crafts.items():
+            homeward = craft.equipment.vehicle.telemetry().authority.homeward
+            self.give(ToCraft(craft_id, craft_inputs.Leaving(homeward)))
 
     def _adopt(self) -> None:
         task = self._next_task

@@ -108,6 +108,6 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         *(inputs.TimerExpired(name) for name in TIMERS),
         inputs.Broke(BROKE),
         *(inputs.Restarted(authority) for authority in AUTHORITIES),
-        inputs.Leaving(),
+        *(inputs.Leaving(homeward) for homeward in (False, True)),
         inputs.Abandoned(Interrupted("later_mission")),
     ]

@@ -29,8 +29,8 @@ async def test_what_flies_by_itself_is_held_and_confirmed_before_the_server_ends
     assert stage.journal.of_kind(mission_id, HoldOrdered)[-1].reason == ServerEnds()
 
 
-@pytest.mark.parametrize("before", [commands.Hold(), commands.Return()])
-async def test_what_is_held_or_comes_home_is_left_so(stage: Stage, before: commands.ForCraft) -> None:
+@pytest.mark.parametrize("before", [commands.Hold(), commands.Land()])
+async def test_what_is_held_or_lands_by_itself_is_left_so(stage: Stage, before: commands.ForCraft) -> None:
     mission_id = await flying(stage)
     await order(stage, mission_id, before)
     await stage.until(mission_id, "order_done")
@@ -38,6 +38,32 @@ async def test_what_is_held_or_comes_home_is_left_so(stage: Stage, before: comma
     (left,) = await stage.room.flights.leave(5.0)
     assert left.confirmed
     assert stage.vehicle.names == sent
+
+
+async def coming_home(stage: Stage) -> None:
+    """By our own way points, on the way to the first of them."""
+    mission_id = await flying(stage, "measuring")
+    stage.vehicle.stuck = True
+    await order(stage, mission_id, commands.Return())
+    await stage.until_phase(mission_id, "returning")
+    await stage.until_true(lambda: stage.vehicle.names[-1] == "goto")
+    stage.vehicle.stuck = False
+
+
+async def test_a_return_by_our_own_way_points_is_held(stage: Stage) -> None:
+    """It would stand still at the next of them, and no autopilot brings it home from there but by its failsafe."""
+    await coming_home(stage)
+    (left,) = await stage.room.flights.leave(5.0)
+    assert (left.phase, left.confirmed) == ("hold", True)
+    assert stage.vehicle.names[-1] == "hold"
+
+
+async def test_a_return_that_the_autopilot_flies_is_left_to_it(stage: Stage) -> None:
+    await coming_home(stage)
+    stage.vehicle.control.restore(replace(stage.vehicle.control.authority, kind="return"))
+    (left,) = await stage.room.flights.leave(0.3)
+    assert left.phase == "returning"
+    assert stage.vehicle.names[-1] == "goto"
 
 
 async def test_a_vehicle_that_refuses_every_order_is_left_to_its_failsafe(stage: Stage) -> None:
