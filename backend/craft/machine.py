@@ -157,7 +157,7 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             restarted(step, authority)
         case Leaving(homeward=homeward):
             needs_us = craft.phase in AUTOMATIC or (craft.phase == "returning" and not homeward)
-            if craft.engaged and needs_us and not craft.taken_over:
+            if craft.engaged and needs_us and not craft.taken_over and craft.authority.who != "failsafe":
                 reason = flight.ServerEnds()
                 step.record(HoldOrdered(craft_id=craft.craft_id, by=None, reason=reason))
                 hold(step, reason)
