@@ -94,7 +94,8 @@ check-page:
 kernel: setup-dev ## compiled once here, not by each test worker
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 
-UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadgroup --hypothesis-profile ci -m "not system and not browser and not long"
+# By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
+UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not system and not browser and not long"
 
 unit-and-system: # missions wait for the wall's clock, and the unit tests fill their pauses
 	@mkdir -p $(STAMPS); $(MAKE) --no-print-directory system >$(STAMPS)/system.log 2>&1 & missions=$$!; \

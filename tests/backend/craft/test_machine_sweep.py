@@ -31,8 +31,8 @@ from backend.search.machine import transition as transition_search
 from backend.search.state import SearchState, Stage
 from backend.search.state import evolve as evolve_search
 
-# A million steps, made once: by one worker, and without the tracer that would make them five times as slow.
-pytestmark = [pytest.mark.xdist_group("craft sweep"), pytest.mark.no_cover, pytest.mark.timeout(900)]
+# A million steps, made once, and without the tracer that would make them five times as slow.
+pytestmark = [pytest.mark.no_cover, pytest.mark.timeout(900)]
 
 STAGES: tuple[Stage, ...] = get_args(Stage)
 
