@@ -134,6 +134,8 @@ def _left_words(left: LeftFlying) -> str:
         )
     if left.who == "failsafe":
         return "its autopilot brings it home by itself."
+    if left.who == "nobody":
+        return "this server steers it no longer. Look at the vehicle."
     match left.phase:
         case "hold":
             return "held in the air. Without this server its autopilot's failsafe acts; the next one finds it in hold."

@@ -100,6 +100,10 @@ class LooseCraft:
         first, answer = self._answered[command_id]
         return answer if first == command else CommandIdReused(first.kind)
 
+    def leave(self) -> None:
+        """The server is about to end: a return by our own way points is held."""
+        self._give(inputs.Leaving(self.equipment.vehicle.telemetry().authority.homeward))
+
     def _order(self, by: str, command: LooseCommand) -> Reason | None:
         telemetry = self.equipment.vehicle.telemetry()
         if self.state is None:

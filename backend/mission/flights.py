@@ -64,7 +64,7 @@ WHILE_ENDING = (commands.Hold, commands.Return, commands.Land, commands.Abort, c
 
 @dataclass(frozen=True, slots=True)
 class LeftFlying:
-    """A craft of a mission when the server ends. confirmed: it does what its phase says; False: it has not confirmed
+    """A craft in the air when the server ends. confirmed: it does what its phase says; False: it has not confirmed
     what it was ordered, and its autopilot's failsafe has to act."""
 
     craft_id: str
@@ -335,20 +335,25 @@ class Flights:
         closed at once, so that nothing of ours keeps that from acting.
         """
         self.ending, runner = True, self.active
-        if runner is None:
-            return []
-        runner.leave()
+        if runner is not None:
+            runner.leave()
+        for loose in self.loose.values():
+            loose.leave()
         until = time.monotonic() + patience_s
+
+        def flying() -> list[CraftState]:
+            engaged = () if runner is None else runner.state.engaged
+            return [*engaged, *(loose.state for loose in self.loose.values() if loose.state is not None)]
 
         def under_way(craft: CraftState) -> bool:
             return craft.ladder is not None and craft.ladder.stage != "done"
 
-        while any(map(under_way, runner.state.engaged)) and time.monotonic() < until:  # noqa: ASYNC110 (a few seconds)
+        while any(map(under_way, flying())) and time.monotonic() < until:  # noqa: ASYNC110 (a few seconds)
             await asyncio.sleep(0.02)
-        left = [LeftFlying(c.craft_id, c.phase, c.authority.who, not under_way(c)) for c in runner.state.engaged]
+        left = [LeftFlying(c.craft_id, c.phase, c.authority.who, not under_way(c)) for c in flying()]
         for craft in left:
-            if not craft.confirmed and craft.craft_id in runner.crafts:
-                await runner.crafts[craft.craft_id].equipment.vehicle.close()
+            if not craft.confirmed and craft.craft_id in self.equipment.crafts:
+                await self.equipment.crafts[craft.craft_id].vehicle.close()
         return left
 
     async def close(self) -> None:

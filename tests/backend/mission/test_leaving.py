@@ -120,6 +120,21 @@ async def test_the_same_door_reaches_a_craft_in_no_mission(stage: Stage) -> None
     await stage.until_true(lambda: stage.vehicle.names == ["land"])
 
 
+async def test_a_craft_in_no_mission_is_named_and_held_on_its_way(stage: Stage) -> None:
+    stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, altitude_relative_m=40.0)
+    flights, loose = stage.room.flights, stage.room.flights.loose[FIRST_CRAFT]
+    loose.tick()
+    (left,) = await flights.leave(5.0)
+    assert (left.craft_id, left.who, left.confirmed) == (FIRST_CRAFT, "nobody", True)
+    assert stage.vehicle.names == [], "nothing is sent to what nobody ordered anywhere"
+    held = await flights.command_craft(
+        FIRST_CRAFT, commands.CraftRequest(command_id=uuid4(), command=commands.Hold()), commands.Author("anna")
+    )
+    assert held.accepted
+    (left,) = await flights.leave(5.0)
+    assert (left.phase, left.who, left.confirmed) == ("hold", "ours", True)
+
+
 async def test_the_door_to_a_craft_does_not_pass_by_its_missions_control(stage: Stage) -> None:
     """A resume to the craft steers the search that it flies for; a hold stops it, whoever controls."""
     flights = stage.room.flights
