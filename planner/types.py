@@ -144,7 +144,7 @@ class SectorTurns:
     widest: float = np.deg2rad(270.0)
 
     def width(self, arc: float) -> float:
-        """Rad to turn for expected directions within an arc of so many rad."""
+        """Radians to turn for expected directions within an arc, rad."""
         wanted = max(arc + 2.0 * self.margin, self.narrowest)
         return wanted if wanted <= self.widest else 2.0 * np.pi
 

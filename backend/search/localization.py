@@ -31,6 +31,7 @@ from backend.reasons.search import HeadingsAskew
 from backend.search import area
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.search.errors import MissionInputError
+from backend.search.given import motion_of, prior_of
 from backend.search.source_priors import priors_of
 from backend.spec import MissionSpec
 from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
@@ -48,21 +49,13 @@ from planner.movement import DRIFTING_S, PURPOSEFUL_S, WALKING_S, Movement
 from planner.types import (
     Bearing,
     Estimate,
-    FullMotion,
-    GaussianPrior,
     InconsistentBearings,
-    LinearConstantMotion,
-    LinearMotion,
     LocalizationRule,
-    Motion,
     Peak,
     PlannerError,
-    Prior,
     Problem,
     Ring,
-    RingPrior,
     SectorTurns,
-    UniformPrior,
 )
 
 DOUBT = 0.05
@@ -290,13 +283,13 @@ def localization(
         sigma=math.radians(sensor.sigma_deg),
         threshold=wanted.expected_rmse_m,
         measurement_time=sensor.measurement_time_s,
-        motion=_motion(planner.motion),
+        motion=motion_of(planner.motion),
         flight_area=area.region(fence),
         no_fly=area.region(unary_union([*zones, closed or Point()]).buffer(KEEP_OFF_M, join_style="mitre")),
         standoff=planner.standoff_m,
         action_spacing=planner.action_spacing_m,
         estimator=planner.estimator,
-        prior=_prior(emitter.prior, frame),
+        prior=prior_of(emitter.prior, frame),
         sector_turns=_sector_turns(mission),
     )
     if (walk := _walk(emitter.movement)) is not None:
@@ -385,29 +378,3 @@ def _errors_facts(belief: GridBelief, measured: Sequence[BearingMeasured]) -> li
         )
         for one in belief.errors
     ]
-
-
-def _motion(motion: spec.MotionSpec) -> Motion:
-    match motion:
-        case spec.LinearMotionSpec():
-            return LinearMotion(motion.speed_m_s)
-        case spec.LinearConstantMotionSpec():
-            return LinearConstantMotion(motion.speed_m_s, motion.constant_s)
-        case spec.FullMotionSpec():
-            rate = math.radians(motion.turn_rate_deg_s)
-            return FullMotion(rate, motion.acceleration_m_s2, motion.speed_m_s, motion.constant_s)
-
-
-def _prior(prior: spec.PriorSpec, frame: LocalFrame) -> Prior:
-    match prior:
-        case spec.UniformPriorSpec():
-            return UniformPrior()
-        case spec.GaussianPriorSpec():
-            x, y = frame.to_enu(prior.centre)
-            angle = compass_to_angle(prior.major_axis_deg)
-            turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-            variances = np.diag([prior.sigma_major_m**2, prior.sigma_minor_m**2])
-            return GaussianPrior(x, y, turn @ variances @ turn.T)
-        case spec.RingPriorSpec():
-            x, y = frame.to_enu(prior.centre)
-            return RingPrior(x, y, prior.inner_m, prior.outer_m)
