@@ -9,7 +9,6 @@ from facts import (
     AREA,
     CHECK,
     FAILED_CHECK,
-    HOME,
     IMPORT,
     NO_ANSWER,
     NOT_YET,
@@ -23,24 +22,18 @@ from facts import (
     WAITING_SPEC,
     bearing,
     belief,
-    rejected,
-    silent,
 )
+from search_walk import STARTED, SearchWalk, facts_of, muting, refusal
 
 from backend import commands
 from backend.events import (
     AlertRaised,
-    BearingExcluded,
-    Event,
-    MissionDrafted,
     MissionEnded,
-    MissionStarted,
-    PersonSource,
     RecordingImported,
 )
 from backend.reasons import NoLongerLocalized, NotLocalized, Reason, flight, refusals
 from backend.reasons.search import HeadingsAskew, Localized, LocalizedAgainst
-from backend.search.effects import Record, Refuse, SearchEffect, SearchElsewhere, UpdateBelief
+from backend.search.effects import SearchEffect, SearchElsewhere, UpdateBelief
 from backend.search.inputs import (
     BearingsArrived,
     BeliefReady,
@@ -53,62 +46,9 @@ from backend.search.inputs import (
 )
 from backend.search.machine import transition
 from backend.search.state import SearchState, Stage, evolve
-from backend.spec import FIRST_EMITTER, MissionSpec
+from backend.spec import FIRST_EMITTER
 
 STAGES: tuple[Stage, ...] = get_args(Stage)
-STARTED = MissionStarted(craft_id="craft-1", by="anna", home=HOME, home_amsl_m=100.0, software="test")
-
-
-def facts_of(asked: tuple[SearchEffect, ...]) -> list[Event]:
-    return [effect.event for effect in asked if isinstance(effect, Record)]
-
-
-def refusal(asked: tuple[SearchEffect, ...]) -> Reason | None:
-    return next((effect.reason for effect in asked if isinstance(effect, Refuse)), None)
-
-
-def muting(person: str, muted: bool) -> commands.MuteSource:
-    return commands.MuteSource(of="person", name=person, muted=muted)
-
-
-class SearchWalk:
-    def __init__(self, spec: MissionSpec = SPEC) -> None:
-        self.at_s = 1_000.0
-        self.recorded: list[Event] = []
-        self.state = SearchState()
-        self.fold(MissionDrafted(spec=spec))
-
-    def fold(self, *facts: Event) -> None:
-        for fact in facts:
-            self.state = evolve(self.state, fact, self.at_s)
-            self.recorded.append(fact)
-
-    def give(self, given: SearchInput) -> tuple[SearchEffect, ...]:
-        self.at_s += 1.0
-        expected, asked = transition(self.state, given, self.at_s)
-        self.fold(*facts_of(asked))
-        assert self.state == expected, "the new state is the fold of the recorded facts"
-        return asked
-
-    def order(self, command: commands.ForSearch, **more: object) -> tuple[SearchEffect, ...]:
-        return self.give(SearchOrdered("anna", command, **more))  # type: ignore[arg-type]
-
-    def arrive(self, *facts: Event) -> tuple[SearchEffect, ...]:
-        return self.give(BearingsArrived(facts))
-
-    def believe(self, localized: bool = False, emitter_id: str = FIRST_EMITTER) -> tuple[SearchEffect, ...]:
-        ids = self.state.emitters[emitter_id].bearing_ids
-        return self.give(BeliefReady(ids, belief(len(ids), localized, emitter_id)))
-
-    def to(self, stage: Stage) -> SearchWalk:
-        if stage != "draft":
-            self.give(PreflightDone((CHECK,)))
-        if stage in ("open", "ended"):
-            self.fold(STARTED)
-        if stage == "ended":
-            self.give(SearchOver(flight.Ordered("abort", "anna"), "aborted"))
-        assert self.state.stage == stage
-        return self
 
 
 def every_input(state: SearchState) -> list[SearchInput]:
@@ -311,85 +251,6 @@ def test_the_area_changes_in_hold_only_and_the_bearings_count_on() -> None:
     assert walk.state.spec == SPEC.searching(OTHER_AREA)
     assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
     assert (walk.state.localized, walk.state.localized_at_s) == (False, None)
-
-
-def test_a_bearing_is_excluded_once_and_only_where_it_is_known() -> None:
-    walk = SearchWalk().to("open")
-    walk.arrive(bearing(1, source=PERSON))
-    assert walk.order(commands.ExcludeBearing(bearing_id="b1"))[-1] == UpdateBelief(FIRST_EMITTER)
-    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ()
-    assert next(fact for fact in walk.recorded if isinstance(fact, BearingExcluded)).emitter_id == FIRST_EMITTER
-    again, other = (walk.order(commands.ExcludeBearing(bearing_id=name)) for name in ("b1", "b9"))
-    assert (refusal(again), refusal(other)) == (refusals.BearingExcludedAlready(), refusals.NoSuchBearing())
-
-
-def test_a_turn_that_heard_nothing_outruns_the_belief_and_can_be_left_out_like_a_bearing() -> None:
-    walk = SearchWalk().to("open")
-    walk.arrive(bearing(1, source=PERSON))
-    walk.believe(localized=True)
-    walk.fold(rejected(1, 2))
-    assert walk.state.localized, "a turn that was refused for another reason tells nothing"
-    walk.fold(silent(1, 3))
-    emitter = walk.state.emitters[FIRST_EMITTER]
-    assert (emitter.bearing_ids, emitter.localized, len(emitter.bearings)) == (("b1", "r3-1"), False, 1)
-    assert not facts_of(walk.give(BeliefReady(("b1",), belief(1)))), "a belief without it is no longer current"
-    walk.believe(localized=True)
-    assert walk.order(commands.ExcludeBearing(bearing_id="r3-1"))[-1] == UpdateBelief(FIRST_EMITTER)
-    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
-    (left_out,) = [fact for fact in walk.recorded if isinstance(fact, BearingExcluded)]
-    assert not left_out.heard
-    again = walk.order(commands.ExcludeBearing(bearing_id="r3-1"))
-    assert refusal(again) == refusals.BearingExcludedAlready()
-    assert refusal(walk.order(commands.ExcludeBearing(bearing_id="r2-1"))) == refusals.NoSuchBearing()
-    assert walk.order(commands.IncludeBearing(bearing_id="r3-1"))[-1] == UpdateBelief(FIRST_EMITTER)
-    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1", "r3-1")
-
-
-def test_a_bearing_counts_again_in_its_old_place_and_the_belief_is_the_same() -> None:
-    walk = SearchWalk().to("open")
-    walk.arrive(bearing(1, source=PERSON), bearing(2, source=PERSON))
-    before = walk.state.emitters[FIRST_EMITTER].bearings
-    walk.order(commands.ExcludeBearing(bearing_id="b1"))
-    walk.believe(localized=True)
-    assert walk.order(commands.IncludeBearing(bearing_id="b1"))[-1] == UpdateBelief(FIRST_EMITTER)
-    emitter = walk.state.emitters[FIRST_EMITTER]
-    assert (emitter.bearings, emitter.claim, emitter.belief_current) == (before, None, False)
-    again, other = (walk.order(commands.IncludeBearing(bearing_id=name)) for name in ("b1", "b9"))
-    assert (refusal(again), refusal(other)) == (refusals.BearingCountsAlready(), refusals.NoSuchBearing())
-
-
-def test_a_muted_person_counts_for_nothing_until_unmuted_and_what_was_left_out_stays_so() -> None:
-    walk = SearchWalk().to("open")
-    ben = PersonSource(name="Ben")
-    walk.arrive(bearing(1, source=PERSON), bearing(2, source=ben), bearing(3, source=PERSON))
-    walk.order(commands.ExcludeBearing(bearing_id="b3"))
-    walk.believe(localized=True)
-    assert walk.order(muting(PERSON.name, True))[-1] == UpdateBelief(FIRST_EMITTER)
-    walk.arrive(bearing(4, source=PERSON))
-    emitter = walk.state.emitters[FIRST_EMITTER]
-    assert (emitter.bearing_ids, emitter.claim) == (("b2",), None)
-    assert refusal(walk.order(muting(PERSON.name, True))) == refusals.MutedAlready(True)
-    walk.order(muting(PERSON.name, False))
-    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1", "b2", "b4")
-    assert refusal(walk.order(muting(PERSON.name, False))) == refusals.MutedAlready(False)
-
-
-def test_a_source_that_told_nothing_is_not_muted_nor_a_recording_that_is_named_as_a_person() -> None:
-    walk = SearchWalk().to("open")
-    walk.arrive(bearing(1, source=PERSON), bearing(2, source=IMPORT))
-    for unknown in (muting("Eve", True), muting(IMPORT.recording_id, True)):
-        assert refusal(walk.order(unknown)) == refusals.NoSuchSource()
-    walk.order(commands.MuteSource(of="import", name=IMPORT.recording_id, muted=True))
-    assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
-
-
-def test_muting_leaves_the_emitters_alone_that_the_source_told_nothing_of() -> None:
-    walk = SearchWalk(TWO_SPEC).to("open")
-    walk.arrive(bearing(1, source=PERSON), bearing(2, emitter_id=SECOND, source=PersonSource(name="Ben")))
-    walk.believe(localized=True)
-    walk.believe(localized=True, emitter_id=SECOND)
-    walk.order(muting(PERSON.name, True))
-    assert [walk.state.emitters[name].localized for name in (FIRST_EMITTER, SECOND)] == [False, True]
 
 
 def test_an_offset_common_to_all_bearings_is_an_alert_until_there_is_none() -> None:
