@@ -38,7 +38,8 @@ class Telemetry:
     """The vehicle as last heard. A value that was never heard is None; each `*_at_s` is when it was heard (UTC).
 
     position_lost_since_s: since when the vehicle itself says that it does not know where it is; what it reports as its
-    position since then is a guess.
+    position since then is a guess. odd_clock_rate: seconds of the autopilot's clock in one of ours, when that is so far
+    from 1 that its headings cannot be dated; None: nothing of the kind is known.
     """
 
     connected: bool
@@ -60,6 +61,7 @@ class Telemetry:
     gps_fix: GpsFixName | None = None
     satellites: int | None = None
     position_lost_since_s: float | None = None
+    odd_clock_rate: float | None = None
     armed: bool | None = None
     in_air: bool | None = None
     mode: str | None = None
@@ -119,11 +121,15 @@ class PreflightCheck:
 class ReturnAltitude:
     """What the autopilot climbs to for its own return, unless it is higher already (0: it stays as high as it is).
 
-    parameter: where that is set. altitude_relative_m None: it could not be read.
+    parameter: where that is set. altitude_relative_m None: it could not be read. climb_m: by which it climbs at least,
+    from however high it begins (`climb_parameter`); None: it could not be read. climb_parameter None: there is no such
+    thing.
     """
 
     parameter: str
     altitude_relative_m: float | None
+    climb_parameter: str | None = None
+    climb_m: float | None = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,6 +79,7 @@ ARDUPILOT = Dialect(
     place_refused_texts=(),
     hold=(set_mode((BRAKE, 0)),) * 3,
     hold_modes=frozenset({BRAKE}),
+    stay=None,
     return_home=_order("return", RTL),
     land=_order("landing", LAND),
     before_take_off=_order("take_off_mode", GUIDED),
@@ -97,6 +98,7 @@ ARDUPILOT = Dialect(
         most_corners=70,
     ),
     return_altitudes=(("RTL_ALT_M", 1.0), ("RTL_ALT", 0.01)),
+    return_climbs=(("RTL_CLIMB_MIN_M", 1.0), ("RTL_CLIMB_MIN", 0.01)),
     failsafes=(
         FailsafeRule(
             "FS_GCS_ENABLE",
@@ -129,6 +131,7 @@ ARDUPILOT = Dialect(
             "battery",
             frozenset({1, 2, 3, 4}),
             2,  # RTL
+            thresholds=("BATT_LOW_VOLT", "BATT_LOW_MAH"),
         ),
         FailsafeRule(
             "BATT_FS_CRT_ACT",
@@ -136,6 +139,7 @@ ARDUPILOT = Dialect(
             frozenset({1, 2, 3, 4}),
             1,  # land
             blocking=False,
+            thresholds=("BATT_CRT_VOLT", "BATT_CRT_MAH"),
         ),
         FailsafeRule(
             "FS_THR_ENABLE",

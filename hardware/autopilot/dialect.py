@@ -32,6 +32,8 @@ class FailsafeRule:
     """When given, the value must lie there, and `safe` is not looked at."""
     formerly: str | None = None
     """The name of the same parameter in older versions."""
+    thresholds: tuple[str, str] | None = None
+    """Those with the voltage and the charge at which it acts; while both are 0 it never does."""
 
     def wanted(self, value: float | None) -> int:
         """What to set it to; value: as it is now, whose other bits stay."""
@@ -98,7 +100,8 @@ class Dialect:
     mode_switch: the parameter with the number of the pilot's channel that selects modes; 0: none does.
     place_refused_texts: the beginnings of those by which it refuses a place that it has acknowledged.
     hold: commands that stop it, in the order to try them, those that change no mode in a hold mode only; hold_modes:
-    the raw modes it then shows. steering: the mode in which it flies to places and turns as told.
+    the raw modes it then shows. stay: makes the place where it is the one it holds at; None: it comes to rest there by
+    itself. steering: the mode in which it flies to places and turns as told.
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
@@ -106,6 +109,7 @@ class Dialect:
     prearm_has_present_bit: SYS_STATUS says by a bit of its own whether it reports the checks before arming; else their
     health bit alone counts.
     return_altitudes: the parameter that the autopilot's own return climbs to and its unit in metres, newest name first.
+    return_climbs: likewise, the one by which it climbs at least, from however high it begins; empty: there is none.
     """
 
     name: Literal["px4", "ardupilot"]
@@ -119,6 +123,7 @@ class Dialect:
     place_refused_texts: tuple[str, ...]
     hold: tuple[Outgoing, ...]
     hold_modes: frozenset[int]
+    stay: Outgoing | None
     return_home: ModeOrder
     land: ModeOrder
     before_take_off: ModeOrder
@@ -132,6 +137,7 @@ class Dialect:
     nets: NetRules
     failsafes: tuple[FailsafeRule, ...]
     return_altitudes: tuple[tuple[str, float], ...]
+    return_climbs: tuple[tuple[str, float], ...]
 
     def mode_name(self, custom_mode: int) -> str:
         """As pilots know it; "mode N" for one that this dialect does not name."""

@@ -1,13 +1,17 @@
-"""Hold: one order after the other until the vehicle brakes, then wait until it hovers."""
+"""Hold: one order after the other until the vehicle brakes, then wait until it hovers.
+
+PX4 holds at a place that it reckons ahead while it still flies. It comes to rest metres beside that place and then
+creeps there, so a second order to stay follows as soon as it is slow.
+"""
 
 from __future__ import annotations
 
-from hardware.autopilot.commander import CommandDenied, Manoeuvre, OutOfMode
+from hardware.autopilot.commander import CommandDenied, Manoeuvre, ManoeuvreSuperseded, OutOfMode
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hover import Hover
 from hardware.autopilot.messages import Outgoing
 from hardware.deadline import Deadline
-from hardware.ports import VehicleError
+from hardware.ports import NotInControl, VehicleError
 from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold, HoldIgnored
 from hardware.reasons.vehicle_news import StillMoving, TriedAgain
 
@@ -15,6 +19,8 @@ BRAKES_S, BRAKES_WALL_S = 3.0, 1.5
 """So long after a hold was ordered the vehicle is in a hold mode, and slower."""
 SLOWER, NEVER_FAST_M_S = 0.6, 2.0
 """Slower: than this share of the highest speed seen since; what never was faster than NEVER_FAST_M_S need not be."""
+STAYS_M_S = 0.5
+"""A vehicle this slow stops within some ten centimetres."""
 HOVERS_S, HOVERS_WALL_S = 20.0, 2.0
 """A vehicle that holds and in all this time does not come to rest is in a strong wind: that is news, not an error."""
 
@@ -47,11 +53,15 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
     monitor, dialect, snapshot = guidance.monitor, guidance.monitor.dialect, guidance.monitor.snapshot
     await guidance.send(manoeuvre, outgoing, dialect.hold_modes, "hold")
     brakes = Deadline(monitor.clock, BRAKES_S, BRAKES_WALL_S)
+    rests = Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S)
     hover, hovers, highest_m_s = Hover(), False, 0.0
 
     def obeys() -> bool:
         slower = (snapshot.speed_m_s or 0.0) <= max(NEVER_FAST_M_S, SLOWER * highest_m_s)
         return slower and snapshot.custom_mode in dialect.hold_modes
+
+    def nearly_rests() -> bool:
+        return obeys() and snapshot.speed_m_s is not None and snapshot.speed_m_s < STAYS_M_S
 
     def decided() -> bool:
         nonlocal hovers, highest_m_s
@@ -61,7 +71,21 @@ async def _holds(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -
             hovers = hover.see(snapshot.position, snapshot.speed_m_s, snapshot.position_at_s, in_mode)
         return hovers or (brakes.passed and not obeys())
 
-    if await guidance.until(manoeuvre, Deadline(monitor.clock, HOVERS_S, HOVERS_WALL_S), decided):
+    if dialect.stay is not None:
+        await guidance.until(manoeuvre, rests, lambda: decided() or nearly_rests())
+        if nearly_rests():
+            await _stay(guidance, manoeuvre, dialect.stay)
+    if await guidance.until(manoeuvre, rests, decided):
         return hovers
     monitor.announce(StillMoving(snapshot.speed_m_s or 0.0))
     return True
+
+
+async def _stay(guidance: Guidance, manoeuvre: Manoeuvre, outgoing: Outgoing) -> None:
+    """Hold at the present place. Without it the vehicle holds all the same, only less quietly."""
+    try:
+        await guidance.send(manoeuvre, outgoing, guidance.monitor.dialect.hold_modes, "hold")
+    except (NotInControl, ManoeuvreSuperseded):
+        raise
+    except VehicleError:
+        return

@@ -111,9 +111,9 @@ class MavlinkLink:
             await self.close()
             raise VehicleUnreachable(NoAutopilotAnswers(self.url, timeout_s))
         self.system_id = system.get_system_id()
-        self._direct = direct = MavlinkDirect(system)
-        self._param = Param(system)
-        self._mission, self._geofence = MissionRaw(system), Geofence(system)
+        direct = await self._waiting(self._blocking, self._lay_out, system)
+        if self._closed:
+            raise VehicleUnreachable(NoAutopilotAnswers(self.url, timeout_s))
 
         def heard(message: MavlinkMessage, _: Any) -> None:
             if message.component_id == AUTOPILOT_COMPONENT or message.message_name in FROM_ANY_COMPONENT:
@@ -122,6 +122,14 @@ class MavlinkLink:
 
         for name in self._names:
             direct.subscribe_message(name, heard)
+
+    def _lay_out(self, system: System) -> MavlinkDirect:
+        """In a thread: MAVSDK reads all definitions of messages, 0.26 s, with each new connection."""
+        direct = MavlinkDirect(system)
+        self._param = Param(system)
+        self._mission, self._geofence = MissionRaw(system), Geofence(system)
+        self._direct = direct
+        return direct
 
     async def _first_autopilot(self, mavsdk: Mavsdk, timeout_s: float) -> System | None:
         loop = asyncio.get_running_loop()

@@ -12,6 +12,7 @@ from collections.abc import AsyncIterator
 from hardware.authority import Authority, ModeHeard, SticksTookOver, SwitchMoved
 from hardware.autopilot.announcer import Announcer, Wakeup
 from hardware.autopilot.ardupilot import ARDUPILOT
+from hardware.autopilot.boot_clock import LastingOddity
 from hardware.autopilot.commander import Commander
 from hardware.autopilot.control import Control
 from hardware.autopilot.dialect import Dialect
@@ -176,12 +177,13 @@ class Monitor:
         """Make sure of the telemetry rates; ask for them again when the autopilot has forgotten them."""
         await self._request_streams()
         await self._find_mode_switch()
-        reboots, odd = self.snapshot.reboots, False
+        reboots, oddity = self.snapshot.reboots, LastingOddity()
         while True:
             await asyncio.sleep(1.0)
-            if self.snapshot.clock_rate_is_odd and not odd:
+            stays_odd = oddity.look(self.snapshot.clock_rate_is_odd)
+            if stays_odd and not self.snapshot.clock_stays_odd:
                 self.announce(ClockRateOdd(self.snapshot.clock_rate or 1.0))
-            odd = self.snapshot.clock_rate_is_odd
+            self.snapshot.clock_stays_odd = stays_odd
             attitude = self.snapshot.attitude_heard_at_s
             ceased = attitude is None or self.clock.now() - attitude > STREAMS_CEASED_S
             if self.snapshot.reboots != reboots:

@@ -52,7 +52,7 @@ def open_connection(url: str) -> Connection:
     configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
     configuration.system_id = STATION_SYSTEM
     mavsdk = Mavsdk(configuration)
-    _be_patient(mavsdk)
+    be_patient(mavsdk, PATIENCE_WALL_S)
     try:
         mavsdk.add_any_connection_with_handle(url)
     except Exception as error:
@@ -73,12 +73,13 @@ def _take_log_over() -> None:
     log_subscribe(_keep_log)
 
 
-def _be_patient(mavsdk: Mavsdk) -> None:
-    """MAVSDK sends a part of a fence again after 0.5 s, at 250 ms each way before its answer can be here; ArduCopter
-    then ends the transfer ("invalid sequence"). Python's binding leaves out the library's way to change that."""
+def be_patient(mavsdk: Mavsdk, wall_s: float) -> None:
+    """Set how long each answer is waited for. By itself MAVSDK sends a part of a fence again after 0.5 s, at 250 ms
+    each way before its answer can be here; ArduCopter then ends the transfer ("invalid sequence"). Python's binding
+    leaves out the library's way to change that."""
     patience = mavsdk._lib.mavsdk_set_timeout_s
     patience.argtypes, patience.restype = [ctypes.c_void_p, ctypes.c_double], None
-    patience(mavsdk._handle, PATIENCE_WALL_S)
+    patience(mavsdk._handle, wall_s)
 
 
 def _refuse_taken_port(url: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,6 +15,7 @@ from hardware.reasons.preflight import (
     ControlChecked,
     FailsafeParameter,
     FailsafeUnread,
+    FailsafeWithoutThreshold,
     GpsChecked,
     HomeSet,
     LinkChecked,
@@ -23,7 +25,7 @@ from hardware.reasons.preflight import (
     ReportAge,
     SatellitesUnknown,
 )
-from hardware.reasons.vehicle_news import VehicleUnheard
+from hardware.reasons.vehicle_news import ClockRateOdd, VehicleUnheard
 
 FRESH_S = 3.0
 MINIMUM_SATELLITES = 6
@@ -50,7 +52,7 @@ def telemetry_checks(
         PreflightCheck("vehicle_link", t.connected, LinkChecked(t.autopilot) if t.connected else VehicleUnheard()),
         _gps(t),
         _age("position", t.position_at_s, t.at_s),
-        _age("heading", t.heading_at_s, t.at_s),
+        _heading(t),
         _battery(t, minimum_battery_percent),
         PreflightCheck("home", False, NeverReported("home"))
         if t.home is None
@@ -76,6 +78,13 @@ def _age(what: Literal["position", "heading"], at_s: float | None, now_s: float)
         return PreflightCheck(what, False, NeverReported(what))
     age_s = max(0.0, now_s - at_s)
     return PreflightCheck(what, age_s < FRESH_S, ReportAge(what, age_s))
+
+
+def _heading(telemetry: Telemetry) -> PreflightCheck:
+    """A heading that cannot be dated is none for a bearing, however fresh it looks."""
+    if telemetry.odd_clock_rate is not None:
+        return PreflightCheck("heading", False, ClockRateOdd(telemetry.odd_clock_rate))
+    return _age("heading", telemetry.heading_at_s, telemetry.at_s)
 
 
 def _battery(telemetry: Telemetry, minimum_percent: float) -> PreflightCheck:
@@ -114,12 +123,22 @@ def _control(telemetry: Telemetry) -> PreflightCheck:
     return PreflightCheck("control", False, ControlChecked(authority.who))
 
 
-def failsafe_check(rule: FailsafeRule, name: str, value: float | None, charge_known: bool = True) -> PreflightCheck:
-    """name: of the parameter in this version of the autopilot; value: None when it could not be read. charge_known:
-    the vehicle reports its battery; of one that does not, no failsafe can watch it."""
+def failsafe_check(
+    rule: FailsafeRule,
+    name: str,
+    value: float | None,
+    thresholds: Mapping[str, float | None],
+    charge_known: bool = True,
+) -> PreflightCheck:
+    """name: of the parameter in this version of the autopilot; value, and those of `rule.thresholds`: None when it
+    could not be read. charge_known: the vehicle reports its battery; of one that does not, no failsafe can watch it."""
     wanted = rule.wanted(value)
     blocking = rule.blocking and (charge_known or rule.watch != "battery")
     if value is None:
         return PreflightCheck("failsafe", False, FailsafeUnread(rule.watch, name, wanted), blocking)
     reason = FailsafeParameter(rule.watch, name, value, wanted)
+    if rule.holds(value) and rule.thresholds and not any((at or 0.0) > 0.0 for at in thresholds.values()):
+        known = all(at is not None for at in thresholds.values())
+        never = FailsafeWithoutThreshold(rule.watch, name, *rule.thresholds, known)
+        return PreflightCheck("failsafe", False, never, blocking)
     return PreflightCheck("failsafe", rule.holds(value), reason, blocking)

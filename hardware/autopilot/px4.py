@@ -82,8 +82,10 @@ PX4 = Dialect(
     landing_modes=frozenset({LANDING, px4_mode(_AUTO, _PRECISION_LAND)}),
     takeover_text="Pilot took over",
     place_refused_texts=("Reposition is outside geofence",),
-    hold=(pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),
+    # twice without a mode: a slow PX4 that already holds is sent nothing that could undo a pilot
+    hold=(pause_here(), pause_here(), pause(), set_mode((_AUTO, _LOITER)), pause()),
     hold_modes=frozenset({HOLD}),
+    stay=pause_here(),
     return_home=_order("return", _RETURN, RETURNING, LANDING, px4_mode(_AUTO, _PRECISION_LAND)),
     land=_order("landing", _LAND, LANDING),
     before_take_off=_order("take_off_mode", _LOITER, HOLD, TAKING_OFF),
@@ -102,6 +104,7 @@ PX4 = Dialect(
         most_corners=60,
     ),
     return_altitudes=(("RTL_RETURN_ALT", 1.0),),
+    return_climbs=(),
     failsafes=(
         FailsafeRule(
             "NAV_DLL_ACT",

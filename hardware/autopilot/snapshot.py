@@ -80,6 +80,8 @@ class Snapshot:
     home: Place | None = None
     home_amsl_m: float | None = None
     trust: PositionTrust = field(default_factory=PositionTrust)
+    clock_stays_odd: bool = False
+    """The rate of the autopilot's clock, as the monitor found it once a second (LastingOddity)."""
     _displaced_m: tuple[float, float] = (0.0, 0.0)
     """(north, east) the sum of all jumps of this flight: a jump back undoes one."""
     _position_boot_s: float = 0.0
@@ -250,6 +252,7 @@ class Snapshot:
             gps_fix=None if self.fix_type is None else _FIXES[min(self.fix_type, len(_FIXES) - 1)],
             satellites=self.satellites,
             position_lost_since_s=self.trust.lost_since_s,
+            odd_clock_rate=self.clock_rate if self.clock_stays_odd else None,
             armed=None if self.armed is False and not self.disarmed else self.armed,
             in_air=self.in_air,
             mode=mode,

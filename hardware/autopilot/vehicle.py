@@ -78,16 +78,26 @@ class MavsdkVehicle:
         checks = telemetry_checks(heard, readiness, monitor.remote_id, self._minimum_battery_percent)
         found = [(rule, *await self._failsafe(rule)) for rule in dialect.failsafes]
         charge_known = heard.battery_percent is not None
-        return checks + [failsafe_check(rule, name, value, charge_known) for rule, name, value in found]
+        for rule, name, value in found:
+            thresholds = {one: await monitor.link.parameter(one) for one in rule.thresholds or ()}
+            checks.append(failsafe_check(rule, name, value, thresholds, charge_known))
+        return checks
 
     async def return_altitude(self) -> ReturnAltitude:
         """Of the autopilot's own return."""
-        names = self._monitor.dialect.return_altitudes
+        dialect = self._monitor.dialect
+        parameter, altitude_m = await self._first_read(dialect.return_altitudes)
+        if not dialect.return_climbs:
+            return ReturnAltitude(parameter, altitude_m)
+        return ReturnAltitude(parameter, altitude_m, *await self._first_read(dialect.return_climbs))
+
+    async def _first_read(self, names: Sequence[tuple[str, float]]) -> tuple[str, float | None]:
+        """names: of one length, with the unit of each in metres. (The one this version has, m); None: none was read."""
         for name, metres in names:
             value = await self._monitor.link.parameter(name)
             if value is not None:
-                return ReturnAltitude(name, value * metres)
-        return ReturnAltitude(names[0][0], None)
+                return name, value * metres
+        return names[0][0], None
 
     async def _failsafe(self, rule: FailsafeRule) -> tuple[str, float | None]:
         """(the name this version has, its value or None)."""

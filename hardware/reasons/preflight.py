@@ -204,6 +204,24 @@ class FailsafeUnread:
     english: ClassVar[Words] = Words(f"{_WATCHES}: {{parameter}} could not be read.", _SET)
 
 
+@dataclass(frozen=True, slots=True)
+class FailsafeWithoutThreshold:
+    """It would act, but nothing sets it off. known: both thresholds were read."""
+
+    watch: FailsafeWatch
+    parameter: str
+    voltage_parameter: str
+    charge_parameter: str
+    known: bool
+    code: Literal["failsafe_without_threshold"] = "failsafe_without_threshold"
+
+    english: ClassVar[Words] = Words(
+        f"{_WATCHES}: {{parameter}} is set, but {{voltage_parameter}} and {{charge_parameter}} "
+        "{known?true=are both 0: it never acts|false=could not both be read: it may never act}.",
+        "Set {voltage_parameter} to the voltage, or {charge_parameter} to the mAh left, at which it is to act.",
+    )
+
+
 PreflightReason = (
     LinkChecked
     | GpsChecked
@@ -218,4 +236,5 @@ PreflightReason = (
     | ControlChecked
     | FailsafeParameter
     | FailsafeUnread
+    | FailsafeWithoutThreshold
 )

@@ -34,9 +34,13 @@ DEFAULTS: dict[str, tuple[float, int]] = {
     "DISARM_DELAY": (10, INT8),
     "FLTMODE_CH": (5, INT8),
     "BATT_LOW_VOLT": (10.5, REAL32),
+    "BATT_LOW_MAH": (0.0, REAL32),
+    "BATT_CRT_VOLT": (9.9, REAL32),
+    "BATT_CRT_MAH": (0.0, REAL32),
     "BATT_FS_LOW_ACT": (2, INT8),
     "BATT_FS_CRT_ACT": (1, INT8),
     "RTL_ALT": (1500, INT32),
+    "RTL_CLIMB_MIN": (0, INT32),
     "RTL_LOIT_TIME": (5000, INT32),
     "WPNAV_SPEED": (1000.0, REAL32),
     "ATC_SLEW_YAW": (4500.0, REAL32),
@@ -83,7 +87,9 @@ class ArduCopter(Firmware):
         flight = self.flight
         if mode in ("RTL", "SMART_RTL"):
             p = self.parameters
-            flight.return_home(p["RTL_ALT"] / 100.0, p["WPNAV_SPEED"] / 100.0, math.inf, p["RTL_LOIT_TIME"] / 1000.0)
+            climbed = flight.navigation.up + max(0.0, p["RTL_CLIMB_MIN"] / 100.0)
+            up, speed = max(p["RTL_ALT"] / 100.0, climbed), p["WPNAV_SPEED"] / 100.0
+            flight.return_home(up, speed, math.inf, p["RTL_LOIT_TIME"] / 1000.0)
         elif mode == "LAND":
             flight.land()
         elif flight.in_air:
@@ -241,5 +247,6 @@ class ArduCopter(Firmware):
 
     def battery_low(self) -> None:
         action = {1: "LAND", 2: "RTL", 3: "SMART_RTL"}.get(int(self.parameters["BATT_FS_LOW_ACT"]))
-        if action and self.flight.in_air and self.mode in self.auto:
+        watched = self.parameters["BATT_LOW_VOLT"] > 0.0 or self.parameters["BATT_LOW_MAH"] > 0.0
+        if action and watched and self.flight.in_air and self.mode in self.auto:
             self.set_mode(action)

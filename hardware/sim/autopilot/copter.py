@@ -44,6 +44,7 @@ class Demand:
     """Where to be. Either a place (north, east, up) with speed limits, or `velocity` when a pilot holds the sticks.
 
     heading: unwrapped degrees to turn to at no more than `yaw_rate_limit` deg/s; `yaw_rate` overrides it (sticks).
+    creeps_m: nearer than this to the place it only creeps.
     """
 
     north: float
@@ -56,6 +57,10 @@ class Demand:
     yaw_rate_limit: float = 45.0
     velocity: tuple[float, float, float] | None = None
     yaw_rate: float | None = None
+    creeps_m: float = 0.0
+
+
+CREEP_M_S = 0.25
 
 
 class Copter:
@@ -152,7 +157,9 @@ class Copter:
             d_u = demand.up - error[2] - self.up
             distance = math.sqrt(d_n * d_n + d_e * d_e)
             # v = sqrt(2 a d) brakes in time; linear near the target so that it settles
-            speed = min(demand.speed, math.sqrt(1.4 * self.airframe.acceleration * distance), 0.9 * distance)
+            before = max(0.0, distance - demand.creeps_m)
+            speed = min(demand.speed, math.sqrt(1.4 * self.airframe.acceleration * before), 0.9 * before)
+            speed = max(speed, min(CREEP_M_S, 0.9 * distance))
             scale = speed / distance if distance > 1e-6 else 0.0
             want_n, want_e = d_n * scale, d_e * scale
             climb = min(math.sqrt(1.4 * self.airframe.climb_acceleration * abs(d_u)), 0.9 * abs(d_u))

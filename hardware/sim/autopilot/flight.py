@@ -9,6 +9,7 @@ from hardware.sim.autopilot.copter import Copter, Demand
 from hardware.sim.autopilot.sensors import Navigation
 
 Task = Literal["idle", "take_off", "fly", "return", "land", "sticks"]
+MOVES_M_S = 1.0
 
 
 class Flight:
@@ -67,16 +68,21 @@ class Flight:
         if self.task != "fly":
             self.demand = self._here()
         self.demand.north, self.demand.east, self.demand.up, self.demand.speed = north, east, up, speed
+        self.demand.creeps_m = 0.0
         self.task = "fly"
 
-    def stop(self, reach: float = 1.0) -> None:
-        """Brake and hover: the target is where braking ends; with a reach below 1 before that, and it turns back."""
+    def stop(self, reach: float = 1.0, creeps_m: float = 0.0) -> None:
+        """Brake and hover: the target is where braking ends; with a reach below 1 before that, and it turns back.
+
+        creeps_m: of a copter that moves; the last metres to the target it only creeps.
+        """
         self.demand = self._here()
         copter = self.copter
         braking = reach / (1.4 * copter.airframe.acceleration)
         speed = math.hypot(copter.v_north, copter.v_east)
         self.demand.north += copter.v_north * speed * braking
         self.demand.east += copter.v_east * speed * braking
+        self.demand.creeps_m = creeps_m if speed > MOVES_M_S else 0.0
         self.task = "fly" if self.in_air else "idle"
 
     def return_home(self, minimum_up: float, speed: float, loiter_up: float, loiter: float) -> None:

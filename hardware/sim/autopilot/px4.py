@@ -24,6 +24,8 @@ from hardware.sim.autopilot.parameters import INT32, REAL32, Parameters
 
 STOP_REACH = 0.25
 """Its stop point is nearer than it can brake: from 7 m/s it flies some 5 m past it and back."""
+CREEPS_M = 2.2
+"""So near to that stop point it is all but at rest, and needs some ten seconds for the rest of the way."""
 REPOSITION_KEPT = 0.5
 """Seconds for which a reposition that came in another mode is carried out when HOLD is entered (PX4's loiter.cpp)."""
 
@@ -116,7 +118,7 @@ class Px4(Firmware):
             if flight.armed:
                 flight.take_off(self._take_off_up)
         elif flight.in_air:
-            flight.stop(STOP_REACH)
+            flight.stop(STOP_REACH, CREEPS_M)
             if mode == "HOLD" and self._kept is not None and self.time - self._kept[0] < REPOSITION_KEPT:
                 self._fly(self._kept[1])
 
@@ -207,7 +209,7 @@ class Px4(Firmware):
         if self._refused_place(command):
             return
         if command.lat is None and math.isnan(command.z) and math.isnan(command.p4):
-            self.flight.stop(STOP_REACH)  # "all three set to NaN - pause vehicle"
+            self.flight.stop(STOP_REACH, CREEPS_M)  # "all three set to NaN - pause vehicle"
             return
         place = nav.north, nav.east
         if command.lat is not None and command.lon is not None:

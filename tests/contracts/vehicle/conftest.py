@@ -49,6 +49,6 @@ async def rig(request: pytest.FixtureRequest) -> AsyncIterator[Rig]:
                 await vehicle.land()
                 await rig.until(lambda: not vehicle.telemetry().armed, 120, "landing")
         await vehicle.close()
-        await asyncio.wait_for(listener, 5)  # closing ends changes()
+        await asyncio.wait_for(listener, 60)  # closing ends changes()
         if autopilot is not None:
             await autopilot.stop()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from rig import Rig
 
+from hardware.autopilot.opening import PATIENCE_WALL_S, be_patient
 from hardware.fence import FencePolygon, MissionNets, Nets, NetsPlan
 from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.nets import FenceNotTransferred, FenceReadBackDifferent, OwnCeilingLower, OwnFenceTighter
@@ -104,8 +105,12 @@ async def test_an_upload_that_breaks_off_is_an_error_and_can_be_made_again(rig: 
     """Ten messages: the fence is asked for, announced, its eight corners sent; then it is read back."""
     plan = await planned(rig)
     await rig.sim.order("fence_fault", deaf_after=after)
+    link = rig.vehicle._monitor.link._mavsdk
+    assert link is not None
+    be_patient(link, 0.3)  # nobody answers: it gives up sooner
     with pytest.raises(VehicleError) as broken:
         await rig.vehicle.set_nets(plan.after)
+    be_patient(link, PATIENCE_WALL_S)
     assert isinstance(broken.value.reason, FenceNotTransferred)
     held = (await rig.sim.order("fence"))["items"]
     assert len(held) in (0, 8)  # never a part of it

@@ -99,4 +99,4 @@ async def test_why_it_does_not_arm_is_told_in_its_own_words(rig: Rig) -> None:
     assert isinstance(row.reason, ArmingChecked)
     assert "position estimate is not ready" in row.reason.said
     await rig.sim.order("prearm", ok=True)
-    await asyncio.wait_for(take_off, 30)
+    await asyncio.wait_for(take_off, 60)

@@ -2,9 +2,10 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections.abc import Callable
 from functools import cache
-from threading import Event
-from typing import Any
+from threading import Event, get_ident
+from typing import Any, ClassVar
 
 import pytest
 
@@ -133,3 +134,44 @@ async def test_a_fence_arrives_over_a_slow_link(flavour: str) -> None:
     finally:
         await link.close()
         await autopilot.stop()
+
+
+class FirstAutopilot:
+    """MAVSDK that finds one at once."""
+
+    def first_autopilot_async(self, _timeout_s: float, heard: Callable[[Any], None]) -> int:
+        heard(self)
+        return 1
+
+    def cancel_first_autopilot(self, _handle: int) -> None:
+        pass
+
+    def get_system_id(self) -> int:
+        return 1
+
+    def destroy(self) -> None:
+        pass
+
+
+class MadeIn:
+    """One of MAVSDK's parts. threads: in which each was made."""
+
+    threads: ClassVar[list[int]] = []
+
+    def __init__(self, _system: object) -> None:
+        self.threads.append(get_ident())
+
+    def subscribe_message(self, _name: str, _heard: Callable[..., None]) -> None:
+        pass
+
+
+async def test_the_event_loop_does_not_wait_for_the_definitions_of_messages(monkeypatch: pytest.MonkeyPatch) -> None:
+    for part in ("MavlinkDirect", "Param", "MissionRaw", "Geofence"):
+        monkeypatch.setattr(f"hardware.autopilot.link.{part}", MadeIn)
+    monkeypatch.setattr(MadeIn, "threads", [])
+    found = opening.Connection(FirstAutopilot())  # type: ignore[arg-type]
+    link = MavlinkLink("udpin://127.0.0.1:14999", ("HEARTBEAT",), lambda name, fields: None, found)
+    await link.open(1.0)
+    await link.close()
+    assert len(MadeIn.threads) == 4
+    assert get_ident() not in MadeIn.threads

@@ -10,11 +10,12 @@ from hardware.autopilot.dialect import Dialect
 from hardware.autopilot.preflight import Readiness, failsafe_check, telemetry_checks
 from hardware.autopilot.px4 import PX4
 from hardware.autopilot.remote_id import RemoteId
-from hardware.readings import Place, Telemetry
+from hardware.readings import Place, PreflightCheck, Telemetry
 from hardware.reasons.preflight import (
     ArmingChecked,
     FailsafeParameter,
     FailsafeUnread,
+    FailsafeWithoutThreshold,
     RemoteIdChecked,
     RemoteIdRefuses,
     SatellitesUnknown,
@@ -74,6 +75,7 @@ def test_a_ready_vehicle_passes() -> None:
         ({"gps_fix": "2D"}, "gps"),
         ({"gps_fix": None}, "gps"),
         ({"satellites": 4}, "gps"),
+        ({"odd_clock_rate": 0.9}, "heading"),
         ({"position_at_s": NOW - 10.0}, "position"),
         ({"position_at_s": None}, "position"),
         ({"heading_at_s": NOW - 10.0}, "heading"),
@@ -143,8 +145,8 @@ def test_what_an_autopilot_says_of_another_mode_than_ours_blocks_nothing() -> No
 
 def test_no_failsafe_watches_a_battery_that_is_not_reported() -> None:
     rule = next(rule for rule in PX4.failsafes if rule.watch == "battery")
-    assert failsafe_check(rule, rule.parameter, 0.0).blocking
-    assert not failsafe_check(rule, rule.parameter, 0.0, charge_known=False).blocking
+    assert failsafe_check(rule, rule.parameter, 0.0, {}).blocking
+    assert not failsafe_check(rule, rule.parameter, 0.0, {}, charge_known=False).blocking
 
 
 def test_a_battery_that_is_not_reported_is_a_caution_only() -> None:
@@ -158,10 +160,12 @@ def test_safe_parameters_pass_and_each_one_that_would_not_act_refuses(
     dialect: Dialect, values: dict[str, float]
 ) -> None:
     for rule in dialect.failsafes:
-        assert failsafe_check(rule, rule.parameter, values[rule.parameter]).ok
+        assert failsafe_check(
+            rule, rule.parameter, values[rule.parameter], {"BATT_LOW_VOLT": 10.5, "BATT_LOW_MAH": 0.0}
+        ).ok
         assert rule.holds(rule.set_to), f"the remedy of {rule.parameter} is itself unsafe"
         unsafe = 6.0 if rule.parameter == "COM_OBL_RC_ACT" else 0.0
-        bad = failsafe_check(rule, rule.parameter, unsafe)
+        bad = failsafe_check(rule, rule.parameter, unsafe, {})
         assert (bad.name, bad.ok, bad.blocking) == ("failsafe", False, rule.blocking)
         assert bad.reason == FailsafeParameter(rule.watch, rule.parameter, unsafe, rule.wanted(unsafe))
         assert f"Set {rule.parameter} to {rule.wanted(unsafe)}" in remedy_of(bad.reason)
@@ -177,9 +181,30 @@ def test_a_lost_station_must_be_noticed_within_half_a_minute(dialect: Dialect, n
 
 def test_a_parameter_that_cannot_be_read_is_not_taken_for_safe() -> None:
     for rule in PX4.failsafes:
-        check = failsafe_check(rule, rule.parameter, None)
+        check = failsafe_check(rule, rule.parameter, None, {})
         assert not check.ok
         assert check.reason == FailsafeUnread(rule.watch, rule.parameter, rule.set_to)
+
+
+@pytest.mark.parametrize(("watch", "blocking"), [("battery", True), ("battery_critical", False)])
+def test_a_battery_failsafe_that_nothing_sets_off_protects_nothing(watch: str, blocking: bool) -> None:
+    rule = next(rule for rule in ARDUPILOT.failsafes if rule.watch == watch)
+    assert rule.thresholds is not None
+    voltage, charge = rule.thresholds
+
+    def check(volts: float | None, mah: float | None) -> PreflightCheck:
+        return failsafe_check(rule, rule.parameter, 2.0, {voltage: volts, charge: mah})
+
+    assert check(10.5, 0.0).ok
+    assert check(0.0, 400.0).ok
+    assert check(None, 400.0).ok
+    for volts, mah, known in ((0.0, 0.0, True), (-1.0, 0.0, True), (None, 0.0, False), (None, None, False)):
+        bad = check(volts, mah)
+        assert (bad.ok, bad.blocking) == (False, blocking)
+        assert bad.reason == FailsafeWithoutThreshold(rule.watch, rule.parameter, voltage, charge, known)
+        assert voltage in remedy_of(bad.reason)
+    off = failsafe_check(rule, rule.parameter, 0.0, {voltage: 0.0, charge: 0.0})
+    assert isinstance(off.reason, FailsafeParameter), "what must be mended first is said first"
 
 
 def test_a_remedy_keeps_the_bits_that_it_does_not_need() -> None:

@@ -61,7 +61,7 @@ async def make(flavour: str, speedup: float = SPEEDUP) -> AsyncIterator[Rig]:
             yield Rig(vehicle, clock, sim, news)
         finally:
             await vehicle.close()
-            await asyncio.wait_for(listener, 5)
+            await asyncio.wait_for(listener, 60)
     finally:
         await sim.stop()
 
@@ -178,7 +178,7 @@ async def test_what_stops_a_take_off_is_sent_before_a_heartbeat_has_said_that_th
 
     monkeypatch.setattr(Snapshot, "fold", never_armed)
     take_off = asyncio.create_task(rig.vehicle.take_off(100.0))
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(60):
         while not [number for _, number in (await rig.sim.order("commands"))["commands"] if number == TAKE_OFF]:  # noqa: ASYNC110 (another process)
             await asyncio.sleep(0)
     await getattr(rig.vehicle, stop)()
@@ -207,7 +207,7 @@ async def test_take_off_waits_out_an_autopilot_that_is_not_ready_and_says_so(px4
     take_off = asyncio.create_task(px4.vehicle.take_off(10.0))
     await px4.announced(arming_refused)
     await px4.sim.order("prearm", ok=True)
-    await asyncio.wait_for(take_off, 30)
+    await asyncio.wait_for(take_off, 60)
 
     assert px4.vehicle.telemetry().in_air
 
@@ -220,7 +220,7 @@ async def test_a_pilot_who_selects_a_mode_on_the_ground_ends_the_take_off(px4: R
     await px4.sim.order("pilot_mode", mode="STABILIZED")
 
     with pytest.raises(NotInControl, match="STABILIZED"):
-        await asyncio.wait_for(take_off, 30)
+        await asyncio.wait_for(take_off, 60)
 
 
 async def test_a_cancelled_flight_sends_nothing_more_and_the_vehicle_obeys_the_next_order(rig: Rig) -> None:

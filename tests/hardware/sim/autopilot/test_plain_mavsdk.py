@@ -47,7 +47,7 @@ async def test_mavsdks_own_plugins_find_it_healthy_and_fly_it(sim: SimulatedAuto
                 if health.is_global_position_ok and health.is_home_position_ok and health.is_armable:
                     return
 
-        await asyncio.wait_for(healthy(), 20)
+        await asyncio.wait_for(healthy(), 60)
         await asyncio.sleep(1.0)
         await action.set_takeoff_altitude(10.0)
         await action.arm()

@@ -1,0 +1,94 @@
+"""A hold ends where the vehicle comes to rest, not at the place that PX4 reckoned while it still flew."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+
+import pytest
+from paper import PLACE, POSCTL, Scene
+
+from hardware.autopilot.guidance import Guidance
+from hardware.autopilot.hold import BRAKES_S, STAYS_M_S, hold
+from hardware.autopilot.hover import SETTLED_S
+from hardware.autopilot.messages import REPOSITION
+from hardware.autopilot.px4 import HOLD
+from hardware.ports import NotInControl
+
+DENIED = 2
+BOOTED_S = 999.0
+
+
+async def moves(scene: Scene, speed_m_s: float, seconds: float = 0.2) -> None:
+    """North, ten reports a second."""
+    for _ in range(round(seconds / 0.1)):
+        scene.clock.at += 0.09
+        boot_ms = round((scene.clock.at - BOOTED_S) * 1e3)
+        scene.hear("GLOBAL_POSITION_INT", PLACE | {"time_boot_ms": boot_ms, "vx": round(speed_m_s * 100)})
+        for _ in range(20):
+            await asyncio.sleep(0)
+
+
+async def holding(scene: Scene) -> asyncio.Task[None]:
+    """Ordered at full speed."""
+    scene.mode(HOLD)
+    await moves(scene, 7.0)
+    ordered = asyncio.create_task(hold(Guidance(scene.monitor)))
+    await moves(scene, 7.0)
+    assert scene.link.sent == [REPOSITION]
+    return ordered
+
+
+async def test_a_vehicle_that_nearly_rests_is_told_once_to_stay_there(flying: Scene) -> None:
+    ordered = await holding(flying)
+    await moves(flying, STAYS_M_S + 0.2)
+    assert flying.link.sent == [REPOSITION]
+    await moves(flying, STAYS_M_S - 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
+    assert flying.link.sent == [REPOSITION, REPOSITION]
+    assert flying.monitor.dialect.stay is not None
+    assert not flying.monitor.dialect.stay.changes_mode
+
+
+async def test_a_stay_that_is_refused_is_no_failure(flying: Scene) -> None:
+    ordered = await holding(flying)
+    flying.link.result = DENIED
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
+    assert flying.link.sent == [REPOSITION, REPOSITION]
+
+
+async def test_a_pilot_who_takes_a_braking_vehicle_is_told_nothing_more(flying: Scene) -> None:
+    ordered = await holding(flying)
+    await moves(flying, 3.0)
+    flying.mode(POSCTL)
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    with pytest.raises(NotInControl, match="POSCTL"):
+        await ordered
+    assert flying.link.sent == [REPOSITION]
+
+
+async def test_a_slow_vehicle_in_hold_is_paused_again_before_an_order_selects_the_mode(
+    flying: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hardware.autopilot.hold.BRAKES_WALL_S", 0.0)
+    ordered = await holding(flying)
+    await moves(flying, 7.0, BRAKES_S + 0.5)
+    assert flying.link.sent == [REPOSITION, REPOSITION]
+    assert not any(order.changes_mode for order in flying.monitor.dialect.hold[:2])
+    flying.mode(POSCTL)
+    await moves(flying, 7.0, BRAKES_S + 0.5)
+    with pytest.raises(NotInControl, match="POSCTL"):
+        await ordered
+    assert flying.link.sent == [REPOSITION, REPOSITION]
+
+
+async def test_an_autopilot_that_rests_where_it_stops_is_told_nothing_more(
+    flying: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rests = replace(flying.monitor.dialect, stay=None)
+    monkeypatch.setattr(type(flying.monitor), "dialect", rests)
+    ordered = await holding(flying)
+    await moves(flying, 0.1, SETTLED_S + 0.5)
+    await asyncio.wait_for(ordered, 1.0)
+    assert flying.link.sent == [REPOSITION]
