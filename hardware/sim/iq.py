@@ -18,6 +18,8 @@ from hardware.sim.world import RadioLink, World
 
 _STEP_S = 0.005
 """Fading, pose and pulses are evaluated so often."""
+TELEMETRY_HELD_S = 0.5
+"""What is later is not waited for: the blocks of that time hold noise only."""
 
 
 class SimulatedIq:
@@ -85,8 +87,10 @@ class SimulatedIq:
         size = int(self._block_s * self._rate)
         begin_s = next_s = self._clock.now()
         while self._centre_hz == centre_hz:
-            known_until = track.hear(self._telemetry(), self._clock.now())
-            if known_until is None:
+            known_until = track.newest_s if track.hear(self._telemetry()) else None
+            if known_until is not None:  # later than this the link is lost, and what comes is noise
+                known_until = max(known_until, self._clock.now() - TELEMETRY_HELD_S)
+            else:
                 begin_s = next_s = self._clock.now()
             while known_until is not None and next_s + self._block_s <= known_until and self._centre_hz == centre_hz:
                 yield self._block(links, track, next_s, next_s - begin_s, size, centre_hz)
@@ -106,7 +110,8 @@ class SimulatedIq:
         steps = np.minimum((time_s / _STEP_S).astype(np.int64), int(self._block_s / _STEP_S) - 1)
         for link in links:
             moments = start_s + (np.arange(int(steps.max()) + 1) + 0.5) * _STEP_S
-            amplitude = np.array([link.amplitude(float(t), track.at(float(t))) for t in moments])
+            poses = [(float(t), track.at(float(t))) for t in moments]
+            amplitude = np.array([0.0 if pose is None else link.amplitude(t, pose) for t, pose in poses])
             offset_hz = link.frequency_hz - centre_hz
             phase = offset_hz * (since_s + time_s) + 0.5 * self._drift_hz_s * (since_s + time_s) ** 2
             total += amplitude[steps] * np.exp(2j * np.pi * phase)

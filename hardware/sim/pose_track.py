@@ -1,11 +1,18 @@
-"""The vehicle's pose between two telemetry snapshots, for what is made at moments of its own."""
+"""The vehicle's pose between its reports, for what is made at moments of its own."""
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from hardware.readings import Place, Telemetry
+from hardware.readings import HeadingSample, Place, Telemetry
 from hardware.sim.world import Pose
+
+BRIDGED_S, BRIDGED_DEG = 2.0, 120.0
+"""Between reports further apart the pose is not known: in a turn, the nose may have gone either way round."""
+KEPT_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,43 +23,56 @@ class _Fix:
 
 @dataclass(slots=True)
 class PoseTrack:
-    """Fed with telemetry snapshots; answers where the vehicle was, interpolated between the last two.
-
-    held_s: telemetry older than this is no longer waited for: the vehicle is taken to stand as last heard.
-    """
+    """Fed with telemetry, and with the headings since its last report where somebody has kept them; answers where the
+    vehicle was, interpolated between the reports around that moment."""
 
     ground_amsl_m: float = 0.0
-    held_s: float = 0.5
-    _before: _Fix | None = field(default=None, init=False)
-    _after: _Fix | None = field(default=None, init=False)
+    _fixes: deque[_Fix] = field(default_factory=deque[_Fix], init=False)
 
-    def hear(self, telemetry: Telemetry, now_s: float) -> float | None:
-        """Take in a snapshot; until when the pose is known (None: not at all yet)."""
-        heard = self._fix(telemetry)
-        if heard is None:
-            return None
-        if self._after is None or heard.at_s > self._after.at_s:
-            self._before, self._after = self._after or heard, heard
-        return max(heard.at_s, now_s - self.held_s)
+    @property
+    def newest_s(self) -> float | None:
+        """When the newest pose was; None before the first."""
+        return self._fixes[-1].at_s if self._fixes else None
 
-    def at(self, at_s: float) -> Pose:
-        """The pose at `at_s`: linear, headings the short way round, held outside the two snapshots."""
-        if self._before is None or self._after is None:
-            raise RuntimeError("no pose was heard yet")
-        span = self._after.at_s - self._before.at_s
-        part = 1.0 if span <= 0 else min(max((at_s - self._before.at_s) / span, 0.0), 1.0)
-        a, b = self._before.pose, self._after.pose
-        turn = (b.heading_deg - a.heading_deg + 180.0) % 360.0 - 180.0
-        place = Place(
-            a.place.lat + part * (b.place.lat - a.place.lat),
-            a.place.lon + part * (b.place.lon - a.place.lon),
-        )
-        return Pose(place, a.height_m + part * (b.height_m - a.height_m), (a.heading_deg + part * turn) % 360.0)
-
-    def _fix(self, telemetry: Telemetry) -> _Fix | None:
+    def hear(self, telemetry: Telemetry, headings: Sequence[HeadingSample] = ()) -> bool:
+        """Take in a snapshot, and `headings`, in time order. False when the vehicle does not know where it is."""
         if telemetry.position is None or telemetry.heading_deg is None or telemetry.heading_at_s is None:
-            return None
+            return False
         height = telemetry.altitude_relative_m
         if height is None:
             height = (telemetry.altitude_amsl_m or self.ground_amsl_m) - self.ground_amsl_m
-        return _Fix(telemetry.heading_at_s, Pose(telemetry.position, max(height, 0.3), telemetry.heading_deg))
+        height = max(height, 0.3)
+        for one in headings:
+            self._add(one.at_s, Pose(one.position or telemetry.position, height, one.heading_deg))
+        self._add(telemetry.heading_at_s, Pose(telemetry.position, height, telemetry.heading_deg))
+        return True
+
+    def at(self, at_s: float) -> Pose | None:
+        """The pose at `at_s`: linear, headings the short way round. None: it is not known, since the reports around
+        that moment are too far apart, or since none came after it."""
+        after = bisect_left(self._fixes, at_s, key=lambda fix: fix.at_s)
+        if after == len(self._fixes):
+            return None
+        b = self._fixes[after]
+        if b.at_s == at_s:
+            return b.pose
+        if after == 0:
+            return None
+        a = self._fixes[after - 1]
+        turn = (b.pose.heading_deg - a.pose.heading_deg + 180.0) % 360.0 - 180.0
+        if b.at_s - a.at_s > BRIDGED_S or abs(turn) > BRIDGED_DEG:
+            return None
+        part = (at_s - a.at_s) / (b.at_s - a.at_s)
+        place = Place(
+            a.pose.place.lat + part * (b.pose.place.lat - a.pose.place.lat),
+            a.pose.place.lon + part * (b.pose.place.lon - a.pose.place.lon),
+        )
+        height = a.pose.height_m + part * (b.pose.height_m - a.pose.height_m)
+        return Pose(place, height, (a.pose.heading_deg + part * turn) % 360.0)
+
+    def _add(self, at_s: float, pose: Pose) -> None:
+        if self._fixes and at_s <= self._fixes[-1].at_s:
+            return
+        self._fixes.append(_Fix(at_s, pose))
+        while at_s - self._fixes[0].at_s > KEPT_S:
+            self._fixes.popleft()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from hardware.channels import check_channels
 from hardware.ports import Clock, ReceiverError
-from hardware.readings import Channel, PowerSample, Telemetry
+from hardware.readings import Channel, HeadingSample, PowerSample, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
 from hardware.sim.pose_track import PoseTrack
 from hardware.sim.world import Pose, RadioLink, World
@@ -20,11 +20,12 @@ DETECTION_DB = 6.0
 
 @dataclass(slots=True)
 class _Hearing:
-    """A channel that is listened to. next_s: when its next sample is due."""
+    """A channel that is listened to. next_s: when its next sample is due. last_s: when its last one was, if any."""
 
     channel: Channel
     link: RadioLink
     next_s: float = 0.0
+    last_s: float | None = None
 
 
 class SimulatedReceiver:
@@ -33,9 +34,12 @@ class SimulatedReceiver:
     Power samples `rate_hz` times a second of the clock's time (of a tag one a pulse; a tag of another rhythm is not
     heard), each made at the vehicle's pose of that moment.
 
-    Telemetry comes in steps: a sample waits until a heading at or after its own time was heard, and place and heading
-    are interpolated between the two snapshots around it; what is `telemetry_held_s` late is not waited for. Nothing is
-    received before the vehicle knows its position.
+    Telemetry comes in steps, and late from a busy machine: a sample waits until a heading at or after its own time was
+    heard, and place and heading are interpolated between the reports around it. Where these are too far apart, no
+    sample is made: power heard in a direction that is not known would turn the bearing. `headings`, the vehicle's
+    since a time, spare the reports between two looks. While telemetry is more than `telemetry_held_s` late, an empty
+    sample of the last one's time shows that the receiver lives. Nothing is received before the vehicle knows its
+    position.
     `silence(True)` makes the receiver go mute and `unplug()` makes it vanish, for rehearsing faults.
     """
 
@@ -47,6 +51,7 @@ class SimulatedReceiver:
         rate_hz: float = 20.0,
         ground_amsl_m: float = 0.0,
         telemetry_held_s: float = 0.5,
+        headings: Callable[[float], Sequence[HeadingSample]] | None = None,
     ) -> None:
         self._world = world
         self._telemetry = pose
@@ -54,6 +59,7 @@ class SimulatedReceiver:
         self._period_s = 1.0 / rate_hz
         self._ground_amsl_m = ground_amsl_m
         self._telemetry_held_s = telemetry_held_s
+        self._headings = headings
         self._hearings: list[_Hearing] = []
         self._silent = False
         self._gone = False
@@ -82,24 +88,40 @@ class SimulatedReceiver:
         hearings = self._hearings
         if not hearings:
             raise ReceiverError(ReceiverNotOpen())
-        track = PoseTrack(self._ground_amsl_m, self._telemetry_held_s)
+        track = PoseTrack(self._ground_amsl_m)
         self._wait(hearings, self._clock.now())
         while self._hearings is hearings:
             if self._gone:
                 raise ReceiverError(ReceiverUnplugged())
-            now = self._clock.now()
-            known_until = track.hear(self._telemetry(), now)
-            if known_until is None or self._silent:
+            now, heard = self._clock.now(), self._hear(track)
+            newest_s = track.newest_s if heard else None
+            if newest_s is None or self._silent:
                 self._wait(hearings, now)
             else:
                 while self._hearings is hearings:
                     due = min(hearings, key=lambda hearing: hearing.next_s)
-                    if due.next_s > known_until:
+                    if due.next_s > newest_s:
                         break
-                    yield self._sample(due, track.at(due.next_s))
+                    pose = track.at(due.next_s)
+                    if pose is not None:
+                        due.last_s = due.next_s
+                        yield self._sample(due, pose)
                     due.next_s = self._next_s(due, due.next_s)
+                if now - newest_s > self._telemetry_held_s:
+                    for hearing in hearings:
+                        if hearing.last_s is not None:
+                            yield self._empty(hearing.last_s, hearing.channel)
             await self._clock.sleep(self._period_s)
             await asyncio.sleep(0)
+
+    def _hear(self, track: PoseTrack) -> bool:
+        since_s = track.newest_s
+        between = () if self._headings is None or since_s is None else self._headings(since_s)
+        return track.hear(self._telemetry(), between)
+
+    def _empty(self, at_s: float, channel: Channel) -> PowerSample:
+        noise_dbm = self._world.front_end.noise_dbm
+        return PowerSample(at_s, channel.frequency_hz, noise_dbm, noise_dbm, detected=False)
 
     def _wait(self, hearings: Sequence[_Hearing], now_s: float) -> None:
         """What was due until now is not heard."""
@@ -122,7 +144,7 @@ class SimulatedReceiver:
         power_dbm, clipped = hearing.link.power_dbm(at_s, pose)
         noise_dbm = self._world.front_end.noise_dbm
         if channel.pulses is not None and not (self._in_rhythm(channel) and power_dbm > noise_dbm + DETECTION_DB):
-            return PowerSample(at_s, channel.frequency_hz, noise_dbm, noise_dbm, detected=False)
+            return self._empty(at_s, channel)
         return PowerSample(at_s, channel.frequency_hz, power_dbm, noise_dbm, clipped)
 
     def _in_rhythm(self, channel: Channel) -> bool:

@@ -245,7 +245,7 @@ async def test_server_tunes_the_payload_to_several_channels_and_it_remembers(tmp
         receiver = PayloadReceiver(server.hub)
         await receiver.open(wanted)
         stream = aiter(receiver.samples())
-        got = [await asyncio.wait_for(anext(stream), 10) for _ in range(10)]
+        got = [await asyncio.wait_for(anext(stream), 60) for _ in range(10)]
         assert {sample.frequency_hz for sample in got} == {433_920_000.0, 434_100_000.0}
         await until(lambda: server.hub.agents["payload"].receiver == PayloadListening(2))
     assert Spool(tmp_path / "samples.sqlite").channels == wanted
@@ -266,7 +266,7 @@ async def test_a_tag_is_passed_on_to_the_payload_which_says_what_it_heard_and_mi
         await receiver.open([tag])
         await until(lambda: radio.channels == (tag,))
         stream = aiter(receiver.samples())
-        got = [await asyncio.wait_for(anext(stream), 10) for _ in range(10)]
+        got = [await asyncio.wait_for(anext(stream), 60) for _ in range(10)]
     assert [sample.detected for sample in got] == [number % 3 == 0 for number in numbers(got)]
     assert {sample.detected for sample in got} == {True, False}
 

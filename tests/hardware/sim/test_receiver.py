@@ -16,6 +16,7 @@ from hardware.frame import LocalFrame
 from hardware.ports import ReceiverError
 from hardware.readings import Channel, HeadingSample, Place, PowerSample, Pulses, Sweep, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen, ReceiverUnplugged
+from hardware.sim.pose_track import PoseTrack
 from hardware.sim.receiver import SimulatedReceiver
 from hardware.sim.world import Emitter, World
 
@@ -156,3 +157,76 @@ async def test_what_is_heard_at_a_frequency_does_not_depend_on_what_is_heard_bes
         return powers
 
     assert await heard(CARRIER) == await heard(Channel(150e6, Pulses(0.02, 1.3)), CARRIER)
+
+
+class LateVehicle(TurningVehicle):
+    """What it says is heard `late_s` later; it keeps the headings that were heard, as a link does."""
+
+    def __init__(self, clock: SteppedClock, late_s: float, burst_s: float = 0.05) -> None:
+        super().__init__(clock, period_s=burst_s)
+        self.start_s -= 10.0
+        self.late_s = late_s
+
+    def telemetry(self) -> Telemetry:
+        stamp = self.clock.now() - self.late_s
+        stamp -= (stamp - self.start_s) % self.period_s
+        heading = (stamp - self.start_s) * self.rate_deg_s % 360.0
+        return Telemetry(True, stamp, HOME, stamp, 100.0, 40.0, heading, stamp)
+
+    def kept(self, since_s: float) -> list[HeadingSample]:
+        newest_s = self.telemetry().at_s
+        count = int((newest_s - self.start_s) / 0.05 + 1e-6) + 1
+        times = [self.start_s + k * 0.05 for k in range(count)]
+        return [HeadingSample(t, (t - self.start_s) * 30.0 % 360.0, HOME) for t in times if t >= since_s]
+
+
+@pytest.mark.parametrize(("late_s", "burst_s"), [(0.0, 0.05), (3.0, 0.05), (0.5, 4.0), (3.0, 8.0)])
+async def test_telemetry_late_or_in_bursts_never_turns_the_bearing(late_s: float, burst_s: float) -> None:
+    """On a starved machine a fast simulation's telemetry is seconds of its time late, and comes in bursts."""
+    clock = SteppedClock(1_000_000.0)
+    vehicle = LateVehicle(clock, late_s, burst_s)
+    receiver = SimulatedReceiver(
+        world_with_emitter_at(77.0, 200.0), vehicle.telemetry, clock, headings=vehicle.kept, telemetry_held_s=0.5
+    )
+    heard = [sample for sample in await listen(receiver, 14.0) if sample.detected]
+    headings = TurningVehicle.headings(vehicle, clock.now())
+    if burst_s > 0.05:
+        headings = vehicle.kept(0.0)
+    sweep = assemble_sweep(heard, headings, frequency_hz=FREQUENCY_HZ, altitude_amsl_m=100.0)
+    reading = SparseDirectionFinder().estimate(sweep, load_pattern(SMALL_YAGI))
+    assert reading.accepted, reading.reason
+    assert abs((reading.bearing_deg - 77.0 + 180.0) % 360.0 - 180.0) < 12.0
+
+
+def test_where_the_nose_may_have_gone_either_way_round_its_direction_is_not_known() -> None:
+    def report(at_s: float, heading_deg: float) -> Telemetry:
+        return Telemetry(True, at_s, HOME, at_s, 100.0, 40.0, heading_deg, at_s)
+
+    track = PoseTrack()
+    for at_s, heading_deg in ((0.0, 0.0), (1.0, 30.0), (2.0, 200.0), (3.0, 230.0), (9.0, 240.0)):
+        assert track.hear(report(at_s, heading_deg))
+    known = {at_s: track.at(at_s) for at_s in (-0.1, 0.5, 1.0, 1.5, 2.5, 5.0, 9.0, 9.1)}
+    found = {at_s: pose.heading_deg for at_s, pose in known.items() if pose is not None}
+    assert found == pytest.approx({0.5: 15.0, 1.0: 30.0, 2.5: 215.0, 9.0: 240.0})
+
+
+async def test_a_receiver_without_telemetry_lives_and_delivers_nothing_that_counts() -> None:
+    clock = SteppedClock(1_000_000.0)
+    vehicle = LateVehicle(clock, late_s=0.0)
+    stuck = vehicle.telemetry()
+    receiver = SimulatedReceiver(
+        world_with_emitter_at(77.0, 200.0),
+        lambda: stuck if clock.now() > 1_000_001.0 else vehicle.telemetry(),
+        clock,
+        telemetry_held_s=0.5,
+    )
+    await receiver.open([CARRIER])
+    late: list[PowerSample] = []
+    async for sample in receiver.samples():
+        if clock.now() > 1_000_002.0:
+            late.append(sample)
+        if clock.now() > 1_000_005.0:
+            break
+    assert len(late) > 10
+    assert not any(sample.detected for sample in late)
+    assert {sample.at_s for sample in late} == {late[0].at_s}
