@@ -25,10 +25,14 @@ COMPARED_PATHS = 400
 
 @dataclass(frozen=True, slots=True)
 class PairedDifference:
-    """mean: s by which the place takes longer than the other, negative when it is quicker. std_error: s, of pairs."""
+    """mean: s by which the place takes longer than the other, negative when it is quicker. std_error: s, of pairs.
+
+    by_claim: the planner looks one bearing ahead for a claim here, and so does the comparison.
+    """
 
     mean: float
     std_error: float
+    by_claim: bool = False
 
 
 def difference_between(
@@ -42,11 +46,14 @@ def difference_between(
     paths: int = COMPARED_PATHS,
 ) -> PairedDifference:
     """By way of `place` instead of `other` (m ENU), path by path. Raises PlannerError when one cannot be reached."""
-    costs = [
-        expected_time_from(problem, belief, bearings, xy, options, platform_xy=platform, rollouts=paths).times
+    here, there = (
+        expected_time_from(problem, belief, bearings, xy, options, platform_xy=platform, rollouts=paths)
         for xy in (place, other)
-    ]
-    return _paired(costs[0] - costs[1])
+    )
+    if here.by_claim:
+        error = 0.0 if place == other else float(np.hypot(here.std_error, there.std_error))
+        return PairedDifference(here.mean - there.mean, error, by_claim=True)
+    return _paired(here.times - there.times)
 
 
 def difference_together(
@@ -68,8 +75,12 @@ def _paired(differences: FloatArray) -> PairedDifference:
     return PairedDifference(float(differences.mean()), float(differences.std(ddof=1) / np.sqrt(len(differences))))
 
 
-def rules_against(problem: Problem, belief: GridBelief, place: tuple[float, float]) -> tuple[RuleReason, ...]:
+def rules_against(
+    problem: Problem, belief: GridBelief, place: tuple[float, float], *, by_claim: bool = False
+) -> tuple[RuleReason, ...]:
     """Why the rollout policy would not compare this place (m ENU); `BetweenPlaces` when nothing but the lattice does.
+
+    by_claim: it looks one bearing ahead for a claim, and leaves out no place for telling little of the bias.
 
     The standoff counts as far as it was kept: it shrinks where it would leave fewer than two places (6.1).
     """
@@ -87,7 +98,7 @@ def rules_against(problem: Problem, belief: GridBelief, place: tuple[float, floa
         if clearance < kept:
             found.append(NearerThanStandoff(clearance, kept))
         places = places[clearances >= kept]
-    if isinstance(belief, JointBelief) and len(belief.errors) == 1:
+    if not by_claim and isinstance(belief, JointBelief) and len(belief.errors) == 1:
         estimated = estimate(belief, problem.estimator)
         gains = gain_beside_bias(estimated, np.vstack([xy, places]), belief.errors[0], problem.sigma, nearest=belief.h)
         share = float(gains[0] / gains[1:].max())

@@ -15,8 +15,9 @@ from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.crossing import meetings
 from planner.kernels.model import Tasks
 from planner.options import FIELD, PlannerOptions
+from planner.policy.claim_ahead import ClaimAhead, claim_ahead
 from planner.policy.dynamic_program import stands_on
-from planner.policy.rollout import SELECTIONS, Rollout
+from planner.policy.rollout import SELECTIONS, Rollout, claim_after
 from planner.policy.simulation import HORIZON, KernelName, TerminalValue, simulate
 from planner.reasons import BeliefOutOfStep, NoWay, UnusableNumber
 from planner.sampling import random_paths
@@ -28,7 +29,8 @@ class ExpectedTime:
     """Time until localization, s: mean with its standard error, median, 90 % quantile, the samples (n,).
 
     bearings: mean number still to be taken. localized_share: of the simulated flights that reached the threshold
-    before their horizon; below 1 the times are lower bounds.
+    before their horizon; below 1 the times are lower bounds. by_claim: by the chance of a claim (claim_ahead), not by
+    rollouts.
     """
 
     mean: float
@@ -38,6 +40,7 @@ class ExpectedTime:
     bearings: float
     localized_share: float
     times: FloatArray
+    by_claim: bool = False
 
 
 def plan(
@@ -93,9 +96,10 @@ def expected_time_from(
 ) -> ExpectedTime:
     """Time until localization when the next bearing is taken at xy (m ENU), then the base policy followed.
 
-    options: `base_policy` and `seed` matter. platform_xy: where the flight to xy starts; None: the platform is there
-    already. The sample paths depend on seed and number of bearings only, so that places compare on equal luck.
-    PlannerError when xy cannot be reached.
+    By the measure that `plan` chooses by: where the rollout method looks one bearing ahead for a claim
+    (planner.policy.claim_ahead), so does this. options: `method`, `base_policy` and `seed` matter. platform_xy: where
+    the flight to xy starts; None: the platform is there already. The sample paths depend on seed and number of bearings
+    only, so that places compare on equal luck. PlannerError when xy cannot be reached.
     """
     _check(belief, bearings, rollouts)
     followed, program = stands_on(problem, options.base_policy)
@@ -115,6 +119,9 @@ def expected_time_from(
         actions.costs[0] = problem.measurement_time
     if not np.isfinite(actions.costs[0]):
         raise PlannerError(NoWay(float(np.hypot(*(actions.places[0] - simulation.platform)))))
+    ahead = claim_after(problem, belief, simulation) if options.method == "rollout" else None
+    if ahead is not None:
+        return _by_claim(ahead, actions.places, float(actions.costs[0]), rollouts)
     rng = np.random.default_rng([options.seed, len(bearings)])
     paths = random_paths(belief, simulation.rules.sigma, rollouts, horizon, rng)
     tasks = Tasks(np.zeros(rollouts, dtype=np.int64), np.arange(rollouts))
@@ -130,6 +137,22 @@ def expected_time_from(
     )
 
 
+def _by_claim(ahead: ClaimAhead, place: FloatArray, cost: float, paths: int) -> ExpectedTime:
+    """place: (1, 2) m. cost: s, of flying there and measuring."""
+    chance = ahead.chance_from(place)
+    times = ahead.times(cost, float(chance[0]), paths)
+    return ExpectedTime(
+        mean=float(times.mean()),
+        std_error=float(ahead.std_errors(chance)[0]),
+        median=float(np.median(times)),
+        p90=float(np.quantile(times, 0.9)),
+        bearings=1.0 + float((times - cost).mean()) / ahead.again,
+        localized_share=1.0,
+        times=times,
+        by_claim=True,
+    )
+
+
 def _check(belief: GridBelief, bearings: Sequence[Bearing], budget: int) -> None:
     if budget < 1:
         raise PlannerError(UnusableNumber("budget", "at_least_one", str(budget)))
@@ -142,5 +165,7 @@ def warm_up() -> None:
     square = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]])
     problem = Problem((square,), sigma=0.1, threshold=5.0, measurement_time=1.0, motion=LinearMotion(5.0))
     plan(problem, prior_belief(problem), (), (0.0, 0.0), replace(FIELD, budget=16), threads=1)
-    update_joint(joint_prior(problem), Bearing(0.0, 0.0, 0.5, problem.sigma))
+    once = update_joint(joint_prior(problem), Bearing(0.0, 0.0, 0.5, problem.sigma))
+    near, here = replace(problem, threshold=100.0), np.zeros(2)
+    claim_ahead(near, once, here, lambda: np.array([[0.0, 30.0]]), lambda places: np.ones(len(places)))
     meetings(square, square, (square,))

@@ -158,7 +158,8 @@ class Problem:
     standoff: r_min, m: actions nearer than this to C95 are removed (0: unconstrained).
     action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
     the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
-    rollouts. sector_turns: None: a measurement takes as long everywhere.
+    rollouts. sector_turns: None: a measurement takes as long everywhere. next_source: who takes the bearings to come;
+    None: who took those that came.
     """
 
     area: Region
@@ -175,6 +176,7 @@ class Problem:
     likelihood: CellLikelihood = "centre"
     prior: Prior = field(default_factory=UniformPrior)
     sector_turns: SectorTurns | None = None
+    next_source: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
 from planner.study.truth import TOLD, UNKNOWN, Claim, Model, Search, Truth, learn, missions, row_named, truth_of
 from planner.study.truth import told as true_errors
+from planner.study.truth_planners import truth_planner
 
 HOME = Place(50.6234, 7.2046)
 """Anywhere: the worlds are flat."""
@@ -51,6 +52,10 @@ def truth(
     told: Annotated[
         bool, typer.Option("--told", help="joint: the search knows the true errors of the row, to compare with.")
     ] = False,
+    planner: Annotated[
+        str,
+        typer.Option(help="Who chooses the places: fisher (information alone) or crossfix (the suggested mission's)."),
+    ] = "fisher",
     seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -59,7 +64,7 @@ def truth(
     Example: crossfix study truth --row bias5 --missions 200 --json
     """
     try:
-        found = study_row(row, missions_, model, seed, flights, told)
+        found = study_row(row, missions_, model, seed, flights, told, planner)
     except StudyError as error:
         if json_:
             print_json({"error": str(error)})
@@ -71,7 +76,13 @@ def truth(
 
 
 def study_row(
-    row: str, count: int, model: str = "joint", first_seed: int = 1, flights: int = 0, told: bool = False
+    row: str,
+    count: int,
+    model: str = "joint",
+    first_seed: int = 1,
+    flights: int = 0,
+    told: bool = False,
+    planner: str = "fisher",
 ) -> Truth:
     """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before. told:
     the joint model knows the row's true errors."""
@@ -80,12 +91,15 @@ def study_row(
         raise StudyError(f"--missions must be 1 or more, got {count}")
     if told and (known != "joint" or flights or row in TAGS):
         raise StudyError("--told goes with the joint model of one emitter, and without --flights")
+    places = truth_planner(planner)
+    if places != "fisher" and (row in TAGS or row in SPEEDS):
+        raise StudyError(f"--planner goes with one emitter that stays where it is, not with {row}")
     if row in TAGS:
         return _tags_row(row, count, known, first_seed)
     wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
-    search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings)
+    search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)
     prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     if told and wanted is None:
         raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
@@ -106,7 +120,7 @@ def study_row(
         claims.append(claim)
         if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
             remark(f"{row}: {len(claims)} of {count} missions")
-    return truth_of(row, known, claims, knows)
+    return replace(truth_of(row, known, claims, knows), planner=places)
 
 
 def _tags_row(row: str, count: int, model: Model, first_seed: int) -> Truth:
@@ -131,6 +145,7 @@ def sentence(found: Truth) -> str:
     if not found.claimed:
         return f"{found.row}: none of {found.missions} missions said localized"
     known = "" if found.prior == UNKNOWN else f", {found.prior} known before"
+    known += "" if found.planner == "fisher" else f", planned by {found.planner}"
     return (
         f"{found.row}, {found.model} errors{known}: {found.missions} missions, "
         f"{found.claimed:.1%} localized in {found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; "

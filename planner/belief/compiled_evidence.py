@@ -3,8 +3,8 @@
 
 What makes it fast: the nodes of the bias are equally spaced, so what a cell needs of a bearing's Gaussian is a piece
 of one row of a table, the row by how far the error lies past a node; between rows it is interpolated linearly, and the
-loops over the nodes become vector instructions. Products are taken instead of sums of logarithms, and brought back into
-range every few bearings.
+loops over the nodes become vector instructions and touch only the nodes that the bearing reaches. Products are taken
+instead of sums of logarithms, and brought back into range every few bearings.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
 def _tabulate(table, spacing, sigma):
     """table (f, n): exp(-(f / STEPS - (n - n_0))^2 spacing^2 / (2 sigma^2)), n_0 the middle column."""
     rows, columns = table.shape
-    middle, scaled = columns // 2, spacing / sigma
+    middle, scaled = (columns - 1) // 2, spacing / sigma
     for f in range(rows):
         for n in range(columns):
             off = (f / STEPS - (n - middle)) * scaled
@@ -69,7 +69,7 @@ def _tabulate(table, spacing, sigma):
 def _tabulate_profile(table, spacing, profile, angle, unit):
     """The same of a profile (m,) about `angle`, times `unit`."""
     rows, columns = table.shape
-    middle, directions = columns // 2, len(profile)
+    middle, directions = (columns - 1) // 2, len(profile)
     for f in range(rows):
         for n in range(columns):
             turned = (angle - (f / STEPS - (n - middle)) * spacing) / (2.0 * np.pi)
@@ -81,16 +81,27 @@ def _tabulate_profile(table, spacing, profile, angle, unit):
 
 
 @jit
-def _interpolated(density, tables, i, k, f, start, below, above):
-    """Two rows of a table, weighed, onto the nodes."""
+def _interpolated(density, lower, upper, below, above):
+    """Two rows of a table, weighed, onto the nodes that they are cut to.
+
+    An index that might be negative would keep the loop from becoming vectors.
+    """
     for b in range(len(density)):
-        density[b] += below * tables[i, k, f, start + b] + above * tables[i, k, f + 1, start + b]
+        density[b] += below * lower[b] + above * upper[b]
 
 
 @jit
-def _weighed(row, density, honest, outlier):
+def _weighed(row, density, odds):
     for b in range(len(density)):
-        row[b] *= honest * density[b] + outlier
+        row[b] *= 1.0 + odds * density[b]
+
+
+@jit
+def _shared_out(table, shares):
+    """Each row times its rate's share."""
+    for r in range(table.shape[0]):
+        for b in range(table.shape[1]):
+            table[r, b] *= shares[r % len(shares)]
 
 
 @jit
@@ -107,31 +118,50 @@ def _rescaled(table):
 
 
 @jit
-def _of_cell(x, y, seen, first, spacing, scale, rate, tables, middle, table, density):
-    """Multiplies all bearings into table (k e, b), for the emitter at (x, y); returns the logarithm taken out of it."""
-    log = 0.0
+def _past(x, y, seen, i, j, first, spacing):
+    """By how many nodes peak j of bearing i lies past the first one, for the emitter at (x, y)."""
+    error = seen.angle[j] - np.arctan2(y - seen.y[i], x - seen.x[i])
+    error -= 2.0 * np.pi * np.floor(error / (2.0 * np.pi) + 0.5)
+    return (error - first) / spacing
+
+
+@jit
+def _of_cell(x, y, seen, first, spacing, odds, reach, shares, tables, past, table, density):
+    """Multiplies all bearings into table (k e, b), for the emitter at (x, y); returns the logarithm taken out of it.
+
+    A bearing's factor is taken relative to an outlier's, 1 + odds p(error), so that nodes beyond its reach keep theirs.
+    """
+    log, count, rates = 0.0, table.shape[1], odds.shape[2]
     for i in range(len(seen.x)):
-        direction = np.arctan2(y - seen.y[i], x - seen.x[i])
-        for k in range(len(scale)):
-            for b in range(len(density)):
-                density[b] = 0.0
-            # a profile was tabulated about its main peak and holds the others
-            last = seen.first[i] + 1 if seen.whole[i] >= 0 else seen.first[i + 1]
-            for j in range(seen.first[i], last):
+        # a profile was tabulated about its main peak and holds the others
+        begin, end = seen.first[i], seen.first[i] + 1 if seen.whole[i] >= 0 else seen.first[i + 1]
+        low, high = np.inf, -np.inf
+        for j in range(begin, end):
+            past[j - begin] = _past(x, y, seen, i, j, first, spacing)
+            low, high = min(low, past[j - begin]), max(high, past[j - begin])
+        for k in range(odds.shape[1]):
+            least = max(0, int(np.floor(low)) - reach[i, k])
+            most = min(count, int(np.floor(high)) + reach[i, k] + 2)
+            if least >= most:
+                continue
+            density[least:most] = 0.0
+            for j in range(begin, end):
                 share = 1.0 if seen.whole[i] >= 0 else seen.weight[j]
-                error = seen.angle[j] - direction
-                error -= 2.0 * np.pi * np.floor(error / (2.0 * np.pi) + 0.5)
-                at = (error - first) / spacing
-                nodes_past = np.floor(at)
-                fine = (at - nodes_past) * STEPS
+                node = int(np.floor(past[j - begin]))
+                fine = (past[j - begin] - node) * STEPS
                 f = int(fine)
                 above = share * (fine - f)
-                _interpolated(density, tables, i, k, f, middle - int(nodes_past), share - above, above)
-            for e in range(len(rate)):
-                honest = (1.0 - rate[e]) / scale[k]
-                _weighed(table[k * len(rate) + e], density, honest, rate[e] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
+                left, right = max(0, node - reach[i, k]), min(count, node + reach[i, k] + 2)
+                if left < right:
+                    start, stop = left - node + reach[i, k], right - node + reach[i, k]
+                    lower, upper = tables[i, k, f, start:stop], tables[i, k, f + 1, start:stop]
+                    _interpolated(density[left:right], lower, upper, share - above, above)
+            for e in range(rates):
+                _weighed(table[k * rates + e, least:most], density[least:most], odds[i, k, e])
         if i % RESCALED_EVERY == RESCALED_EVERY - 1:
+            _shared_out(table, shares[0])
             log += _rescaled(table)
+    _shared_out(table, shares[1])
     return log
 
 
@@ -160,22 +190,38 @@ def _sums(table, rates, bias, scale, rate):
 def _evidence(x, y, seen, profiles, bias, spacing, bias_weight, scale, scale_weight, rate, rate_weight, out):
     _ = SOURCES
     scales, rates, count, bearings = len(scale), len(rate), len(bias), len(seen.x)
-    middle = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
-    tables = np.empty((bearings, scales, STEPS + 2, 2 * middle + 1))
+    everywhere = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
+    reach, odds = np.empty((bearings, scales), dtype=np.int64), np.empty((bearings, scales, rates))
+    outliers, widest, most_peaks = 0.0, 0, 1
+    for i in range(bearings):
+        uniform = seen.sigma[i] / np.sqrt(2.0 * np.pi)
+        outliers += np.log(rate.max() * uniform)
+        most_peaks = max(most_peaks, seen.first[i + 1] - seen.first[i])
+        for k in range(scales):
+            reach[i, k] = everywhere
+            if seen.whole[i] < 0:
+                reach[i, k] = min(everywhere, int(np.ceil(FAR_SIGMAS * scale[k] * seen.sigma[i] / spacing)) + 1)
+            widest = max(widest, reach[i, k])
+            for e in range(rates):
+                odds[i, k, e] = (1.0 - rate[e]) / scale[k] / (rate[e] * uniform)
+    tables = np.empty((bearings, scales, STEPS + 2, 2 * widest + 2))
     for i in range(bearings):
         for k in range(scales):
+            table_of = tables[i, k, :, : 2 * reach[i, k] + 2]
             if seen.whole[i] >= 0:
                 unit = scale[k] * seen.sigma[i] * np.sqrt(2.0 * np.pi)
-                _tabulate_profile(tables[i, k], spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
-            elif i > 0 and seen.whole[i - 1] < 0 and seen.sigma[i] == seen.sigma[i - 1]:
-                tables[i, k] = tables[i - 1, k]
+                _tabulate_profile(table_of, spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
             else:
-                _tabulate(tables[i, k], spacing, scale[k] * seen.sigma[i])
+                _tabulate(table_of, spacing, scale[k] * seen.sigma[i])
     prior = np.empty((scales * rates, count))
     for r in range(scales * rates):
         prior[r] = scale_weight[r // rates] * rate_weight[r % rates] * bias_weight
-    table, density = np.empty_like(prior), np.empty(count)
+    shares = np.empty((2, rates))
+    for e in range(rates):
+        shares[0, e] = (rate[e] / rate.max()) ** RESCALED_EVERY
+        shares[1, e] = (rate[e] / rate.max()) ** (bearings % RESCALED_EVERY)
+    table, density, past = np.empty_like(prior), np.empty(count), np.empty(most_peaks)
     for c in range(len(x)):
         table[:] = prior
-        log = _of_cell(x[c], y[c], seen, bias[0], spacing, scale, rate, tables, middle, table, density)
-        out.log[c] = log + np.log(_sums(table, rates, out.bias[c], out.scale[c], out.rate[c]))
+        log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+        out.log[c] = outliers + log + np.log(_sums(table, rates, out.bias[c], out.scale[c], out.rate[c]))

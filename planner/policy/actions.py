@@ -6,6 +6,8 @@ No-fly areas, the flight area, and a minimum distance to C95 remove actions.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from planner.airspace import may_fly
@@ -17,6 +19,8 @@ from planner.types import FloatArray, PlannerError, Problem
 
 MOST_PLACES = 20_000
 """A finer lattice is refused: no budget could tell its places apart, and no map could show them."""
+SAME_PLACE_M = 5.0
+"""Nearer to a refused place than this is the same place: what stands against one stands against the other."""
 
 
 def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
@@ -38,6 +42,16 @@ def constrained_actions(problem: Problem, belief: GridBelief) -> FloatArray:
         return places
     clearance = distance_to_convex(places, confidence_region(belief))
     return places[clearance >= min(problem.standoff, np.sort(clearance)[-min(2, len(clearance))])]
+
+
+def without_refused(
+    places: FloatArray, refused: Sequence[tuple[float, float]], problem: Problem, belief: GridBelief
+) -> FloatArray:
+    """(n, 2) m: those that lie half a spacing, and at least SAME_PLACE_M, from every refused one (m ENU)."""
+    near = max(0.5 * (problem.action_spacing or belief.h), SAME_PLACE_M)
+    for place in refused:
+        places = places[np.hypot(*(places - np.array(place)).T) >= near]
+    return places
 
 
 def lattice(problem: Problem) -> FloatArray:

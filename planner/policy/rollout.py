@@ -15,7 +15,8 @@ import numpy as np
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, DiscreteSelection, Sampling
-from planner.policy.actions import constrained_actions
+from planner.policy.actions import constrained_actions, without_refused
+from planner.policy.claim_ahead import ClaimAhead, choice, claim_ahead
 from planner.policy.dynamic_program import best_places, stands_on
 from planner.policy.fisher import telling_places
 from planner.policy.simulation import HORIZON, KernelName, Simulation, TerminalValue, rules_of, simulate
@@ -130,6 +131,22 @@ class RolloutSampler:
         return random_paths(self.belief, rules.sigma, count, rules.horizon, self.rng)
 
 
+def claim_after(
+    problem: Problem, belief: GridBelief, simulation: Simulation, without: Sequence[tuple[float, float]] = ()
+) -> ClaimAhead | None:
+    """What the next bearing may lead to; None: hardly to a claim, so that rollouts decide.
+
+    without: places (m ENU) that the operator refused.
+    """
+    return claim_ahead(
+        problem,
+        belief,
+        simulation.platform,
+        lambda: without_refused(constrained_actions(problem, belief), without, problem, belief),
+        lambda places: simulation.first_actions(places).costs,
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Rollout:
     """The rollout policy over a finite action space, as a `Policy`.
@@ -167,6 +184,9 @@ class Rollout:
             terminal=self.terminal,
             program=program,
         )
+        ahead = claim_after(problem, belief, simulation, self.without)
+        if ahead is not None:
+            return choice(ahead)
         places = self._places(problem, belief, simulation, program)
         budget, paths = self.budget, 8
         if self.sampling == "deterministic":
@@ -217,9 +237,7 @@ class Rollout:
         else:
             here = (float(simulation.platform[0]), float(simulation.platform[1]))
             places = best_places(problem, belief, here, program, PROGRAM_PLACES)[0]
-        near = problem.action_spacing or belief.h
-        for refused in self.without:
-            places = places[np.hypot(*(places - np.array(refused)).T) >= 0.5 * near]
+        places = without_refused(places, self.without, problem, belief)
         if len(places) == 0:
             raise PlannerError(EveryPlaceRefused())
         reachable = np.isfinite(simulation.first_actions(places).costs)

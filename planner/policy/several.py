@@ -13,26 +13,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
-from planner.belief.estimate import estimate
+from planner.belief.coarse import coarser
+from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
+from planner.geometry import distance_to_convex
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, PlannerOptions
-from planner.policy.actions import action_space
+from planner.policy.actions import action_space, without_refused
 from planner.policy.dynamic_program import stands_on
-from planner.policy.fisher import fisher, gain_beside_bias
-from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, SELECTIONS, TELLING_SHARE
-from planner.policy.simulation import Simulation, simulate
+from planner.policy.fisher import first_best, fisher, gain_beside_bias, information_gain
+from planner.policy.rollout import MOST_LOOKS, PATH_BLOCK, PROGRAM_HORIZON, SELECTIONS, TELLING_SHARE
+from planner.policy.simulation import HORIZON, Simulation, allowed_lattice, simulate
 from planner.reasons import BudgetTooSmall, EveryPlaceRefused, NoPlaceInReach, SoonestTogether
 from planner.sampling import deterministic_paths, random_paths
 from planner.selection.types import Selection, SelectionResult
 from planner.selection.uniform import uniform
-from planner.types import BoolArray, Candidate, Decision, FloatArray, IntArray, PlannerError, Problem
+from planner.travel import straight_suffices
+from planner.types import BoolArray, Candidate, Decision, Estimate, FloatArray, IntArray, PlannerError, Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +46,23 @@ class Wanted:
     belief: GridBelief
 
 
+FEW_CELLS = 48
+"""Cells along the longer axis that rollouts start with: fewer than single plans do, since every emitter has its own."""
+
+FEW_PLACES = 120
+"""How many of the lattice's places, roughly, the base policy chooses from in rollouts."""
+
+FORECAST_PATHS = 32
+"""Of each emitter, followed to their end for the times left where the choice closed them early."""
+
+
 @dataclass(slots=True)
 class _Member:
     """One emitter's rollouts. detour: its Fisher place, flown to after a place that tells nothing of it. near: m, from
     within which a bearing is taken to tell nothing. telling: (a,) which places tell anything beside what the bearings
-    have in common."""
+    have in common. without: (p,) s, what each path costs from the detour on, NaN while nobody asked. used: rollouts."""
 
-    wanted: Wanted
+    belief: GridBelief
     simulation: Simulation
     actions: Actions
     detour: Actions
@@ -58,6 +71,7 @@ class _Member:
     paths: Paths
     telling: BoolArray
     without: FloatArray = field(default_factory=lambda: np.empty(0))
+    used: int = 0
 
     def costs(self, chosen: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s until this emitter is localized.
@@ -66,27 +80,42 @@ class _Member:
         tells nothing: the cost is that of the place, and then of the search without it.
         """
         self._reach(path_to)
-        count = path_to - path_from
         path = np.arange(path_from, path_to)
-        tasks = Tasks(np.repeat(chosen, count), np.tile(path, len(chosen)))
-        costs = self.simulation.run(self.actions, self.paths, tasks).costs.reshape(len(chosen), count)
         way = self.actions.places[chosen][:, None, :] - self.paths.targets[path][None, :, :]
-        near = np.hypot(way[..., 0], way[..., 1]) < self.near
-        wasted = self.actions.costs[chosen][:, None] + self.without[path][None, :]
-        return np.where(near | ~self.telling[chosen][:, None], wasted, costs)
+        telling = self.telling[chosen][:, None] & (np.hypot(way[..., 0], way[..., 1]) >= self.near)
+        costs = np.empty(telling.shape)
+        row, column = np.nonzero(telling)
+        costs[telling] = self._run(self.actions, chosen[row], path[column])
+        row, column = np.nonzero(~telling)
+        costs[~telling] = self.actions.costs[chosen[row]] + self._without(path[column])
+        return costs
+
+    def _run(self, actions: Actions, chosen: IntArray, path: IntArray) -> FloatArray:
+        """(n,) s of the rollouts of first actions `chosen` (n,) on the paths (n,)."""
+        if len(chosen) == 0:
+            return np.empty(0)
+        self.used += len(chosen)
+        return self.simulation.run(actions, self.paths, Tasks(chosen.astype(np.int64), path)).costs
+
+    def _without(self, path: IntArray) -> FloatArray:
+        """(n,) s from the detour on, of the paths (n,); every path is run once."""
+        asked = np.unique(path[np.isnan(self.without[path])])
+        self.without[asked] = self._run(self.detour, np.zeros(len(asked), dtype=np.int64), asked)
+        return self.without[path]
 
     def _reach(self, count: int) -> None:
-        """Paths and what they cost without the first place, so that path j is the same for every action."""
+        """More paths, drawn in blocks so that path j is the same for every action."""
         rules = self.simulation.rules
         while len(self.paths.targets) < count:
-            drawn = random_paths(self.wanted.belief, rules.sigma, PATH_BLOCK, rules.horizon, self.rng)
+            drawn = random_paths(self.belief, rules.sigma, PATH_BLOCK, rules.horizon, self.rng)
             self.paths = Paths(*(np.concatenate(arrays) for arrays in zip(self.paths, drawn, strict=True)))
-        have = len(self.without)
-        if have < len(self.paths.targets):
-            added = np.arange(have, len(self.paths.targets))
-            tasks = Tasks(np.zeros(len(added), dtype=np.int64), added)
-            more = self.simulation.run(self.detour, self.paths, tasks).costs
-            self.without = np.concatenate([self.without, more])
+        missing = len(self.paths.targets) - len(self.without)
+        self.without = np.concatenate([self.without, np.full(missing, np.nan)])
+
+    def to_the_end(self) -> _Member:
+        """The same emitter with rollouts that are not closed early, on paths of their own."""
+        simulation = replace(self.simulation, rules=self.simulation.rules._replace(horizon=HORIZON))
+        return replace(self, simulation=simulation, paths=_no_paths(HORIZON), without=np.empty(0), used=0)
 
 
 @dataclass(slots=True)
@@ -95,8 +124,12 @@ class _Together:
 
     members: Sequence[_Member]
     pool: ThreadPoolExecutor
-    used: int = 0
     last: dict[int, list[FloatArray]] = field(default_factory=dict[int, list[FloatArray]])
+
+    @property
+    def used(self) -> int:
+        """Rollouts so far."""
+        return sum(member.used for member in self.members)
 
     def sample(self, actions: IntArray, path_from: int, path_to: int) -> FloatArray:
         """(k, path_to - path_from) s: the mean time of the members."""
@@ -106,7 +139,6 @@ class _Together:
             return member.costs(chosen, path_from, path_to)
 
         costs = np.stack(list(self.pool.map(of, self.members)))
-        self.used += costs.size
         for index, row in zip(chosen, costs.max(axis=0), strict=True):
             self.last.setdefault(int(index), []).append(row)
         return costs.mean(axis=0)
@@ -127,10 +159,16 @@ def plan_several(
     flown for by itself from the place on, which is a lower bound. Raises PlannerError when no place is allowed or
     reachable.
     """
-    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
+    copies = [replace(one, belief=coarser(one.belief, FEW_CELLS)) for one in wanted]
+    following = _following(wanted[0].problem)
+    simulations = [_simulation(one, platform, options.base_policy, following, PROGRAM_HORIZON) for one in copies]
     places = _places(wanted, simulations[0], without)
+    estimates = [estimate(one.belief, one.problem.estimator) for one in copies]
+    gains = np.stack([_gains(one, spread, places) for one, spread in zip(wanted, estimates, strict=True)])
+    telling = np.stack([_telling(one, gain) for one, gain in zip(wanted, gains, strict=True)])
     # what tells nothing of any of them is no next place, however soon it is reached
-    places = places[np.any([telling_beside_bias(one.problem, one.belief, places) for one in wanted], axis=0)]
+    some = telling.any(axis=0)
+    places, gains, telling = places[some], gains[:, some], telling[:, some]
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
     budget, count = paths_among(options.budget, len(wanted)), 0
     if options.sampling == "deterministic":
@@ -138,15 +176,21 @@ def plan_several(
             raise PlannerError(BudgetTooSmall(budget, len(places)))
         count = 2 ** int(np.log2(budget // len(places)))
         budget = count * len(places)
+    near = standoff_among(wanted[0].problem, len(places), len(wanted))
     members = [
-        _member(one, simulation, places, platform, rng, count, standoff_among(one.problem, len(places), len(wanted)))
-        for one, simulation, rng in zip(wanted, simulations, chances, strict=True)
+        _member(one, simulation, places, _detour(one, gain, places), rng, count, near, tells)
+        for one, simulation, gain, rng, tells in zip(copies, simulations, gains, chances, telling, strict=True)
     ]
     with ThreadPoolExecutor(threads) as pool:
         together = _Together(members, pool)
         least = members[0].actions.costs
         result = _selection(options, budget, least)(together.sample, len(places), budget, chances[0])
-    return _decision(places, result, together)
+        last = together
+        if any(simulation.rules.horizon < HORIZON for simulation in simulations):
+            last = _Together([member.to_the_end() for member in members], pool)
+            last.sample(np.array([result.best]), 0, FORECAST_PATHS)
+    rollouts = together.used + (0 if last is together else last.used)
+    return _decision(places, result, len(members), np.concatenate(last.last[result.best]), rollouts)
 
 
 def times_together(
@@ -160,40 +204,67 @@ def times_together(
 
     infinite by way of a place without a way to it.
     """
-    simulations = [_simulation(one, platform, options.base_policy) for one in wanted]
+    simulations = [_simulation(one, platform, options.base_policy, None, HORIZON) for one in wanted]
     allowed = len(_places(wanted, simulations[0], ()))
     chances = np.random.default_rng([options.seed, *(w.belief.bearings for w in wanted)]).spawn(len(wanted))
-    members = [
-        _member(one, simulation, places, platform, rng, 0, standoff_among(one.problem, allowed, len(wanted)))
-        for one, simulation, rng in zip(wanted, simulations, chances, strict=True)
-    ]
+    near = standoff_among(wanted[0].problem, allowed, len(wanted))
+    members: list[_Member] = []
+    for one, simulation, rng in zip(wanted, simulations, chances, strict=True):
+        choice = fisher(one.problem, one.belief, platform)
+        telling = telling_beside_bias(one.problem, one.belief, places)
+        members.append(_member(one, simulation, places, (choice.x, choice.y), rng, 0, near, telling))
     chosen = np.arange(len(places))
     return np.stack([member.costs(chosen, 0, paths) for member in members]).mean(axis=0)
 
 
-def _simulation(wanted: Wanted, platform: tuple[float, float], base_policy: BasePolicy) -> Simulation:
-    """Rollouts to the end: how long the last of them takes is not known from a program's mean values."""
+def _following(problem: Problem) -> FloatArray | None:
+    """(n, 2) m: every k-th column and row of the lattice that may be flown to; None: all of it, since it is small or
+    ways lead around something."""
+    places = allowed_lattice(problem)
+    if len(places) <= FEW_PLACES or not straight_suffices(problem):
+        return None
+    every = int(np.ceil(np.sqrt(len(places) / FEW_PLACES)))
+    row_and_column = np.rint((places - places.min(axis=0)) / problem.action_spacing).astype(np.int64)
+    kept = places[(row_and_column % every == every // 2).all(axis=1)]
+    return np.ascontiguousarray(kept) if len(kept) >= 2 else None
+
+
+def _simulation(
+    wanted: Wanted, platform: tuple[float, float], base_policy: BasePolicy, following: FloatArray | None, horizon: int
+) -> Simulation:
+    """Rollouts of `horizon` bearings where the program's table closes them, else to their end."""
     followed, program = stands_on(wanted.problem, base_policy)
-    return simulate(wanted.problem, wanted.belief, platform, base_policy=followed, program=program)
+    horizon = HORIZON if program is None else horizon
+    return simulate(
+        wanted.problem,
+        wanted.belief,
+        platform,
+        base_policy=followed,
+        horizon=horizon,
+        program=program,
+        places=following,
+    )
+
+
+def _no_paths(horizon: int) -> Paths:
+    return Paths(np.empty((0, 2)), np.empty((0, horizon)))
 
 
 def _member(
     wanted: Wanted,
     simulation: Simulation,
     places: FloatArray,
-    platform: tuple[float, float],
+    detour_to: tuple[float, float],
     rng: np.random.Generator,
     deterministic: int,
     near: float,
+    telling: BoolArray,
 ) -> _Member:
     """deterministic: how many equal-mass paths there are, 0 for random ones."""
-    choice = fisher(wanted.problem, wanted.belief, platform)
-    detour = simulation.first_actions(np.array([[choice.x, choice.y]]))
+    detour = simulation.first_actions(np.array([detour_to]))
     horizon = simulation.rules.horizon
-    none = Paths(np.empty((0, 2)), np.empty((0, horizon)))
-    paths = deterministic_paths(wanted.belief, deterministic, horizon) if deterministic else none
-    telling = telling_beside_bias(wanted.problem, wanted.belief, places)
-    return _Member(wanted, simulation, simulation.first_actions(places), detour, near, rng, paths, telling)
+    paths = deterministic_paths(wanted.belief, deterministic, horizon) if deterministic else _no_paths(horizon)
+    return _Member(wanted.belief, simulation, simulation.first_actions(places), detour, near, rng, paths, telling)
 
 
 def telling_beside_bias(problem: Problem, belief: GridBelief, places: FloatArray) -> BoolArray:
@@ -202,12 +273,31 @@ def telling_beside_bias(problem: Problem, belief: GridBelief, places: FloatArray
     Rollouts take the bearings to come as independent, so that a craft which stays where it is would seem to halve an
     error that it only measures again. The bias is that of the source with the most bearings.
     """
+    wanted = Wanted(problem, belief)
+    return _telling(wanted, _gains(wanted, estimate(belief, problem.estimator), places))
+
+
+def _gains(wanted: Wanted, estimated: Estimate, places: FloatArray) -> FloatArray:
+    """(n,) by how much each place shrinks this emitter's uncertainty, an uncertain bias counted in."""
+    belief = wanted.belief
     if not isinstance(belief, JointBelief) or not belief.errors:
-        return np.ones(len(places), dtype=bool)
+        return information_gain(estimated, places, nearest=belief.h)
     errors = max(belief.errors, key=lambda one: one.bearings)
-    estimated = estimate(belief, problem.estimator)
-    gains = gain_beside_bias(estimated, places, errors, problem.sigma, nearest=belief.h)
+    return gain_beside_bias(estimated, places, errors, wanted.problem.sigma, nearest=belief.h)
+
+
+def _telling(wanted: Wanted, gains: FloatArray) -> BoolArray:
+    if not isinstance(wanted.belief, JointBelief) or not wanted.belief.errors:
+        return np.ones(len(gains), dtype=bool)
     return np.asarray(gains >= TELLING_SHARE * gains.max())
+
+
+def _detour(wanted: Wanted, gains: FloatArray, places: FloatArray) -> tuple[float, float]:
+    """Of the places (n, 2) with these gains (n,), the one that tells most of this emitter, r_min off its C95 (6.1)."""
+    clearance = distance_to_convex(places, confidence_region(wanted.belief))
+    far = clearance >= min(wanted.problem.standoff, float(np.sort(clearance)[-min(2, len(clearance))]))
+    best = first_best(np.where(far, gains, 0.0))
+    return float(places[best, 0]), float(places[best, 1])
 
 
 FEWEST_PATHS = 250
@@ -236,10 +326,7 @@ def standoff_among(problem: Problem, places: int, emitters: int) -> float:
 def _places(wanted: Sequence[Wanted], simulation: Simulation, without: Sequence[tuple[float, float]]) -> FloatArray:
     """(n, 2) m: wherever the platform may measure and can get to."""
     problem, belief = wanted[0].problem, wanted[0].belief
-    places = action_space(problem, belief)
-    near = problem.action_spacing or belief.h
-    for refused in without:
-        places = places[np.hypot(*(places - np.array(refused)).T) >= 0.5 * near]
+    places = without_refused(action_space(problem, belief), without, problem, belief)
     if len(places) == 0:
         raise PlannerError(EveryPlaceRefused())
     reachable = np.isfinite(simulation.first_actions(places).costs)
@@ -255,22 +342,21 @@ def _selection(options: PlannerOptions, budget: int, least: FloatArray) -> Selec
     return partial(uniform, least=least, stride=max(1, budget // len(least) // MOST_LOOKS))
 
 
-def _decision(places: FloatArray, result: SelectionResult, together: _Together) -> Decision:
+def _decision(places: FloatArray, result: SelectionResult, emitters: int, times: FloatArray, rollouts: int) -> Decision:
     best = result.best
     tried = int(np.isfinite(result.means).sum())
-    times = np.concatenate(together.last[best])
     candidates = tuple(
         Candidate(float(x), float(y), float(mean), float(error), int(count), int(dropped) or None)
         for (x, y), mean, error, count, dropped in zip(
             places, result.means, result.std_errors, result.counts, result.dropped_in_round, strict=True
         )
     )
-    reason = SoonestTogether(float(result.means[best]), len(together.members), tried)
+    reason = SoonestTogether(float(result.means[best]), emitters, tried)
     return Decision(
         x=float(places[best, 0]),
         y=float(places[best, 1]),
         reason=reason,
         candidates=candidates,
         times=times,
-        rollouts=together.used,
+        rollouts=rollouts,
     )

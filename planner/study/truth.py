@@ -22,9 +22,9 @@ from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.geometry import bounds, contains, distance_to_convex
 from planner.motion import flight_time
-from planner.policy.fisher import fisher
 from planner.study.error_worlds import ROWS, Row
 from planner.study.errors import StudyError
+from planner.study.truth_planners import TruthPlanner, next_place
 from planner.types import Bearing, FloatArray, InconsistentBearings, LocalizationRule, Problem
 
 Model = Literal["joint", "independent"]
@@ -63,6 +63,7 @@ class Truth:
 
     in_c95_low, in_c95_high: Wilson's 95 % interval. mean_s: s until the claim or the last bearing. bias_inside: share
     in which the bias was within two of its stated standard deviations. prior: what was known of the sensor before.
+    planner: who chose the places.
     """
 
     row: str
@@ -79,6 +80,7 @@ class Truth:
     stated_mean_m: float
     bias_inside: float
     prior: str = UNKNOWN
+    planner: TruthPlanner = "fisher"
 
     def as_json(self) -> dict[str, Any]:
         """Shares and times rounded to what the missions can tell; None: no mission told."""
@@ -87,12 +89,14 @@ class Truth:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """The task that is flown. platform: m ENU, where it starts. most_bearings: a mission ends unclaimed after these."""
+    """The task that is flown. platform: m ENU, where it starts. most_bearings: a mission ends unclaimed after these.
+    planner: who chooses the places."""
 
     problem: Problem
     rule: LocalizationRule
     platform: tuple[float, float]
     most_bearings: int = 20
+    planner: TruthPlanner = "fisher"
 
 
 def missions(
@@ -149,7 +153,7 @@ def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelie
     belief = unknown
     here, time, bearings = np.array(search.platform), 0.0, list[Bearing]()
     while True:
-        choice = fisher(problem, belief, (float(here[0]), float(here[1])))
+        choice = next_place(search.planner, problem, row, belief, bearings, (float(here[0]), float(here[1])))
         place = np.array([choice.x, choice.y])
         time += float(flight_time(problem.motion, float(np.hypot(*(place - here))), 0.0)) + problem.measurement_time
         here = place

@@ -46,6 +46,15 @@ def test_a_search_that_is_told_the_true_errors_says_so() -> None:
     assert "joint errors, the true errors known before: 1 missions" in out
 
 
+def test_the_flown_planner_chooses_other_places_in_the_same_world() -> None:
+    flown = json.loads(run("--row", "right", "--missions", "2", "--planner", "crossfix", "--json")[1])
+    base = json.loads(run("--row", "right", "--missions", "2", "--json")[1])
+    assert (flown["planner"], base["planner"]) == ("crossfix", "fisher")
+    assert flown["claimed"] == base["claimed"] == 1.0
+    assert flown["mean_s"] != base["mean_s"]
+    assert "planned by crossfix" in run("--row", "right", "--missions", "1", "--planner", "crossfix")[1]
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
@@ -55,6 +64,8 @@ def test_a_search_that_is_told_the_true_errors_says_so() -> None:
         (("--row", "bias6"), "there is no row 'bias6'"),
         (("--row", "bias5", "--missions", "0"), "--missions must be 1 or more"),
         (("--row", "bias5", "--model", "some"), "there is no model 'some'"),
+        (("--row", "bias5", "--planner", "mine"), "there is no planner 'mine'"),
+        (("--row", "tags_4", "--planner", "crossfix"), "not with tags_4"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_one_line(arguments: tuple[str, ...], says: str) -> None:

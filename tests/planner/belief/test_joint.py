@@ -67,7 +67,7 @@ def random_bearings(rng, count):
     ]
 
 
-@pytest.mark.parametrize("count", [1, 2, 5, 19])
+@pytest.mark.parametrize("count", [1, 2, 5, compiled_evidence.RESCALED_EVERY, 19])
 def test_the_compiled_evidence_is_that_of_the_readable_one(count):
     rng = np.random.default_rng(count)
     seen = sightings(random_bearings(rng, count))

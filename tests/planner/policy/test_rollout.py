@@ -1,5 +1,6 @@
 """The rollout policy and its sampler."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from refusals import refusing
 
 from planner.belief.grid import prior_belief
 from planner.kernels.model import CLOSED_FEATURES
+from planner.policy.actions import SAME_PLACE_M
 from planner.policy.rollout import Rollout, RolloutSampler
 from planner.policy.simulation import simulate
 from planner.reasons import BudgetTooSmall, EveryPlaceRefused, FixedSamplePaths, UnusableNumber
@@ -76,6 +78,14 @@ def test_places_and_actions_ask_the_same_paths():
     assert (one.sample(np.arange(3), 0, 30) == two.sample_places(two.places, 0, 30)).all()
 
 
+def test_threads_share_the_work_and_change_nothing():
+    """Also when several plans want them at once, as in a server with several missions."""
+    alone = sampler("crn").sample(np.arange(3), 0, 100)
+    with ThreadPoolExecutor(4) as plans:
+        found = list(plans.map(lambda n: sampler("crn", threads=n).sample(np.arange(3), 0, 100), (2, 3, 2, 3, 2)))
+    assert all((costs == alone).all() for costs in found)
+
+
 def test_a_cut_rollout_is_closed_by_the_terminal_value():
     seen = []
 
@@ -133,6 +143,15 @@ def test_a_refused_place_is_not_offered_again():
     second = rollout(without=((first.x, first.y),))
     assert (second.x, second.y) != (first.x, first.y)
     assert len(second.candidates) == 63
+
+
+def test_on_a_fine_lattice_the_places_beside_a_refused_one_are_not_offered_either():
+    fine = replace(PROBLEM, flight_area=(rectangle(0, 0, 60, 60),), action_spacing=2.0)
+    first = rollout(problem=fine, budget=2_000)
+    second = rollout(problem=fine, budget=2_000, without=((first.x, first.y),))
+    away = [np.hypot(c.x - first.x, c.y - first.y) for c in second.candidates]
+    assert min(away) >= SAME_PLACE_M
+    assert min(away) < SAME_PLACE_M + 2.0
 
 
 def test_places_without_a_way_are_no_candidates():

@@ -6,16 +6,20 @@ import numpy as np
 import pytest
 from refusals import refusing
 
+from planner.belief.estimate import estimate
 from planner.belief.grid import fold
+from planner.belief.joint import joint_prior, update_joint
 from planner.kernels.model import Tasks
-from planner.options import FIELD
+from planner.options import CROSSFIX, FIELD
 from planner.plan import plan
-from planner.policy.several import Wanted, plan_several, standoff_among
+from planner.policy.actions import action_space
+from planner.policy.several import FORECAST_PATHS, Wanted, plan_several, standoff_among, telling_beside_bias
 from planner.policy.simulation import simulate
+from planner.policy.value_table import program_for
 from planner.reasons import BudgetTooSmall, EveryPlaceRefused, SoonestTogether
 from planner.sampling import random_paths
 from planner.study.scenarios import scenario
-from planner.types import Bearing
+from planner.types import Bearing, LinearConstantMotion
 
 WORLD = scenario("field")
 PROBLEM = WORLD.problem
@@ -111,3 +115,36 @@ def test_every_selection_and_sampling_decides(selection, sampling):
 def test_deterministic_paths_need_a_budget_for_every_place():
     with refusing(BudgetTooSmall):
         plan_several(wanted((60.0, 60.0), (250.0, 70.0)), HOME, replace(FIELD, sampling="deterministic", budget=20))
+
+
+def test_rollouts_closed_by_the_program_still_tell_the_times_to_the_end():
+    options = replace(CROSSFIX, budget=250)
+    problem = replace(PROBLEM, motion=LinearConstantMotion(7.0, 11.2), estimator="geometric_median")
+    assert program_for(problem) is not None
+    tags = wanted((60.0, 60.0), (250.0, 70.0), problem=problem)
+    decision = plan_several(tags, HOME, options)
+    assert len(decision.times) == FORECAST_PATHS
+    least = 11.2 + PROBLEM.measurement_time + np.hypot(decision.x - HOME[0], decision.y - HOME[1]) / 7.0
+    assert (decision.times >= least).all()
+    each = np.mean([expected_s(tag, (decision.x, decision.y)) for tag in tags])
+    assert isinstance(decision.reason, SoonestTogether)
+    assert decision.reason.mean_time_s == pytest.approx(each, rel=0.25)
+
+
+def test_what_tells_nothing_of_an_emitter_is_not_simulated():
+    tags = [Wanted(one.problem, joint(one)) for one in wanted((60.0, 60.0), (250.0, 70.0))]
+    places = action_space(PROBLEM, tags[0].belief)
+    telling = [telling_beside_bias(PROBLEM, tag.belief, places) for tag in tags]
+    assert not all(some.all() for some in telling)
+    decision = plan_several(tags, HOME, OPTIONS)
+    values = 2 * sum(candidate.rollouts for candidate in decision.candidates)
+    assert 0 < decision.rollouts < values
+
+
+def joint(one):
+    """Heard twice, by a sensor whose bias nobody knows."""
+    target = estimate(one.belief, "expected_value")
+    belief = joint_prior(PROBLEM)
+    for x, y in (HOME, (20.0, 10.0)):
+        belief = update_joint(belief, Bearing(x, y, float(np.arctan2(target.y - y, target.x - x)), PROBLEM.sigma))
+    return belief
