@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,8 @@ from hardware.sim.walk import Gait
 
 EDGE_M = 10.0
 """An emitter stays so far inside the suggested area."""
+LIMITS = ((0.001, 1e6), (0.01, 3600.0), (0.0, 100.0))
+"""Of a frequency (MHz), a pulse period (s) and a speed (m/s), as somebody writes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,36 @@ EMITTERS = (
     SimulatedEmitter(1_575_420_000.0),
 )
 """The suggested mission's emitter, and those of the page's presets (wildlife tag, rescue beacon, interference)."""
+
+GAITS: tuple[Gait, ...] = ("animal", "walking", "drifting")
+FORM = "MHZ, MHZ/PULSE_PERIOD_S, and ,GAIT:SPEED behind either, as in 150.1, 150.1/1.5 or 150.1/1.5,animal:0.2"
+
+
+def read_emitter(text: str) -> SimulatedEmitter:
+    """An emitter as somebody writes it (FORM). Raises ValueError that shows the form."""
+    radio, _, motion = text.partition(",")
+    frequency, _, period = radio.partition("/")
+    gait, _, speed = motion.partition(":")
+    known: Gait | None = next((one for one in GAITS if one == gait.strip()), None)
+    try:
+        numbers = [float(part) for part in (frequency, period or "1", speed if motion else "1")]
+    except ValueError:
+        numbers = [math.nan]
+    in_limits = all(low <= number <= high for number, (low, high) in zip(numbers, LIMITS, strict=False))  # NaN: in none
+    if not in_limits or ("/" in radio and not period) or ("," in text and known is None):
+        raise ValueError(f"{text!r} is no simulated emitter: write {FORM}; gaits: {', '.join(GAITS)}")
+    mhz, period_s, speed_m_s = numbers
+    frequency_hz = float(round(mhz * 1e6))
+    return SimulatedEmitter(frequency_hz, period_s if period else None, known, speed_m_s if known else 0.0)
+
+
+def world_of(texts: Sequence[str]) -> tuple[SimulatedEmitter, ...]:
+    """What is always there, and what these texts add or put in its place. Raises ValueError also for one frequency
+    named twice."""
+    own = {emitter.frequency_hz: emitter for emitter in map(read_emitter, texts)}
+    if len(own) < len(texts):
+        raise ValueError("two simulated emitters have one frequency: a receiver could not tell them apart")
+    return (*(other for other in EMITTERS if other.frequency_hz not in own), *own.values())
 
 
 def emitter_places(seed: int, home: Place, emitters: Sequence[SimulatedEmitter]) -> Mapping[float, Place]:

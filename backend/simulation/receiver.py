@@ -9,7 +9,7 @@ from backend.simulation.emitters import EMITTERS, SimulatedEmitter, emitter_plac
 from backend.simulation.walls import walls
 from hardware.clock import ScaledClock
 from hardware.ports import ReceiverError, Vehicle
-from hardware.readings import Channel, Place, PowerSample, Telemetry
+from hardware.readings import Channel, HeadingSample, Place, PowerSample, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.reasons.simulation import HomeNotKnown
 from hardware.sim.receiver import SimulatedReceiver
@@ -17,14 +17,13 @@ from hardware.sim.walk import Walk
 from hardware.sim.world import Emitter, World
 
 TELEMETRY_HELD_WALL_S = 0.25
-"""The simulated receiver waits so long for the pose of its samples, however fast the simulation runs."""
+"""Telemetry may be so late before the receiver says that it is alive without it, however fast the simulation runs."""
 
 
 class EmittersAroundHome:
     """The Receiver port.
 
-    truth: where each simulated emitter is at first, by its frequency; empty until the home is known. pose: what tells
-    where the antenna is; whoever knows it better than the vehicle's link sets another before it is first opened.
+    truth: where each simulated emitter is at first, by its frequency; empty until the home is known.
     """
 
     def __init__(
@@ -43,7 +42,12 @@ class EmittersAroundHome:
         self._receiver: SimulatedReceiver | None = None
         self.truth: Mapping[float, Place] = {}
         self._transmitting: Mapping[float, Emitter] = {}
-        self.pose: Callable[[], Telemetry] = vehicle.telemetry
+        self._pose: Callable[[], Telemetry] = vehicle.telemetry
+        self._headings: Callable[[float], Sequence[HeadingSample]] | None = vehicle.headings
+
+    def follow(self, pose: Callable[[], Telemetry]) -> None:
+        """Where the antenna is, from somebody who knows it better than the vehicle's link; before the first opening."""
+        self._pose, self._headings = pose, None
 
     async def open(self, channels: Sequence[Channel]) -> None:
         """See the Receiver port. Raises ReceiverError also while the home is not known."""
@@ -62,10 +66,11 @@ class EmittersAroundHome:
         reflectors = walls(self._seed, home) if self._world == "multipath" else ()
         return SimulatedReceiver(
             World(emitters, reflectors=reflectors, seed=self._seed),
-            self.pose,
+            self._pose,
             self._clock,
             ground_amsl_m=telemetry.home_amsl_m or 0.0,
             telemetry_held_s=max(0.5, TELEMETRY_HELD_WALL_S * self._clock.factor),
+            headings=self._headings,
         )
 
     def _emitter(self, wanted: SimulatedEmitter) -> Emitter:

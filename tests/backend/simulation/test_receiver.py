@@ -6,7 +6,7 @@ from backend.simulation.emitters import SimulatedEmitter, emitter_places
 from backend.simulation.receiver import EmittersAroundHome
 from hardware.clock import ScaledClock
 from hardware.ports import ReceiverError
-from hardware.readings import Channel, Place, Pulses, Telemetry
+from hardware.readings import Channel, HeadingSample, Place, Pulses, Telemetry
 from hardware.reasons.receiver import ReceiverNotOpen
 from hardware.reasons.simulation import HomeNotKnown
 
@@ -15,7 +15,7 @@ HOME = Place(50.0, 7.0)
 
 
 class ParkedVehicle:
-    """Only its telemetry is asked."""
+    """Only its telemetry and its headings are asked."""
 
     def __init__(self, clock: ScaledClock) -> None:
         self.clock = clock
@@ -33,6 +33,10 @@ class ParkedVehicle:
             home=self.home,
             home_amsl_m=100.0,
         )
+
+    def headings(self, since_s: float) -> list[HeadingSample]:
+        now = self.clock.now()
+        return [HeadingSample(now, 0.0, self.home)] if now >= since_s else []
 
 
 async def test_the_emitters_wait_for_the_vehicle_to_know_its_home() -> None:
