@@ -22,6 +22,7 @@ from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_
 from hardware.frame import LocalFrame
 from hardware.readings import HeadingSample, Place, PowerSample, PreflightCheck
 from hardware.reasons.antenna import ReceiverClockOff
+from hardware.reasons.vehicle_news import ClockRateOdd
 
 WHOLE_TURN_DEG = 355.0
 LOOK_S = 0.2
@@ -58,7 +59,11 @@ async def check_by_hand(
         trouble = listening.trouble
     finally:
         await listening.stop()
-    found = await asyncio.to_thread(_judge, equipment, mission, samples, headings, here, known, trouble)
+    rate = equipment.vehicle.telemetry().odd_clock_rate
+    if rate is not None:
+        found = PreflightCheck("antenna", False, ClockRateOdd(rate))
+    else:
+        found = await asyncio.to_thread(_judge, equipment, mission, samples, headings, here, known, trouble)
     fact = check_fact(replace(found, blocking=found.blocking and not found.ok))
     return AntennaChecked(check=fact, emitter=known, by=by)
 

@@ -69,7 +69,8 @@ async def checklist(
     terrain = None if grounds is None or home is None else await grounds.around(home)
     task, sound = await asyncio.to_thread(task_at, mission, equipment.vehicle.telemetry(), terrain)
     least_m = None if task is None else await asyncio.to_thread(least_return_altitude_m, task)
-    returns = await return_altitude_check(mission.flight, equipment.vehicle, least_m)
+    over_terrain = task is not None and task.ground.terrain is not None
+    returns = await return_altitude_check(mission.flight, equipment.vehicle, least_m, over_terrain)
     found += [sound] if returns is None else [returns, sound]
     if task is not None:
         found += await asyncio.to_thread(ground_checks, task)

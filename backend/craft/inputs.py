@@ -12,7 +12,7 @@ from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
 from backend.spec import LearnedErrors, Place
 from hardware.authority import Authority
-from hardware.reasons.vehicle_news import AutopilotWords
+from hardware.reasons.vehicle_news import AutopilotWords, ClockRateOdd
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +136,18 @@ class SaidNoMore:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockOdd:
+    """The autopilot's clock runs at another rate than ours: its headings cannot be dated."""
+
+    because: ClockRateOdd
+
+
+@dataclass(frozen=True, slots=True)
+class ClockAgrees:
+    """The two clocks run at one rate again."""
+
+
+@dataclass(frozen=True, slots=True)
 class WorkVetoed:
     """Safety refused a vehicle command right before it was sent."""
 
@@ -182,6 +194,13 @@ class BatteryLow:
 
 
 @dataclass(frozen=True, slots=True)
+class ChargeLow:
+    """The battery runs low, and nobody has worked out what the way home takes: an alert, and nothing is ordered."""
+
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
 class BatteryReported:
     """The charge is known again, and suffices."""
 
@@ -219,9 +238,10 @@ class Broke:
 
 @dataclass(frozen=True, slots=True)
 class Restarted:
-    """The server came back, and this is who flies now."""
+    """The server came back, and this is who flies now. on_ground: the vehicle says that it stands there, disarmed."""
 
     authority: Authority
+    on_ground: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,12 +271,15 @@ CraftInput = (
     | PlaceNotTaken
     | Said
     | SaidNoMore
+    | ClockOdd
+    | ClockAgrees
     | WorkVetoed
     | AuthorityHeard
     | FailsafeEnded
     | LinkDown
     | LinkUp
     | BatteryLow
+    | ChargeLow
     | BatteryReported
     | AutopilotReturns
     | HomeReached

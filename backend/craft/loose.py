@@ -1,14 +1,16 @@
 """A craft that flies for no mission: shown, and held, brought home or landed when a person says so.
 
 It answers as one whose search is over (machine.py): the same ladder of an order, the same silence while a pilot has it.
-Nothing is sent by itself. What happens is logged and shown; no mission's journal tells of it.
+Nothing is sent by itself. What happens is logged and shown, alerts too: the autopilot's words, a lost GPS, a battery
+that runs low. No mission's journal tells of it.
 """
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from backend import commands
@@ -20,7 +22,11 @@ from backend.craft.machine import transition
 from backend.craft.safety import resume_vetoes
 from backend.craft.state import CraftState, pilot_has
 from backend.craft.watch.authority import AuthorityWatch
+from backend.craft.watch.charge import ChargeWatch
 from backend.craft.watch.links import LinkWatch
+from backend.craft.watch.said import SaidWatch
+from backend.events import AlertCleared, AlertRaised, Event
+from backend.ports import CraftAlert
 from backend.reasons import Reason
 from backend.reasons.access import CommandIdReused
 from backend.reasons.refusals import OnTheGround
@@ -28,11 +34,13 @@ from backend.search.effects import Record, Refuse
 from backend.search.state import SearchState
 from hardware.authority import NOBODY
 from hardware.readings import Telemetry
+from hardware.reasons.vehicle_news import AutopilotSaid
 
 log = logging.getLogger("crossfix.craft")
 
 TICK_S = 0.2
 LANDED_FOR_S = 1.0
+HEARD_AGAIN_WALL_S = 1.0
 OVER = SearchState(started_at_s=0.0, outcome="aborted")
 """The search of a craft that searches nothing."""
 
@@ -48,7 +56,11 @@ class LooseCraft:
     state: CraftState | None = None
     _hands: Hands = field(init=False)
     _authority: AuthorityWatch = field(init=False)
+    alerts: dict[str, CraftAlert] = field(default_factory=dict[str, CraftAlert])
+    """Those that are open, by their ids."""
     _links: LinkWatch = field(default_factory=LinkWatch)
+    _said: SaidWatch = field(default_factory=SaidWatch)
+    _charge: ChargeWatch = field(default_factory=ChargeWatch)
     _answered: dict[str, tuple[LooseCommand, Reason | None]] = field(
         default_factory=dict[str, "tuple[LooseCommand, Reason | None]"]
     )
@@ -61,6 +73,7 @@ class LooseCraft:
 
     async def run(self) -> None:
         """Until cancelled."""
+        hearing = asyncio.create_task(self._hear())
         try:
             while True:
                 try:
@@ -69,7 +82,20 @@ class LooseCraft:
                     log.exception("%s: watching it failed", self.equipment.craft_id)
                 await self.equipment.clock.sleep(TICK_S)
         finally:
+            hearing.cancel()
+            await asyncio.gather(hearing, return_exceptions=True)
             await self._hands.close()
+
+    async def _hear(self) -> None:
+        """The autopilot's words, those of a vehicle that was connected again too."""
+        while True:
+            try:
+                async for announcement in self.equipment.vehicle.changes():
+                    if self.state is not None and isinstance(announcement.reason, AutopilotSaid):
+                        self._give_all(self._said.hear(announcement.reason, self.equipment.clock.now()))
+            except Exception:
+                log.exception("%s: hearing it failed", self.equipment.craft_id)
+            await asyncio.sleep(HEARD_AGAIN_WALL_S)
 
     def tick(self) -> None:
         """One look at the vehicle."""
@@ -82,10 +108,13 @@ class LooseCraft:
                 self._find(telemetry)
         else:
             self._look()
-            ordered = self._state_now()
-            if ordered is not None and ordered.ladder is not None:  # else nothing would be ordered again
-                for given in self._links.look(telemetry, self.equipment.clock.now(), None, None):
-                    self._give(given)
+            ordered, now = self._state_now(), self.equipment.clock.now()
+            if ordered is not None and ordered.ladder is not None:
+                self._give_all(self._links.look(telemetry, now, None, None))
+            else:  # of a link that comes back nothing would be ordered again
+                self._give_all(self._links.look_at_gps(telemetry, now))
+            self._give_all(self._charge.look(telemetry, now))
+            self._give_all(self._said.look(now))
             self._landed(telemetry)
 
     def _state_now(self) -> CraftState | None:
@@ -120,7 +149,7 @@ class LooseCraft:
     def _find(self, telemetry: Telemetry) -> None:
         authority = telemetry.authority
         self._authority.known = authority
-        self._links = LinkWatch()
+        self._links, self._said, self._charge = LinkWatch(), SaidWatch(), ChargeWatch()
         self._grounded_at_s = math.inf
         phase = "manual" if pilot_has(authority) else "hold"
         self.state = CraftState(self.equipment.craft_id, phase, engaged=True, took_off=True, authority=authority)
@@ -129,6 +158,7 @@ class LooseCraft:
     def _forget(self) -> None:
         if self.state is not None:
             self.state = None
+            self.alerts.clear()
             for name in ("landing", "order"):
                 self._hands.stop_timer(name)
             self._hands.cancel_work()
@@ -149,6 +179,10 @@ class LooseCraft:
     def _known(self) -> CraftState:
         return self.state or CraftState(self.equipment.craft_id)
 
+    def _give_all(self, found: Iterable[inputs.CraftInput]) -> None:
+        for given in found:
+            self._give(given)
+
     def _give(self, given: inputs.CraftInput) -> Reason | None:
         """Why it was refused, None when it was taken."""
         if self.state is None:
@@ -159,6 +193,7 @@ class LooseCraft:
             match effect:
                 case Record(event=event):
                     log.info("%s: %s", self.equipment.craft_id, event)
+                    self._show(event)
                 case Refuse(reason=reason):
                     refused = reason
                 case LeaveSearch():
@@ -166,3 +201,13 @@ class LooseCraft:
                 case _:
                     self._hands.carry_out(effect)  # type: ignore[arg-type]
         return refused
+
+    def _show(self, event: Event) -> None:
+        match event:
+            case AlertRaised(alert_id=alert_id, topic=topic, level=level, reason=reason):
+                raised_s = self.equipment.clock.now()
+                self.alerts[alert_id] = CraftAlert(alert_id, topic, level, reason, raised_s)
+            case AlertCleared(alert_id=alert_id):
+                self.alerts.pop(alert_id, None)
+            case _:
+                pass

@@ -20,6 +20,9 @@ from backend.craft.inputs import (
     BatteryReported,
     Broke,
     CarriedOut,
+    ChargeLow,
+    ClockAgrees,
+    ClockOdd,
     CraftInput,
     CraftOrdered,
     FailsafeEnded,
@@ -42,7 +45,7 @@ from backend.craft.inputs import (
     WorkVetoed,
 )
 from backend.craft.low_battery import LANDING_PATIENCE_S
-from backend.craft.state import AUTOMATIC, HOMEWARD, CraftState
+from backend.craft.state import AUTOMATIC, HOMEWARD, ORDERED_BEFORE, CraftState
 from backend.craft.step import (
     CraftStep,
     alert,
@@ -128,6 +131,13 @@ def _take(step: CraftStep, given: CraftInput) -> None:
                 tell_said(step, reason)
         case SaidNoMore(text=text):
             clear_said(step, text)
+        case ClockOdd(because=because):
+            if craft.engaged:
+                alert(step, "clock", "warning", because)
+                if craft.phase == "measuring":
+                    hold(step, because)
+        case ClockAgrees():
+            clear_alerts(step, "clock")
         case WorkVetoed(vetoes=vetoes):
             if craft.phase in AUTOMATIC:
                 refuse_flight(step, vetoes)
@@ -147,12 +157,17 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _link_up(step, given)
         case BatteryLow() | BatteryReported() | HomeReached() | Landed():
             _vehicle(step, given)
+        case ChargeLow(because=because):
+            if craft.engaged:
+                alert(step, "battery", "warning", because)
         case AutopilotReturns(because=because):
             if craft.phase in HOMEWARD and not craft.taken_over:
                 alert(step, "safety", "caution", AutopilotFliesHome(because))
                 carried_out(step, "return")
         case TimerExpired():
             _timer(step, given)
+        case Restarted() if craft.comes_down_as_ordered and given.on_ground:
+            come_down(step, craft.return_reason or flight.Proceeds("way_home"))
         case Restarted(authority=authority):
             restarted(step, authority)
         case Leaving(homeward=homeward):
@@ -342,7 +357,10 @@ def _vehicle(step: CraftStep, given: BatteryLow | BatteryReported | HomeReached 
 
 
 def _on_the_ground(step: CraftStep) -> None:
-    """Not by our order (a failsafe's doing, or a return from before a restart). What was found is kept."""
+    """Not by our order, but by a failsafe, say, or as ordered before a restart. What was found is kept."""
+    if step.craft.comes_down_as_ordered:
+        come_down(step, ORDERED_BEFORE)
+        return
     if step.search.found or step.search.stage == "ended":
         step.do(CancelWork())
         come_down(step, flight.Landed("localized" if step.search.found else "hold"))

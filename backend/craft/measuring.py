@@ -28,6 +28,7 @@ from hardware.readings import PowerSample, Sweep
 from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import NoPulseHeard
 from hardware.reasons.vehicle import PositionLost
+from hardware.reasons.vehicle_news import ClockRateOdd
 
 PROGRESS_S = 0.2
 
@@ -108,7 +109,7 @@ async def _result(
     telemetry, headings = equipment.vehicle.telemetry(), equipment.vehicle.headings(turned.began_s - 1.0)
     silence = SilenceFact(
         chances=chances_by_heading(
-            [sample.at_s for sample in samples],
+            sorted({sample.at_s for sample in samples}),  # one that only shows that the receiver lives repeats a time
             headings,
             equipment.pattern.offset_to_nose_deg,
             pulsed=emitter.kind == "pulsed",
@@ -132,6 +133,9 @@ async def _result(
         told = silence if unheard and samples else None
         return Measured(sweep_id, None, rejected(taken, telemetry.position, 0.0, reason, silence=told))
     sweep = turned.as_turned(sweep)
+    if telemetry.odd_clock_rate is not None:  # it became so during the turn
+        odd = ClockRateOdd(telemetry.odd_clock_rate)
+        return Measured(sweep_id, sweep, rejected(taken, sweep.position, 0.0, odd))
     reading = await asyncio.to_thread(equipment.finder.estimate, sweep, equipment.pattern)
     middle_s = fmean((turned.began_s, turned.ended_s))
     return Measured(sweep_id, sweep, sweep_fact(taken, mission.sensor, sweep, reading, taken_s, middle_s, silence))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import assert_never
 
 from backend.commands import (
@@ -49,7 +50,10 @@ from backend.reasons.flight import Ordered
 from backend.reasons.refused import Refused
 from backend.reasons.safety import NoLink, PilotControls
 from backend.search.state import SearchState
+from backend.spec import Place
 from hardware.authority import OperatorTookControl, authority_after
+from hardware.frame import LocalFrame
+from planner.policy.actions import SAME_PLACE_M
 
 
 def carry_out(step: CraftStep, given: CraftOrdered) -> None:
@@ -133,7 +137,7 @@ def _resume(step: CraftStep, given: CraftOrdered) -> None:
     _refuse_objections(step, given)
     step.record(ResumeOrdered(craft_id=craft.craft_id, by=given.by))
     _take_control(step, given.by)
-    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground", "order")
+    clear_alerts(step, "pilot", "failure", "safety", "vehicle", "ground", "order", "clock")
     step.do(CancelTimer("console_hold"))
     step.do(CancelTimer("console_return"))
     step.do(CancelTimer("order"))
@@ -194,8 +198,7 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
         raise Refused(PilotControls())
     if craft.phase in HOMEWARD:
         raise Refused(refusals.OnTheWayHome())
-    if command.place in craft.refused:
-        raise Refused(refusals.PlaceRefusedBefore())
+    _refuse_place_refused_before(craft, command.place)
     _refuse_objections(step, given)
     in_the_way = craft.phase in AUTOMATIC and craft.took_off
     if in_the_way:
@@ -220,6 +223,13 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
     )
     if in_the_way:
         go_on(step, Ordered("override", given.by))
+
+
+def _refuse_place_refused_before(craft: CraftState, place: Place) -> None:
+    """As the planner keeps away from it: a metre beside it the autopilot would only refuse again."""
+    near_m = min((math.hypot(*LocalFrame(place).to_enu(refused)) for refused in craft.refused), default=math.inf)
+    if near_m < SAME_PLACE_M:
+        raise Refused(refusals.PlaceRefusedBefore(near_m, SAME_PLACE_M))
 
 
 def _veto(step: CraftStep, given: CraftOrdered) -> None:

@@ -10,7 +10,7 @@ from shapely import contains_xy, get_coordinates
 from shapely.geometry.base import BaseGeometry
 
 from backend.events import CheckFact
-from backend.reasons.checks import ReturnAltitudeChecked, ReturnAltitudeUnread, ReturnMeetsGround
+from backend.reasons.checks import ReturnAltitudeChecked, ReturnAltitudeUnread, ReturnClimbs, ReturnMeetsGround
 from backend.search.ground import LATERAL_TOLERANCE_M, Points, sample_m
 from backend.search.task import SearchTask
 from backend.spec import FlightSpec
@@ -22,8 +22,11 @@ MOST_POINTS = 400
 """Of one way home: a longer one is looked at less finely."""
 
 
-async def return_altitude_check(flight: FlightSpec, vehicle: Vehicle, least_m: float | None) -> CheckFact | None:
-    """A line of the checklist; None while no vehicle is heard. least_m: see least_return_altitude_m.
+async def return_altitude_check(
+    flight: FlightSpec, vehicle: Vehicle, least_m: float | None, over_terrain: bool
+) -> CheckFact | None:
+    """A line of the checklist; None while no vehicle is heard. least_m: see least_return_altitude_m. over_terrain: the
+    mission follows it, and may be as high as its ceiling then.
 
     The band has no floor here: the autopilot's own return never sinks to its altitude.
     """
@@ -32,12 +35,16 @@ async def return_altitude_check(flight: FlightSpec, vehicle: Vehicle, least_m: f
     except HardwareError:
         return None
     ceiling, parameter, altitude = flight.maximum_altitude_relative_m, found.parameter, found.altitude_relative_m
-    if altitude is None:
-        unread = ReturnAltitudeUnread(parameter, ceiling)
-        return CheckFact(name="failsafe", ok=False, reason=unread, blocking=False)
+    if altitude is None or found.climb_m is None:
+        unread = ReturnAltitudeUnread(parameter if altitude is None else found.climb_parameter or parameter, ceiling)
+        return CheckFact(name="failsafe", ok=False, reason=unread, blocking=True)
     if least_m is not None and altitude < least_m:
         reason = ReturnMeetsGround(parameter, altitude, math.ceil(least_m))
         return CheckFact(name="failsafe", ok=False, reason=reason, blocking=True)
+    highest = ceiling if over_terrain else flight.altitude_relative_m
+    if found.climb_parameter is not None and found.climb_m > 0.0 and highest + found.climb_m > ceiling:
+        climbs = ReturnClimbs(found.climb_parameter, found.climb_m, highest, ceiling)
+        return CheckFact(name="failsafe", ok=False, reason=climbs, blocking=True)
     reason = ReturnAltitudeChecked(parameter, altitude, ceiling)
     return CheckFact(name="failsafe", ok=altitude <= ceiling, reason=reason, blocking=True)
 

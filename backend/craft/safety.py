@@ -26,6 +26,7 @@ from backend.search.task import SearchTask
 from backend.spec import FlightSpec
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
+from hardware.reasons.vehicle_news import ClockRateOdd
 from planner.types import Problem
 
 POSITION_STALE_S = 3.0
@@ -247,7 +248,9 @@ def staying_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
 
 def turn_vetoes(limits: Limits, situation: Situation) -> tuple[Reason, ...]:
     """May the vehicle turn on the spot for one measurement?"""
-    return (*vehicle_vetoes(situation), *battery_vetoes(limits, situation, limits.measurement_time_s))
+    rate = situation.telemetry.odd_clock_rate
+    undated = () if rate is None else (ClockRateOdd(rate),)
+    return (*vehicle_vetoes(situation), *undated, *battery_vetoes(limits, situation, limits.measurement_time_s))
 
 
 def standing_vetoes(limits: Limits, place: Place, altitude_amsl_m: float) -> tuple[Reason, ...]:
@@ -337,19 +340,27 @@ def ground_vetoes(limits: Limits, way: Way, altitude_amsl_m: float, where: Over)
 
 
 def ground_return_vetoes(limits: Limits, way: Way, altitude_amsl_m: float) -> tuple[Reason, ...]:
-    """Does a level way home (m ENU, from the vehicle on) keep its clearance? The ceiling is no reason against it: the
-    autopilot's own return keeps none either."""
+    """Does a level way home (m ENU, from the vehicle on) keep its clearance?
+
+    The ceiling above ground is no reason against it. No place is chosen from which the straight way home breaks it
+    (`standing_vetoes`); a vehicle that is at one all the same, a pilot's doing or a detour around a no-fly area, must
+    come home, and `level_altitude` gives the lowest way that clears the ground. Were that refused, the autopilot would
+    fly its own return: straight, no lower than it is, around nothing.
+    """
     found = ground_vetoes(limits, way, altitude_amsl_m, "way_home")
     return tuple(veto for veto in found if not isinstance(veto, safety.TooHighAboveGround))
 
 
 def _way_home_vetoes(limits: Limits, at: tuple[float, float]) -> tuple[Reason, ...]:
-    """From a place that is left for home there is one level way that may be flown."""
-    way = [at, (0.0, 0.0)]
+    """From a place that is left for home there is one level way, around no-fly areas, that may be flown. Where no way
+    leads around, the autopilot returns straight."""
+    if limits.ground.terrain is None:
+        return ()
+    way = [at, *(way_home(limits.problem, at) or ((0.0, 0.0),))]
     altitude = level_altitude(way, limits.ground, limits.flight)
     highest = limits.home_amsl_m + limits.flight.maximum_altitude_relative_m
     found = ground_vetoes(limits, way, altitude, "way_home")
-    if found or limits.ground.terrain is None or altitude <= highest + ALTITUDE_TOLERANCE_M:
+    if found or altitude <= highest + ALTITUDE_TOLERANCE_M:
         return found
     clearance = limits.flight.minimum_clearance_m - (altitude - highest)
     relative = highest - limits.home_amsl_m

@@ -20,6 +20,7 @@ from backend.events import (
     CraftSource,
     Event,
     FlightStarted,
+    HoldOrdered,
     Link,
     LinkLost,
     LinkRestored,
@@ -42,11 +43,13 @@ from backend.events import (
     TookOff,
 )
 from backend.reasons import Reason
+from backend.reasons.flight import FailsafeFlies, Ordered
 from backend.search.state import OpenAlert
 from backend.spec import Place
 from hardware.authority import NOBODY, Authority
 
 AUTOMATIC: frozenset[Phase] = frozenset({"taking_off", "planning", "waiting", "flying", "measuring"})
+ORDERED_BEFORE = FailsafeFlies("ordered_before")
 HOMEWARD: frozenset[Phase] = frozenset({"returning", "landing"})
 
 
@@ -96,6 +99,11 @@ class CraftState:
         """Automatic control moves the vehicle, or is about to."""
         return self.phase in AUTOMATIC or self.phase in HOMEWARD
 
+    @property
+    def comes_down_as_ordered(self) -> bool:
+        """Also when a server was away meanwhile, unless it has been ordered to hold since."""
+        return self.phase in HOMEWARD or (self.phase == "hold" and self.phase_reason == ORDERED_BEFORE)
+
 
 def failsafe_has(authority: Authority) -> bool:
     """The autopilot's failsafe has control, and no operator has taken it back since; after its landing, too."""
@@ -139,6 +147,8 @@ def evolve(state: CraftState, event: Event) -> CraftState:
                 counting_down=False,
                 countdown_stopped=state.countdown_stopped and up,
             )
+        case HoldOrdered(by=by, reason=reason) if state.phase == "hold" and state.phase_reason == ORDERED_BEFORE:
+            return replace(state, phase_reason=reason if by is None else Ordered("hold", by))
         case TookOff():
             return replace(state, took_off=True)
         case BatteryCountdownStarted():

@@ -43,11 +43,11 @@ from backend.reasons.search import Localized
 from backend.search.effects import Record
 from backend.search.state import SearchState
 from backend.search.state import evolve as evolve_search
-from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords
+from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords, ClockRateOdd
 
 OF_THE_FLIGHT: tuple[Topic, ...] = (
     "vehicle", "receiver", "console", "payload", "gps", "pilot", "battery", "place", "failure", "safety", "ground",
-    "order", "autopilot",
+    "order", "autopilot", "clock",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
 MOST_SAID = 5
@@ -119,7 +119,11 @@ def take_off(step: CraftStep, reason: Reason) -> None:
 
 
 def measure(step: CraftStep, reason: Reason) -> None:
-    """One more attempt at the place where it is."""
+    """One more attempt at the place where it is; held there while the autopilot's headings cannot be dated."""
+    odd = next((raised.reason for raised in step.craft.open_alerts if raised.topic == "clock"), None)
+    if odd is not None:
+        hold(step, odd)
+        return
     step.go("measuring", reason)
     number, attempt = step.craft.place_number, step.craft.attempt + 1
     step.record(SweepStarted(craft_id=step.craft.craft_id, place_number=number, attempt=attempt))
@@ -288,11 +292,17 @@ def record_vetoes(step: CraftStep, vetoes: tuple[Reason, ...]) -> None:
         step.record(SafetyVetoed(craft_id=step.craft.craft_id, reason=reason))
 
 
+def _topic_of(veto: Reason) -> Topic:
+    if isinstance(veto, BATTERY):
+        return "battery"
+    return "clock" if isinstance(veto, ClockRateOdd) else "safety"
+
+
 def refuse_flight(step: CraftStep, vetoes: tuple[Reason, ...]) -> None:
     """Safety said no: go home when the battery says so, else hold and say why."""
     record_vetoes(step, vetoes)
     of_battery = [isinstance(reason, BATTERY) for reason in vetoes]
-    alert(step, "battery" if of_battery[0] else "safety", "warning", vetoes[0])
+    alert(step, _topic_of(vetoes[0]), "warning", vetoes[0])
     if all(of_battery):
         go_home(step, vetoes[0])
     else:

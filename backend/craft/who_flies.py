@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from backend.craft.effects import CancelTimer, CancelWork
-from backend.craft.state import AUTOMATIC, HOMEWARD, failsafe_has, ours_to_order, pilot_has
+from backend.craft.state import AUTOMATIC, failsafe_has, ours_to_order, pilot_has
 from backend.craft.step import CraftStep, alert, cancel_timers, clear_alerts, clear_failsafe, insist
 from backend.events import AuthorityChanged
 from backend.reasons import flight
@@ -50,7 +50,7 @@ def restarted(step: CraftStep, heard: Authority) -> None:
     craft = step.craft
     if not craft.engaged:
         return
-    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps")
+    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps", "clock")
     if kept_of(heard) != kept_of(craft.authority):
         step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
     if craft.taken_over:
@@ -60,8 +60,8 @@ def restarted(step: CraftStep, heard: Authority) -> None:
         alert(step, "pilot", "caution", reason)
         step.go("manual", reason)
     elif failsafe_has(heard):
-        ordered = craft.phase in HOMEWARD
-        _failsafe_flies(step, flight.FailsafeFlies("ordered_before" if ordered else "server_away"))
+        because = "ordered_before" if craft.comes_down_as_ordered else "server_away"
+        _failsafe_flies(step, flight.FailsafeFlies(because))
     else:
         insist(step, "hold")
         step.go("hold", flight.BackAfterRestart())

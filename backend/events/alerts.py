@@ -26,9 +26,13 @@ Topic = Literal[
     "order",
     "storage",
     "autopilot",
+    "clock",
 ]
 """What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place.
 Of "autopilot" a few stand side by side, one a text."""
+
+
+Level = Literal["warning", "caution", "advisory"]
 
 
 class SafetyVetoed(Fact):
@@ -63,7 +67,7 @@ class AlertRaised(Fact):
     kind: Literal["alert_raised"] = "alert_raised"
     alert_id: str
     topic: Topic
-    level: Literal["warning", "caution", "advisory"]
+    level: Level
     reason: Reason
     craft_id: Id | None = None
     emitter_id: Id | None = None

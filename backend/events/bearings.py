@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from backend.events.fact import Fact, Known
+from backend.events.fact import Fact, Known, KnownRow
 from backend.reasons import Reason
 from backend.spec import Id, Place
 
@@ -100,8 +100,8 @@ class SweepRejected(Fact):
     quality: float
     reason: Reason
     place: Place
-    binned_db: list[Known]
-    fitted_db: list[Known]
+    binned_db: KnownRow
+    fitted_db: KnownRow
     likelihood: str | None = None
     silence: SilenceFact | None = None
     turn: TurnFact | None = None
@@ -134,8 +134,8 @@ class BearingMeasured(Fact):
     peaks: list[Peak]
     snr_db: Known
     drift_m: float
-    binned_db: list[Known]
-    fitted_db: list[Known]
+    binned_db: KnownRow
+    fitted_db: KnownRow
     measurement_time_s: Known = None
     heading_sigma_deg: float = 0.0
     pattern_sigma_deg: float = 0.0

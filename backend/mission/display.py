@@ -64,7 +64,8 @@ class Display:
         active, runner, state = self.flights.active, self.flights.craft(craft.craft_id), self._state(craft)
         if active is None or runner is None:
             phase = "ground" if state is None else state.phase
-            return CraftStatus(craft.craft_id, None, phase, "off", None, None, None, _order(state))
+            alerts = tuple(self.flights.loose[craft.craft_id].alerts.values())
+            return CraftStatus(craft.craft_id, None, phase, "off", None, None, None, _order(state), alerts=alerts)
         situation = runner.watch.situation()
         heard = [runner.listening.last(channel.frequency_hz) for channel in channels_of(active.state.search.mission)]
         last = max((sample for sample in heard if sample is not None), key=lambda sample: sample.at_s, default=None)

@@ -154,10 +154,12 @@ class MissionRunner:
         return self.give(commanded(Context(objections)))
 
     def recover(self) -> None:
-        """After a restart: each craft of ours in hold, unless somebody else flies it."""
+        """After a restart: each craft of ours in hold, unless somebody else flies it or it has come down as ordered."""
         for craft in self.crafts.values():
-            authority = craft.equipment.vehicle.telemetry().authority
-            self.give(ToCraft(craft.equipment.craft_id, craft_inputs.Restarted(authority)))
+            telemetry = craft.equipment.vehicle.telemetry()
+            on_ground = telemetry.connected and telemetry.in_air is False and telemetry.armed is False
+            back = craft_inputs.Restarted(telemetry.authority, on_ground)
+            self.give(ToCraft(craft.equipment.craft_id, back))
 
     def leave(self) -> None:
         """The server is about to end: what only flies on with it is held, a return by our own way points too."""

@@ -107,6 +107,22 @@ class ReturnMeetsGround:
 
 
 @dataclass(frozen=True, slots=True)
+class ReturnClimbs:
+    """Relative to home. from_relative_m: the highest that the mission flies."""
+
+    parameter: str
+    climb_m: float
+    from_relative_m: float
+    ceiling_relative_m: float
+    code: Literal["return_climbs"] = "return_climbs"
+    english: ClassVar[Words] = Words(
+        "The autopilot's own return climbs by {climb_m} from however high it begins ({parameter}): from "
+        "{from_relative_m} that leads above the mission's ceiling of {ceiling_relative_m}.",
+        "Set {parameter} to 0, or raise the mission's ceiling.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class ReturnAltitudeUnread:
     parameter: str
     ceiling_relative_m: float
@@ -119,6 +135,7 @@ class ReturnAltitudeUnread:
 CheckReason = (
     ReturnAltitudeChecked
     | ReturnAltitudeUnread
+    | ReturnClimbs
     | ReturnMeetsGround
     | RoomToFly
     | StartAllowed

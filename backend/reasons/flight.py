@@ -74,6 +74,18 @@ class PlaceUnknown:
 
 
 @dataclass(frozen=True, slots=True)
+class BatteryRunsLow:
+    """Of a craft that flies for no mission."""
+
+    charge_percent: float
+    code: Literal["battery_runs_low"] = "battery_runs_low"
+    english: ClassVar[Words] = Words(
+        "The battery holds only {charge_percent}.",
+        "Order the return or the landing: without a mission nobody reckons what the way home takes.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class PayloadLinkLost:
     code: Literal["payload_link_lost"] = "payload_link_lost"
     english: ClassVar[Words] = Words(
@@ -203,6 +215,7 @@ FlightReason = (
     | NoConsole
     | VehicleLinkLost
     | PlaceUnknown
+    | BatteryRunsLow
     | PayloadLinkLost
     | BackAfterRestart
     | ServerEnds

@@ -10,8 +10,16 @@ from planner.reason import Words
 
 @dataclass(frozen=True, slots=True)
 class PlaceRefusedBefore:
+    """near_m: to the refused place; least_m: how far another must be from it. Answers of before this was told stand in
+    journals without the two: they were about exactly the same place."""
+
+    near_m: float = 0.0
+    least_m: float = 5.0
     code: Literal["place_refused_before"] = "place_refused_before"
-    english: ClassVar[Words] = Words("The autopilot has refused to fly to this place.", "Choose another place.")
+    english: ClassVar[Words] = Words(
+        "The place is {near_m:1} from one that the autopilot has refused to fly to.",
+        "Choose a place {least_m} or more from it.",
+    )
 
 
 @dataclass(frozen=True, slots=True)

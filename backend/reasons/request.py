@@ -111,6 +111,15 @@ class NothingThere:
 
 
 @dataclass(frozen=True, slots=True)
+class IqNotKept:
+    code: Literal["iq_not_kept"] = "iq_not_kept"
+    english: ClassVar[Words] = Words(
+        "No IQ was kept of this mission, only the power of its sweeps.",
+        "IQ is kept of SigMF recordings that are imported; export everything for the power, sample by sample.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class HttpRefused:
     """phrase: the status in words, in English."""
 
@@ -315,6 +324,7 @@ RequestReason = (
     | FieldInvalid
     | RequestInvalid
     | NothingThere
+    | IqNotKept
     | HttpRefused
     | BodyTooLarge
     | BodyTooRich

@@ -28,6 +28,17 @@ class DatabaseSlow:
 
 
 @dataclass(frozen=True, slots=True)
+class MachineBusy:
+    """The database may answer; the server does not get to hear it in time."""
+
+    code: Literal["machine_busy"] = "machine_busy"
+    english: ClassVar[Words] = Words(
+        "The server's machine is so busy that the database's answers come late.",
+        "End what else runs on this machine; what happens meanwhile is kept in the spool on the disk.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class DiskLow:
     free_bytes: int
     code: Literal["disk_low"] = "disk_low"
@@ -121,6 +132,7 @@ class ForeignSpool:
 StorageReason = (
     DatabaseSilent
     | DatabaseSlow
+    | MachineBusy
     | DiskLow
     | StockFull
     | NothingStores

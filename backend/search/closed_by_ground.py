@@ -49,14 +49,20 @@ def closed_by_ground(
     most = lowest + flight.maximum_above_ground_m - VERTICAL_TOLERANCE_M
     least = np.maximum(least, ground.home_amsl_m + flight.minimum_altitude_relative_m)
     most = np.minimum(most, ground.home_amsl_m + flight.maximum_altitude_relative_m)
-    shut = grid[~(least <= most)]
-    if not len(shut):
+    strips = _strips(~(least <= most), x, y, 0.51 * cell)
+    if not len(strips):
         return None
-    half = 0.51 * cell
-    squares = shapely.box(shut[:, 0] - half, shut[:, 1] - half, shut[:, 0] + half, shut[:, 1] + half)
-    outline = shapely.union_all(squares).simplify(cell)
+    outline = shapely.union_all(strips).simplify(cell)
     parts = [part for part in shapely.get_parts(outline) if part.area > SPECK_CELLS * cell**2]
     return shapely.union_all(parts) if parts else None
+
+
+def _strips(shut: NDArray[np.bool_], x: Numbers, y: Numbers, half: float) -> NDArray[np.object_]:
+    """A box for each run of cells (rows, columns) in a row, `half` m beyond their middles: far fewer to unite."""
+    edges = np.diff(np.pad(shut, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    row, first = np.nonzero(edges == 1)
+    last = np.nonzero(edges == -1)[1] - 1
+    return shapely.box(x[first] - half, y[row] - half, x[last] + half, y[row] + half)
 
 
 def _from_origin(values: Numbers, worst: np.ufunc, grid: Numbers, cell: float) -> Numbers:

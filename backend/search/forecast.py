@@ -106,7 +106,7 @@ def compare(
     compared = Comparison(found.mean, found.std_error)
     if not compared.quicker:
         return compared
-    rules = () if together else rules_against(*problems[0], here)
+    rules = () if together else rules_against(*problems[0], here, by_claim=found.by_claim)
     return replace(compared, rules=tuple(carried(rule) for rule in rules))
 
 

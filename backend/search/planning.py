@@ -13,7 +13,7 @@ from statistics import fmean, geometric_mean
 
 import numpy as np
 
-from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, PlanChosen
+from backend.events import FIRST_CRAFT, BearingMeasured, CandidateFact, CraftSource, PlanChosen
 from backend.reasons import Reason, carried
 from backend.search.localization import Localization, own_sigma_deg, source_name
 from backend.spec import MissionSpec
@@ -23,6 +23,7 @@ from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.belief.moving import MovingBelief
 from planner.movement import FLIGHT_S
 from planner.plan import expected_time_from, plan
+from planner.policy.actions import SAME_PLACE_M
 from planner.policy.base import BASE_POLICIES
 from planner.policy.several import Wanted, plan_several
 from planner.travel import straight_suffices, travel_path, visibility_graph
@@ -136,7 +137,9 @@ def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: Grid
     sigmas = [problem.sigma, *(math.radians(fact.sigma_deg) for fact in measured if fact.sigma_deg > 0.0)]
     sigma = _with_errors(geometric_mean(sigmas), measured, belief)
     times = [problem.measurement_time, *(t for fact in measured if (t := fact.measurement_time_s) is not None)]
-    return replace(problem, sigma=sigma, measurement_time=fmean(times))
+    flown = (fact.source for fact in reversed(measured) if isinstance(fact.source, CraftSource))
+    next_source = source_name(next(flown, CraftSource(craft_id=FIRST_CRAFT)))
+    return replace(problem, sigma=sigma, measurement_time=fmean(times), next_source=next_source)
 
 
 def _with_errors(sigma: float, measured: Sequence[BearingMeasured], belief: GridBelief | None) -> float:
@@ -183,6 +186,10 @@ def base_policy_decision(
     return BASE_POLICIES[task.mission.planner.base_policy](problem, belief, platform)
 
 
+DEGREES_DIGITS, SECONDS_DIGITS = 8, 2
+"""Of the candidates in a fact: a millimetre, a hundredth of a second. The place that is chosen keeps all digits."""
+
+
 def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFact]:
     """The candidates that were simulated at all."""
     facts: list[CandidateFact] = []
@@ -190,12 +197,14 @@ def candidate_facts(task: Localization, decision: Decision) -> list[CandidateFac
         if c.rollouts == 0 or not math.isfinite(c.value):
             continue
         place = task.place(c.x, c.y)
-        error = c.std_error if math.isfinite(c.std_error) else None
+        if (c.x, c.y) != (decision.x, decision.y):
+            place = Place(lat=round(place.lat, DEGREES_DIGITS), lon=round(place.lon, DEGREES_DIGITS))
+        error = round(c.std_error, SECONDS_DIGITS) if math.isfinite(c.std_error) else None
         facts.append(
             CandidateFact(
                 lat=place.lat,
                 lon=place.lon,
-                value_s=c.value,
+                value_s=round(c.value, SECONDS_DIGITS),
                 std_error_s=error,
                 rollouts=c.rollouts,
                 dropped_in_round=c.dropped_in_round,
@@ -270,6 +279,7 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _around(place: tuple[float, float], radius: float = 5.0) -> Ring:
-    angles = np.arange(8) * np.pi / 4
+def _around(place: tuple[float, float]) -> Ring:
+    """Eight corners around all that counts as the same place."""
+    angles, radius = np.arange(8) * np.pi / 4, SAME_PLACE_M / math.cos(np.pi / 8)
     return np.array(place) + radius * np.column_stack([np.cos(angles), np.sin(angles)])

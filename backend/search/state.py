@@ -164,7 +164,7 @@ class SearchState:
     def found(self) -> bool:
         """What the search ends with: localized now; of one that follows, localized at one time or other."""
         claimed = bool(self.emitters) and all(emitter.claim is not None for emitter in self.emitters.values())
-        return self.localized or (self.follows and claimed)
+        return self.localized or (claimed and self.follows)
 
     @property
     def sought(self) -> tuple[EmitterState, ...]:

@@ -16,6 +16,8 @@ from hardware.readings import BearingReading, Sweep
 from hardware.reasons.sweep import NothingAboveNoise
 
 BINS = 180
+DB_DIGITS = 2
+"""Of the powers kept beside a bearing: far below what a receiver resolves. The samples keep all their digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,4 +118,4 @@ def rejected(
 
 
 def _bins(values: np.ndarray) -> list[float | None]:
-    return [float(v) if math.isfinite(v) else None for v in values]
+    return [round(float(v), DB_DIGITS) if math.isfinite(v) else None for v in values]

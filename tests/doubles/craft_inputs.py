@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import get_args
 
 from craft_walk import ordered
@@ -37,7 +38,13 @@ from backend.reasons import Interrupted
 from backend.reasons.flight import StepName, Way
 from backend.search.state import SearchState
 from hardware.reasons.vehicle import PlaceNotTaken
-from hardware.reasons.vehicle_news import AutopilotRepeats, AutopilotSaid, AutopilotSaidMore, AutopilotWords
+from hardware.reasons.vehicle_news import (
+    AutopilotRepeats,
+    AutopilotSaid,
+    AutopilotSaidMore,
+    AutopilotWords,
+    ClockRateOdd,
+)
 
 AUTHORITIES = (OURS, PILOT, PERHAPS_PILOT, GIVEN_BACK, FAILSAFE, NOBODY, LANDED_BY_PILOT)
 ORDERS: tuple[commands.ForCraft, ...] = (
@@ -61,6 +68,7 @@ STEPS: tuple[StepName, ...] = ("take_off", "fly", "measure", "plan", "belief", "
 
 
 NOT_TAKEN = PlaceNotTaken("Reposition is outside geofence")
+CLOCK_ODD = ClockRateOdd(0.9)
 SAID: tuple[AutopilotWords, ...] = (
     AutopilotSaid("critical", "Battery failure"),
     AutopilotRepeats("critical", "Battery failure", 4),
@@ -69,10 +77,15 @@ SAID: tuple[AutopilotWords, ...] = (
 )
 
 
-def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.CraftInput]:
-    number, attempt = max(craft.place_number, 1), max(craft.attempt, 1)
-    heard = bearing(number, bearing_id=f"b{len(search.measured) + 1}")
-    return [
+def every_craft_input(craft: CraftState, search: SearchState) -> tuple[inputs.CraftInput, ...]:
+    return _every_input(max(craft.place_number, 1), max(craft.attempt, 1), len(search.measured))
+
+
+@cache
+def _every_input(number: int, attempt: int, measured: int) -> tuple[inputs.CraftInput, ...]:
+    """Made once for all the states that differ in nothing of this: a sweep gives a million."""
+    heard = bearing(number, bearing_id=f"b{measured + 1}")
+    return (
         *(ordered(command) for command in ORDERS),
         *(ordered(command, objections=(VETO,)) for command in ORDERS),
         ordered(commands.Resume(), on_ground=True),
@@ -94,6 +107,9 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         inputs.PlaceNotTaken(HOME, NOT_TAKEN),
         *(inputs.Said(words) for words in SAID),
         inputs.SaidNoMore("Battery failure"),
+        inputs.ClockOdd(CLOCK_ODD),
+        inputs.ClockAgrees(),
+        inputs.WorkVetoed((CLOCK_ODD,)),
         inputs.WorkVetoed((VETO,)),
         inputs.WorkVetoed((BATTERY_VETO,)),
         *(inputs.AuthorityHeard(authority) for authority in AUTHORITIES),
@@ -101,13 +117,14 @@ def every_craft_input(craft: CraftState, search: SearchState) -> list[inputs.Cra
         *(inputs.LinkDown(link, LINK_LOST) for link in LINKS),
         *(inputs.LinkUp(link, 3.0) for link in LINKS),
         *(inputs.BatteryLow(BATTERY_VETO, stage) for stage in get_args(BatteryStage)),
+        inputs.ChargeLow(BATTERY_VETO),
         inputs.BatteryReported(),
         inputs.AutopilotReturns(VETO),
         inputs.HomeReached(),
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in TIMERS),
         inputs.Broke(BROKE),
-        *(inputs.Restarted(authority) for authority in AUTHORITIES),
+        *(inputs.Restarted(authority, on_ground) for authority in AUTHORITIES for on_ground in (False, True)),
         *(inputs.Leaving(homeward) for homeward in (False, True)),
         inputs.Abandoned(Interrupted("later_mission")),
-    ]
+    )

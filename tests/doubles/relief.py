@@ -1,4 +1,4 @@
-"""Made-up ground around a home: as terrain, as the bytes of a GeoTIFF, as Terrarium tiles."""
+"""Made-up ground around a home: as terrain, as the bytes of a GeoTIFF, as Terrarium tiles, and a shelf for it."""
 
 from __future__ import annotations
 
@@ -30,6 +30,26 @@ def terrain(shape: Shape, spacing_m: float = 20.0, reach_m: float = 3000.0, name
     lat, lon = spacing_m / M_LAT, spacing_m / M_LON
     first = count // 2
     return Terrain(HOME.lat + first * lat, HOME.lon - first * lon, lat, lon, heights, (name,))
+
+
+class Shelf:
+    """Terrain as it was brought, and what missions put aside of it. full: nothing more fits."""
+
+    def __init__(self, found: Terrain | None) -> None:
+        self.found = found
+        self.stored: dict[str, Terrain] = {}
+        self.full = False
+
+    async def around(self, home: Place) -> Terrain | None:
+        return self.found
+
+    async def keep(self, terrain: Terrain) -> None:
+        if self.full:
+            raise OSError(28, "No space left on device")
+        self.stored[terrain.digest] = terrain
+
+    async def kept(self, digest: str) -> Terrain | None:
+        return self.stored.get(digest)
 
 
 def level(height_m: float = 100.0) -> Shape:

@@ -242,7 +242,7 @@ class Stage:
         assert runner is not None
         return runner
 
-    async def until(self, mission_id: str, kind: str, count: int = 1, wall_s: float = 20.0) -> Event:
+    async def until(self, mission_id: str, kind: str, count: int = 1, wall_s: float = 60.0) -> Event:
         """The n-th event of a kind, once it is stored."""
         async with asyncio.timeout(wall_s):
             while True:
@@ -251,14 +251,14 @@ class Stage:
                     return found[count - 1]
                 await asyncio.sleep(0.005)
 
-    async def until_true(self, happened: Callable[[], bool], wall_s: float = 20.0) -> None:
+    async def until_true(self, happened: Callable[[], bool], wall_s: float = 60.0) -> None:
         async with asyncio.timeout(wall_s):
             while True:
                 if happened():
                     return
                 await asyncio.sleep(0)
 
-    async def until_phase(self, mission_id: str, phase: str, wall_s: float = 20.0) -> None:
+    async def until_phase(self, mission_id: str, phase: str, wall_s: float = 60.0) -> None:
         """Of the craft."""
         async with asyncio.timeout(wall_s):
             while True:
@@ -267,7 +267,7 @@ class Stage:
                     return
                 await asyncio.sleep(0.005)
 
-    async def until_mission(self, mission_id: str, phase: str, wall_s: float = 20.0) -> None:
+    async def until_mission(self, mission_id: str, phase: str, wall_s: float = 60.0) -> None:
         """The mission's phase, and no craft of it flies any more."""
         async with asyncio.timeout(wall_s):
             while True:

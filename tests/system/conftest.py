@@ -46,6 +46,6 @@ async def operator(server: RunningServer) -> AsyncIterator[Console]:
     """A drafted mission, preflight passed, the websocket open."""
     async with console(server.url) as made:
         await made.draft(planner={"seed": 3})
-        await made.ready()
+        await made.ready(120)  # on a busy machine its parameters take long to read
         await made.watch()
         yield made

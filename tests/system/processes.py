@@ -17,6 +17,9 @@ SPEEDUP = 4.0
 START_PATIENCE_S = 240.0
 """A whole start compiles the planner; on a busy machine that takes minutes."""
 
+MOST_SAID_BYTES = 2**24
+"""Of standard error that is kept though nobody reads it: a server that says more would stand still."""
+
 
 @asynccontextmanager
 async def serving(data_dir: Path, *more: str) -> AsyncIterator[tuple[str, asyncio.subprocess.Process]]:
@@ -24,7 +27,7 @@ async def serving(data_dir: Path, *more: str) -> AsyncIterator[tuple[str, asynci
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-c", "from backend.cli.main import app; app()",
         "serve", "--port", "0", "--data-dir", str(data_dir), "--speedup", str(SPEEDUP), "--seed", "3", "--json", *more,
-        stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+        stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, limit=MOST_SAID_BYTES,
     )  # fmt: skip
     assert process.stdout is not None
     try:

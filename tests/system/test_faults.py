@@ -32,7 +32,7 @@ async def test_the_pilot_takes_over_and_nothing_is_sent_until_resume(operator: C
     assert refused["reason"]["code"] == "not_given_back"
     assert (await vehicle.order("truth"))["mode"] == took["mode"]
     await vehicle.order("give_back")
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         while not (await operator.order("resume"))["accepted"]:  # noqa: ASYNC110 (asked again as a person would)
             await asyncio.sleep(0.1)
     ended = await operator.until_event("mission_ended", wall_s=120)

@@ -90,7 +90,7 @@ async def test_a_lost_console_holds_the_vehicle_and_then_sends_it_home(
     await operator.until_event("flight_started")
     vehicle = await simulated_vehicle(tmp_path)
     await operator.close()
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         while (await vehicle.order("truth"))["mode"] != "LAND":  # noqa: ASYNC110 (another process)
             await asyncio.sleep(0.05)
     await operator.watch()

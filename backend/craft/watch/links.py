@@ -28,14 +28,19 @@ class LinkWatch:
         silence = VehicleLinkLost(None if heard is None else now_s - heard)
         found: list[inputs.CraftInput] = []
         found += self._change("vehicle", None if telemetry.connected else silence, now_s)
-        if telemetry.connected:
-            lost = telemetry.position_lost_since_s is not None
-            found += self._change("gps", PlaceUnknown() if lost else None, now_s)
+        found += self.look_at_gps(telemetry, now_s)
         found += self._change("receiver", trouble, now_s)
         self._console_seen |= bool(consoles)
         if consoles is not None and self._console_seen:
             found += self._change("console", None if consoles else NoConsole("hold"), now_s)
         return found
+
+    def look_at_gps(self, telemetry: Telemetry, now_s: float) -> list[inputs.CraftInput]:
+        """Alone: of a craft whose link nothing would be done about."""
+        if not telemetry.connected:
+            return []
+        lost = telemetry.position_lost_since_s is not None
+        return self._change("gps", PlaceUnknown() if lost else None, now_s)
 
     def _change(self, link: Link, trouble: Reason | None, now_s: float) -> list[inputs.CraftInput]:
         """trouble None: it is up."""

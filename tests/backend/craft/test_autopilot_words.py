@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from craft_inputs import NOT_TAKEN, SAID
 from craft_walk import PHASES, CraftWalk, craft_in, moves, refusal
-from facts import plan
+from facts import OTHER_AREA, plan
 
 from backend import commands
 from backend.craft import effects, inputs
 from backend.craft.machine import MOST_REFUSED
 from backend.craft.step import MOST_SAID
-from backend.events import AlertRaised, Phase, PlaceRefused
+from backend.events import AlertRaised, AreaChanged, Phase, PlaceRefused
 from backend.reasons.refusals import PlaceRefusedBefore
 from backend.spec import Place
+from hardware.frame import LocalFrame
 from hardware.reasons.vehicle_news import AutopilotRepeats, AutopilotSaid
+from planner.policy.actions import SAME_PLACE_M
 
 
 def standing(walk: CraftWalk) -> list[str]:
@@ -66,7 +70,37 @@ def test_a_refused_place_is_a_fact_and_another_is_planned_without_it() -> None:
     (planned,) = [effect for effect in asked if isinstance(effect, effects.PlanNext)]
     assert place in planned.avoid
     assert walk.craft.phase == "planning"
-    assert refusal(walk.order(commands.Override(place=place))) == PlaceRefusedBefore()
+    assert refusal(walk.order(commands.Override(place=place))) == PlaceRefusedBefore(0.0, SAME_PLACE_M)
+
+
+@pytest.mark.parametrize("bearing_deg", range(0, 360, 45))
+def test_a_place_beside_a_refused_one_is_refused_and_one_further_off_is_flown_to(bearing_deg: int) -> None:
+    walk = craft_in("flying")
+    assert walk.craft.chosen is not None
+    refused = walk.craft.chosen.place
+    walk.give(inputs.PlaceNotTaken(refused, NOT_TAKEN))
+    towards = math.radians(bearing_deg)
+
+    def beside(away_m: float) -> Place:
+        return LocalFrame(refused).to_geo(away_m * math.sin(towards), away_m * math.cos(towards))
+
+    near = refusal(walk.order(commands.Override(place=beside(SAME_PLACE_M - 0.1))))
+    assert isinstance(near, PlaceRefusedBefore)
+    assert near.near_m == pytest.approx(SAME_PLACE_M - 0.1, abs=1e-3)
+    assert refusal(walk.order(commands.Override(place=beside(SAME_PLACE_M + 0.1)))) is None
+
+
+def test_every_refused_place_counts_until_the_search_area_changes() -> None:
+    walk = craft_in("flying")
+    first, second = Place(50.0, 7.001), Place(50.0, 7.002)
+    walk.give(inputs.PlaceNotTaken(first, NOT_TAKEN))
+    walk.give(inputs.Planned(plan(2)))
+    walk.give(inputs.PlaceNotTaken(second, NOT_TAKEN))
+    for place in (first, second):
+        assert isinstance(refusal(walk.order(commands.Override(place=place))), PlaceRefusedBefore)
+    walk.order(commands.Hold())
+    walk.fold(AreaChanged(search=OTHER_AREA, by="anna"))
+    assert refusal(walk.order(commands.Override(place=first))) is None
 
 
 def test_when_place_after_place_is_refused_the_craft_holds() -> None:

@@ -49,7 +49,7 @@ async def test_the_check_of_the_antenna_stays_in_the_list() -> None:
 
 
 @pytest.mark.parametrize(
-    ("altitude", "ok", "blocking"), [(0.0, True, True), (120.0, True, True), (121.0, False, True), (None, False, False)]
+    ("altitude", "ok", "blocking"), [(0.0, True, True), (120.0, True, True), (121.0, False, True), (None, False, True)]
 )
 async def test_the_autopilots_own_return_stays_below_the_missions_ceiling(
     altitude: float | None, ok: bool, blocking: bool
@@ -60,6 +60,32 @@ async def test_the_autopilots_own_return_stays_below_the_missions_ceiling(
     assert (check.ok, check.blocking) == (ok, blocking)
     assert "RTL_ALT" in text_of(check.reason)
     assert ok or "120 m" in remedy_of(check.reason)
+
+
+@pytest.mark.parametrize(
+    ("climb", "ok", "told"),
+    [
+        (0.0, True, checks.ReturnAltitudeChecked("RTL_ALT", 15.0, 120.0)),
+        (80.0, True, checks.ReturnAltitudeChecked("RTL_ALT", 15.0, 120.0)),
+        (80.5, False, checks.ReturnClimbs("RTL_CLIMB_MIN", 80.5, 40.0, 120.0)),
+        (None, False, checks.ReturnAltitudeUnread("RTL_CLIMB_MIN", 120.0)),
+    ],
+)
+async def test_a_return_that_climbs_from_wherever_it_begins_stays_below_the_ceiling(
+    climb: float | None, ok: bool, told: object
+) -> None:
+    stage = Stage()
+    stage.vehicle.returns_at = ReturnAltitude("RTL_ALT", 15.0, "RTL_CLIMB_MIN", climb)
+    check = (await checked(stage))["failsafe"]
+    assert (check.ok, check.blocking, check.reason) == (ok, True, told)
+    assert ok or remedy_of(check.reason)
+
+
+async def test_over_terrain_a_return_may_begin_at_the_ceiling() -> None:
+    stage = Stage()
+    stage.vehicle.returns_at = ReturnAltitude("RTL_ALT", 15.0, "RTL_CLIMB_MIN", 0.5)
+    lines, _ = await checklist(spec(), stage.craft(), None, grounds=Known(terrain(level())))
+    assert checks.ReturnClimbs("RTL_CLIMB_MIN", 0.5, 120.0, 120.0) in [line.reason for line in lines]
 
 
 async def test_a_vehicle_without_a_home_has_no_task() -> None:

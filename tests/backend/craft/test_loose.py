@@ -11,10 +11,13 @@ from stage import Stage
 
 from backend import commands
 from backend.craft.loose import LooseCraft
+from backend.reasons.flight import BatteryRunsLow, PlaceUnknown
 from backend.reasons.refusals import MissionOver, OnTheGround
-from backend.reasons.safety import NotGivenBack, PilotControls
+from backend.reasons.safety import BatterySilent, NotGivenBack, PilotControls
 from hardware.ports import VehicleError
+from hardware.readings import Announcement
 from hardware.reasons.vehicle import AutopilotRefused, DoesNotHold
+from hardware.reasons.vehicle_news import AutopilotSaid
 
 
 class Found:
@@ -139,3 +142,59 @@ async def test_a_mission_that_takes_it_has_it_alone(found: Found) -> None:
     found.vehicle.heard = True
     await found.stage.clock.sleep(20)
     assert found.vehicle.names == []
+
+
+def shown(found: Found) -> dict[str, object]:
+    return {alert.topic: alert.reason for alert in found.craft.alerts.values()}
+
+
+async def test_its_autopilots_words_are_shown_once_and_heard_from_the_moment_it_is_found(found: Found) -> None:
+    await known(found)
+    said = AutopilotSaid("critical", "Battery failure")
+    for _ in range(3):
+        found.vehicle.announced.put_nowait(Announcement(found.stage.clock.now(), said))
+    await found.stage.until_true(lambda: bool(found.craft.alerts))
+    assert shown(found) == {"autopilot": said}
+    assert [alert.level for alert in found.craft.alerts.values()] == ["warning"]
+    assert found.vehicle.names == []
+
+
+async def test_a_lost_gps_is_shown_and_goes_and_nothing_is_sent(found: Found) -> None:
+    await known(found)
+    found.vehicle.state = replace(found.vehicle.state, position_lost_since_s=found.stage.clock.now())
+    await found.stage.until_true(lambda: shown(found) == {"gps": PlaceUnknown()})
+    found.vehicle.state = replace(found.vehicle.state, position_lost_since_s=None)
+    await found.stage.until_true(lambda: shown(found) == {})
+    assert found.vehicle.names == []
+
+
+async def test_a_low_battery_is_shown_and_shown_again_when_it_is_lower_and_nobody_is_flown_home(found: Found) -> None:
+    await known(found)
+    for charge, told in ((24.0, 24.0), (23.0, 24.0), (26.0, 24.0), (12.0, 12.0), (11.0, 12.0), (14.0, 12.0)):
+        found.vehicle.state = replace(found.vehicle.state, battery_percent=charge)
+        await found.stage.until_true(lambda told=told: shown(found) == {"battery": BatteryRunsLow(told)})
+        await found.stage.clock.sleep(40.0)  # longer than a mission counts down
+        assert shown(found) == {"battery": BatteryRunsLow(told)}
+    found.vehicle.state = replace(found.vehicle.state, battery_percent=60.0)
+    await found.stage.until_true(lambda: shown(found) == {})
+    assert found.vehicle.names == []
+
+
+async def test_a_battery_that_fell_silent_is_shown(found: Found) -> None:
+    await known(found)
+    await found.stage.until_true(lambda: found.vehicle.telemetry().battery_at_s is not None)
+    found.vehicle.charge_reported = False
+    await found.stage.until_true(lambda: shown(found) == {"battery": BatterySilent()})
+
+
+async def test_of_a_craft_that_landed_or_flies_for_a_mission_nothing_is_left_open(found: Found) -> None:
+    await known(found)
+    found.vehicle.state = replace(found.vehicle.state, battery_percent=10.0)
+    await found.stage.until_true(lambda: "battery" in shown(found))
+    found.busy = True
+    await found.stage.until_true(lambda: shown(found) == {})
+    found.busy = False
+    await found.stage.until_true(lambda: "battery" in shown(found))
+    found.vehicle.touch_down()
+    await found.stage.until_true(lambda: found.craft.state is None)
+    assert shown(found) == {}

@@ -1,4 +1,4 @@
-"""What the craft machine answers to a pilot, a failsafe, a lost link, a restart and a fault."""
+"""What the craft machine answers to a pilot, a failsafe, a lost link and a fault."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from facts import (
     FAILSAFE,
     GIVEN_BACK,
     HOME,
-    LANDED_BY_FAILSAFE,
     LINK_LOST,
     NO_ANSWER,
     NO_TAKE_OFF,
@@ -30,8 +29,6 @@ from backend.events import AlertRaised, AuthorityChanged, Phase
 from backend.reasons import NotDone, OrderedAgainLater, ReceiverTrouble
 from backend.reasons.flight import FailsafeFlies, FailsafeStopped, Landed, PilotFlies, PlaceUnknown
 from backend.reasons.safety import NoLink
-
-IN_FLIGHT: tuple[Phase, ...] = tuple(AUTOMATIC | HOMEWARD)
 
 
 def test_after_a_lost_link_the_failsafe_that_brings_the_vehicle_home_is_not_interrupted() -> None:
@@ -152,74 +149,6 @@ def test_a_failsafe_that_landed_or_gave_way_to_the_pilot_is_no_longer_said_to_fl
     lost.give(inputs.LinkDown("vehicle", LINK_LOST))
     lost.give(inputs.AuthorityHeard(PILOT))
     assert "vehicle" in lost.topics
-
-
-def test_a_restart_in_flight_holds_until_an_operator_resumes() -> None:
-    for phase in IN_FLIGHT:
-        walk = craft_in(phase)
-        asked = walk.give(inputs.Restarted(OURS))
-        assert sent(asked) == [effects.HoldVehicle()]
-        assert walk.craft.phase == "hold"
-        walk.believe()
-        assert walk.craft.phase == "hold"
-        assert moves(walk.order(commands.Resume())) or walk.craft.phase in ("planning", "waiting")
-
-
-def test_a_restart_does_not_touch_a_vehicle_that_a_pilot_flies() -> None:
-    for walk, heard in ((CraftWalk().to("flying"), PILOT), (CraftWalk().to("manual"), GIVEN_BACK)):
-        assert not sent(walk.give(inputs.Restarted(heard)))
-        assert walk.craft.phase == "manual"
-        assert walk.craft.authority == heard
-
-
-def test_a_restart_does_not_interrupt_the_failsafe_that_brings_the_vehicle_home() -> None:
-    walk = CraftWalk().to("flying")
-    assert not sent(walk.give(inputs.Restarted(FAILSAFE)))
-    assert walk.craft.phase == "hold"
-    homeward = CraftWalk().to("returning")
-    homeward.give(inputs.Restarted(FAILSAFE))
-    (why,), (why_homeward,) = (w.of_kind(AlertRaised) for w in (walk, homeward))
-    assert (why.reason, why_homeward.reason) == (FailsafeFlies("server_away"), FailsafeFlies("ordered_before"))
-    assert effects.TakeControl() in walk.order(commands.Resume())
-    assert not walk.topics
-
-
-@pytest.mark.parametrize("phase", ["taking_off", "flying"])
-def test_a_vehicle_that_the_failsafe_landed_while_the_server_started_is_no_pilots(phase: str) -> None:
-    """On a busy machine a server needs a minute, and the autopilot is home before that."""
-    walk = CraftWalk().to(phase)  # type: ignore[arg-type]
-    assert not sent(walk.give(inputs.Restarted(LANDED_BY_FAILSAFE)))
-    assert (walk.craft.phase, walk.craft.phase_reason) == ("hold", FailsafeFlies("server_away"))
-    walk.give(inputs.Landed())
-    assert (walk.craft.phase, walk.last_alert.reason) == ("hold", Landed("hold"))
-    assert not any(isinstance(alert.reason, PilotFlies) for alert in walk.of_kind(AlertRaised))
-    asked = walk.order(commands.Resume())
-    first = next(k for k, effect in enumerate(asked) if isinstance(effect, VEHICLE))
-    assert effects.TakeControl() in asked[:first]
-    assert walk.craft.authority.taken_by is None
-
-
-def test_the_failsafes_landing_is_no_takeover_by_a_pilot() -> None:
-    walk = CraftWalk().to("flying")
-    walk.give(inputs.AuthorityHeard(FAILSAFE))
-    walk.give(inputs.AuthorityHeard(LANDED_BY_FAILSAFE))
-    assert (walk.craft.phase, walk.craft.taken_over) == ("hold", False)
-    assert not any(isinstance(alert.reason, PilotFlies) for alert in walk.of_kind(AlertRaised))
-
-
-@pytest.mark.parametrize("heard", [OURS, FAILSAFE])
-def test_after_an_abort_and_a_restart_hold_and_return_still_work_until_the_vehicle_is_down(heard: object) -> None:
-    walk = CraftWalk().to("flying")
-    walk.order(commands.Abort())
-    assert walk.search.stage == "ended"
-    walk.give(inputs.Restarted(heard))  # type: ignore[arg-type]
-    assert walk.craft.phase == "hold"
-    assert effects.HoldVehicle() in walk.order(commands.Hold())
-    assert effects.ReturnHome() in walk.order(commands.Return())
-    walk.give(inputs.HomeReached())
-    walk.give(inputs.Landed())
-    assert not walk.craft.engaged
-    assert refusal(walk.order(commands.Hold())) is not None
 
 
 def test_a_lost_console_holds_and_then_returns_by_timers() -> None:

@@ -10,9 +10,9 @@ from itertools import product
 from typing import get_args
 
 import pytest
-from craft_inputs import AUTHORITIES, every_craft_input
+from craft_inputs import AUTHORITIES, CLOCK_ODD, every_craft_input
 from craft_walk import PHASES, VEHICLE, CraftWalk, craft_in, moves, refusal, sent
-from facts import FAILSAFE, LANDED_BY_PILOT, SPEC, WAITING_SPEC
+from facts import FAILSAFE, HOME, LANDED_BY_PILOT, SPEC, WAITING_SPEC, rejected
 
 from backend import commands
 from backend.craft import effects, inputs
@@ -118,7 +118,9 @@ def swept() -> tuple[tuple[tuple[CraftState, SearchState], ...], tuple[Step, ...
         for given in every_craft_input(craft, search):
             step = stepped(craft, search, given)
             taken.append(step)
-            reach(step.after, search_after(step))
+            known_search = search_after(step)
+            if step.after is not craft or known_search is not search:
+                reach(step.after, known_search)
         for localized in (False, True):
             known = CraftWalk()
             known.craft, known.search = craft, search
@@ -319,6 +321,25 @@ def test_the_lower_the_battery_the_less_is_asked() -> None:
             assert moves(step.asked) == [effects.ReturnHome()], step.about
         else:
             assert not sent(step.asked), step.about
+
+
+def test_no_sweep_is_begun_while_the_autopilots_headings_cannot_be_dated() -> None:
+    began, held = 0, 0
+    for craft, search in reachable():
+        if craft.phase not in ("flying", "measuring"):
+            continue
+        odd = stepped(craft, search, inputs.ClockOdd(CLOCK_ODD))
+        assert [raised.topic for raised in odd.after.open_alerts].count("clock") == 1, odd.about
+        assert odd.after.phase == ("hold" if craft.phase == "measuring" else craft.phase), odd.about
+        for given in (inputs.Arrived(HOME, 0.4, 12.0), inputs.SweepTaken((rejected(1, craft.place_number),))):
+            began += effects.Measure in map(type, stepped(craft, search, given).asked)
+            step = stepped(odd.after, odd.search, given)
+            assert effects.Measure not in map(type, step.asked), step.about
+            held += step.after.phase == "hold"
+        over = stepped(odd.after, odd.search, inputs.ClockAgrees())
+        assert "clock" not in [raised.topic for raised in over.after.open_alerts], over.about
+        assert sent(over.asked) == [], over.about
+    assert min(began, held) > 10
 
 
 def test_nothing_moves_a_craft_that_is_not_engaged_but_its_start() -> None:

@@ -21,6 +21,7 @@ from hardware.readings import BearingReading, PowerSample
 from hardware.reasons.receiver import NothingHeardInTurn
 from hardware.reasons.sweep import NoPulseHeard
 from hardware.reasons.vehicle import PositionLost
+from hardware.reasons.vehicle_news import ClockRateOdd
 
 
 async def measured(stage: Stage, mission: MissionSpec | None = None) -> tuple[Measured, ...]:
@@ -39,6 +40,21 @@ async def test_a_sweep_becomes_a_bearing_of_the_craft_that_took_it() -> None:
     assert found.fact.source == CraftSource(craft_id=FIRST_CRAFT)
     assert found.fact.measurement_time_s is not None
     assert found.sweep is not None
+
+
+async def test_a_clock_that_becomes_odd_during_the_turn_rejects_its_sweep() -> None:
+    stage = Stage()
+    turn = stage.vehicle.turn
+
+    async def turning(rate_deg_s: float, by_deg: float = 360.0) -> None:
+        await turn(rate_deg_s, by_deg)
+        stage.vehicle.state = replace(stage.vehicle.state, odd_clock_rate=0.9)
+
+    stage.vehicle.turn = turning  # type: ignore[method-assign]
+    (found,) = await measured(stage)
+    assert isinstance(found.fact, SweepRejected)
+    assert found.fact.reason == ClockRateOdd(0.9)
+    assert found.sweep is not None, "what was heard is kept"
 
 
 async def test_one_turn_becomes_one_result_for_each_emitter() -> None:

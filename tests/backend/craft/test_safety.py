@@ -1,26 +1,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from air import still_air
 from airspace import airspace
+from craft_limits import FENCE, FRAME, HOME, LIMITS, ZONE, kinds, situation, telemetry
 from facts import FAILSAFE, GIVEN_BACK, PILOT
 from hypothesis import given
 from hypothesis import strategies as st
-from relief import Shape, hill, level, terrain
 from shapely import box
 
 from backend.craft.endurance import LEG_S, landing_s
 from backend.craft.safety import (
-    Limits,
     Situation,
     battery_stage,
     battery_to_return_percent,
-    ground_return_vetoes,
     place_vetoes,
     resume_vetoes,
     return_vetoes,
@@ -30,44 +26,18 @@ from backend.craft.safety import (
     turn_vetoes,
     vehicle_vetoes,
 )
-from backend.reasons import Reason, safety
+from backend.reasons import safety
 from backend.search.area import EDGE_TOLERANCE_M
-from backend.search.ground import Ground
 from backend.spec import FlightSpec
-from hardware.frame import LocalFrame
-from hardware.readings import Place, Telemetry
+from hardware.reasons.vehicle_news import ClockRateOdd
 from planner.reason import remedy_of
 
-HOME = Place(50.0, 7.0)
-FRAME = LocalFrame(HOME)
-FENCE, ZONE = box(-50, -50, 400, 200), box(100, 0, 150, 100)
-LIMITS = Limits(
-    frame=FRAME,
-    fence=FENCE,
-    no_fly=(ZONE,),
-    problem=airspace(FENCE, ZONE),
-    ground=Ground(FRAME, 100.0),
-    flight=FlightSpec(),
-    reserve_percent=25.0,
-    battery_telemetry=True,
-    speed_m_s=7.0,
-    measurement_time_s=30.0,
-)
 
-
-def telemetry(east: float = 0.0, north: float = 0.0, **more: object) -> Telemetry:
-    return replace(
-        Telemetry(connected=True, at_s=1000.0, position=FRAME.to_geo(east, north), position_at_s=1000.0),
-        **{"battery_percent": 90.0, "in_air": True, **more},  # type: ignore[arg-type]
-    )
-
-
-def situation(**more: object) -> Situation:
-    return Situation(telemetry(**more), now_s=1000.5)  # type: ignore[arg-type]
-
-
-def kinds(vetoes: Iterable[Reason]) -> list[type]:
-    return [type(veto) for veto in vetoes]
+def test_while_the_autopilots_clock_is_odd_no_turn_is_begun_and_the_way_home_stays_open() -> None:
+    odd = situation(odd_clock_rate=0.9)
+    assert turn_vetoes(LIMITS, odd) == (ClockRateOdd(0.9),)
+    assert return_vetoes(LIMITS, odd, [(0.0, 0.0)], 140.0) == ()
+    assert vehicle_vetoes(odd) == ()
 
 
 def rules(east: float, north: float, seen: Situation, amsl: float = 140.0) -> list[type]:
@@ -294,73 +264,6 @@ def test_a_battery_is_the_lower_the_less_it_leaves(charge: float, stage: str) ->
 def test_above_home_a_battery_is_never_so_low_that_it_lands_elsewhere() -> None:
     seen = Situation(telemetry(0.0, 2.0, battery_percent=3.0, altitude_relative_m=40.0), 1000.0, still_air(0.07))
     assert battery_stage(LIMITS, seen) == "last"
-
-
-def over(shape: Shape, **flight: object) -> Limits:
-    wide = box(-500, -500, 1500, 500)
-    return replace(
-        LIMITS,
-        fence=wide,
-        no_fly=(),
-        problem=airspace(wide),
-        ground=Ground(FRAME, 100.0, terrain(shape)),
-        flight=FlightSpec(**flight),  # type: ignore[arg-type]
-    )
-
-
-def flown(limits: Limits, east: float, north: float, amsl: float, seen: Situation | None = None) -> list[type]:
-    lasting = replace(seen or situation(), endurance=still_air(0.02))
-    return kinds(place_vetoes(limits, lasting, FRAME.to_geo(east, north), amsl))
-
-
-def test_a_way_over_a_hill_is_refused_below_the_clearance_and_allowed_above() -> None:
-    limits = over(hill(300.0, 0.0, 60.0))
-    assert flown(limits, 600, 0, 140.0) == [safety.ClearanceShort]
-    assert flown(limits, 600, 0, 184.0) == []
-    assert flown(limits, 0, 300, 140.0) == []
-
-
-def test_a_way_over_a_hollow_is_refused_above_the_ceiling() -> None:
-    limits = over(hill(300.0, 0.0, -60.0), maximum_above_ground_m=80.0)
-    assert flown(limits, 600, 0, 140.0) == [safety.TooHighAboveGround]
-
-
-def test_a_way_over_unknown_ground_is_refused() -> None:
-    limits = replace(over(level()), ground=Ground(FRAME, 100.0, terrain(level(), reach_m=300.0)))
-    assert flown(limits, 400, 0, 140.0) == [safety.GroundUnknown]
-
-
-def test_a_place_from_which_no_way_leads_home_is_refused() -> None:
-    """The vehicle is behind the mountain already; a place beside it would be fine, but for the way home."""
-    limits = over(hill(400.0, 0.0, 160.0), maximum_above_ground_m=300.0)
-    behind = replace(situation(east=800.0), endurance=still_air(0.02))
-    (veto,) = place_vetoes(limits, behind, FRAME.to_geo(810, 0), 140.0)
-    assert isinstance(veto, safety.ClearanceShort)
-    assert veto.where == "way_home"
-
-
-def test_a_start_beside_ground_that_rises_at_once_is_refused() -> None:
-    steep = over(lambda east, north: np.where(east > 5.0, 320.0, 100.0))
-    (veto,) = start_vetoes(steep, situation(in_air=False))
-    assert isinstance(veto, safety.TooHighAboveGround)
-    assert veto.where == "take_off"
-
-
-def test_the_climb_that_the_ground_of_the_way_home_asks_for_takes_battery() -> None:
-    place, endurance = FRAME.to_geo(600.0, 0.0), still_air(0.02)
-    flat = battery_to_return_percent(over(level()), place, endurance, 40.0)
-    assert flat == battery_to_return_percent(
-        replace(over(level()), ground=Ground(FRAME, 100.0)), place, endurance, 40.0
-    )
-    assert battery_to_return_percent(over(hill(300.0, 0.0, 60.0)), place, endurance, 40.0) > flat + 1.0
-
-
-def test_a_way_home_has_to_keep_the_clearance_but_not_the_ceiling() -> None:
-    way = [(600.0, 0.0), (0.0, 0.0)]
-    assert kinds(ground_return_vetoes(over(hill(300.0, 0.0, 60.0)), way, 140.0)) == [safety.ClearanceShort]
-    assert ground_return_vetoes(over(hill(300.0, 0.0, -60.0), maximum_above_ground_m=80.0), way, 140.0) == ()
-    unknown = replace(over(level()), ground=Ground(FRAME, 100.0, terrain(level(), reach_m=300.0)))
-    assert kinds(ground_return_vetoes(unknown, way, 140.0)) == [safety.GroundUnknown]
 
 
 def test_without_terrain_the_band_alone_holds() -> None:

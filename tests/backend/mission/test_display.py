@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 from flights import order, stuck
 from stage import Stage
@@ -10,7 +11,9 @@ from stage import Stage
 from backend import commands
 from backend.events import FIRST_CRAFT
 from backend.ports import CraftStatus
+from backend.reasons.flight import PlaceUnknown
 from backend.reasons.safety import NotGivenBack
+from backend.wire.messages import CraftStatusMessage
 
 
 async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) -> None:
@@ -19,6 +22,15 @@ async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) ->
     status = stage.publisher.statuses[0]
     assert (status.mission_id, status.phase, status.database) == (None, None, "ok")
     assert status.crafts == (CraftStatus(FIRST_CRAFT, None, "ground", "off", None, None, None),)
+
+
+async def test_the_alerts_of_a_craft_that_flies_for_no_mission_are_in_the_status(stage: Stage) -> None:
+    stage.vehicle.state = replace(stage.vehicle.state, armed=True, in_air=True, position_lost_since_s=1.0)
+    await stage.until_true(lambda: bool(stage.room.display.status().crafts[0].alerts))
+    (alert,) = stage.room.display.status().crafts[0].alerts
+    assert (alert.topic, alert.level, alert.reason) == ("gps", "warning", PlaceUnknown())
+    told = CraftStatusMessage.model_validate(stage.room.display.status().crafts[0], from_attributes=True)
+    assert told.alerts[0].reason == PlaceUnknown()
 
 
 async def test_the_status_says_what_the_craft_of_the_mission_does(stage: Stage) -> None:

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import replace
+from unittest.mock import AsyncMock
 
 import numpy as np
 import pytest
 from equipment import FRAME, HOME
 from flights import flying, order
 from numpy.typing import NDArray
-from relief import hill, level, terrain
+from relief import Shelf, hill, level, terrain
 from stage import Stage
 
 from backend import commands
+from backend.craft import checklist
 from backend.events import FlightStarted, MissionStarted, PlanChosen
 from backend.reasons import safety
 from backend.reasons.terrain import GroundNotKept
-from backend.spec import Place
 from backend.terrain import Terrain
 from hardware.readings import ReturnAltitude
 
@@ -29,26 +30,6 @@ CLEARANCE_M = 20.0
 def ridge(east: NDArray[np.float64], north: NDArray[np.float64]) -> NDArray[np.float64]:
     """From one end of the field to the other, beyond the fence."""
     return 160.0 - 60.0 * (1.0 - np.exp(-(((north - 50.0) / 20.0) ** 2))) + 0.0 * east
-
-
-class Shelf:
-    """Terrain as it was brought, and what missions put aside of it. full: nothing more fits."""
-
-    def __init__(self, found: Terrain | None) -> None:
-        self.found = found
-        self.stored: dict[str, Terrain] = {}
-        self.full = False
-
-    async def around(self, home: Place) -> Terrain | None:
-        return self.found
-
-    async def keep(self, terrain: Terrain) -> None:
-        if self.full:
-            raise OSError(28, "No space left on device")
-        self.stored[terrain.digest] = terrain
-
-    async def kept(self, digest: str) -> Terrain | None:
-        return self.stored.get(digest)
 
 
 @pytest.fixture
@@ -125,10 +106,11 @@ async def test_before_the_return_the_vehicle_climbs_as_the_way_home_needs(over) 
     assert high == same == pytest.approx(160.0 + CLEARANCE_M + 3.0, abs=1.0)
 
 
-async def test_the_autopilots_own_return_begins_as_high_as_the_straight_way_needs(over) -> None:
-    """It is what is left where our way cannot be flown: here the ground asks for more than the band allows."""
+async def test_the_autopilots_own_return_begins_as_high_as_the_straight_way_needs(over, monkeypatch) -> None:
+    """It is what is left where our way cannot be flown: here the ground asks for more than the band allows. No start is
+    accepted so; a parameter that another station changes in flight is not looked at again."""
     stage, _ = await over(terrain(ridge, spacing_m=10.0))
-    stage.vehicle.returns_at = ReturnAltitude("RTL_RETURN_ALT", None)  # else the checklist says so
+    monkeypatch.setattr(checklist, "return_altitude_check", AsyncMock(return_value=None))
     mission_id = await flying(stage, "waiting", automatic=False, maximum_altitude_relative_m=60.0)
     stage.vehicle.state = replace(
         stage.vehicle.state, position=FRAME.to_geo(0.0, 99.0), altitude_amsl_m=110.0, altitude_relative_m=10.0

@@ -44,9 +44,10 @@ async def coming_home(stage: Stage) -> None:
     """By our own way points, on the way to the first of them."""
     mission_id = await flying(stage, "measuring")
     stage.vehicle.stuck = True
+    legs = stage.vehicle.names.count("goto")
     await order(stage, mission_id, commands.Return())
     await stage.until_phase(mission_id, "returning")
-    await stage.until_true(lambda: stage.vehicle.names[-1] == "goto")
+    await stage.until_true(lambda: stage.vehicle.names.count("goto") > legs)
     stage.vehicle.stuck = False
 
 

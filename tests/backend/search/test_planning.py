@@ -9,10 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from backend.search.localization import Localization, localization
+from backend.events import PersonSource
+from backend.search.localization import Localization, localization, source_name
 from backend.search.planning import cost_of, foreseen, in_nine_of_ten, next_place, next_place_together, way_to
 from backend.spec import EmitterSpec, FlightSpec, MissionSpec, PlannerSpec, Polygon
 from hardware.readings import Place
+from planner.policy.actions import SAME_PLACE_M
 
 
 def task(**more: object) -> Localization:
@@ -53,7 +55,7 @@ def test_a_refused_place_is_not_chosen_again(method: str) -> None:
     refused: list[Place] = []
     for _ in range(3):
         choice = next_place(made, belief, seen, (0.0, -20.0), 2, refused, 1).place
-        assert choice not in refused
+        assert all(math.dist(FRAME.to_enu(choice), FRAME.to_enu(place)) >= SAME_PLACE_M for place in refused)
         refused.append(choice)
 
 
@@ -102,6 +104,15 @@ def test_bearings_to_come_are_expected_as_good_as_those_that_came() -> None:
     expected = (math.degrees(problem.sigma) * 1.0 * 1.0 * 4.0) ** 0.25
 
     assert math.degrees(foreseen(problem, seen).sigma) == pytest.approx(expected)
+
+
+def test_the_bearings_to_come_are_the_crafts_whoever_took_those_that_came() -> None:
+    problem = task().problem
+    flown = towards(0.0, -20.0, (200.0, 80.0))
+    told = flown.model_copy(update={"source": PersonSource(name="Ada")})
+
+    assert foreseen(problem, [told]).next_source != source_name(told.source)
+    assert foreseen(problem, [flown, told]).next_source == source_name(flown.source)
 
 
 def test_measurements_to_come_are_expected_to_take_as_long_as_those_that_were_flown() -> None:

@@ -18,12 +18,13 @@ from backend.craft.safety import limits_of, vehicle_vetoes
 from backend.craft.state import CraftState
 from backend.craft.watch.watch import Watch
 from backend.events import FIRST_CRAFT
-from backend.reasons.flight import NoConsole, PlaceUnknown, VehicleLinkLost
+from backend.reasons.flight import BackAfterRestart, NoConsole, PlaceUnknown, VehicleLinkLost
 from backend.reasons.safety import BatteryShort, BatterySilent, BatteryUnknown, FailsafeActs, NoPosition
 from backend.search.task import search_task
 from backend.spec import Place
 from hardware.authority import CommandSent
 from hardware.readings import Channel
+from hardware.reasons.vehicle_news import ClockRateOdd
 
 
 class HandClock:
@@ -111,6 +112,19 @@ def test_a_link_that_goes_and_comes_is_noticed_once_each_way(scene: Scene) -> No
     (up,) = scene.tick(5)
     assert isinstance(up, inputs.LinkUp)
     assert up.outage_s == pytest.approx(1.0)
+
+
+def test_an_odd_clock_is_told_once_each_way_and_not_forgotten_while_the_link_is_lost(scene: Scene) -> None:
+    scene.see(odd_clock_rate=0.9)
+    assert scene.tick(5) == [inputs.ClockOdd(ClockRateOdd(0.9))]
+    scene.see(odd_clock_rate=0.88)
+    scene.vehicle.heard = False
+    (lost,) = scene.tick(5)
+    assert isinstance(lost, inputs.LinkDown)
+    scene.see(odd_clock_rate=None)
+    scene.vehicle.heard = True
+    back = scene.tick(5)
+    assert [type(one) for one in back] == [inputs.LinkUp, inputs.ClockAgrees]
 
 
 def test_a_vehicle_that_says_that_it_lost_its_place_is_heard_once_each_way_and_may_not_be_flown(scene: Scene) -> None:
@@ -327,6 +341,17 @@ def test_home_and_ground_are_noticed_when_they_are_reached(scene: Scene) -> None
     scene.see(in_air=False)
     assert inputs.Landed() not in scene.tick(2)
     assert inputs.Landed() in scene.tick(6)
+
+
+def test_a_held_vehicle_on_the_ground_with_its_motors_off_has_landed_whoever_saw_it_fly(scene: Scene) -> None:
+    """A server that starts as the vehicle touches down never saw it in the air."""
+    scene.be(replace(craft_in("hold").craft, took_off=False, phase_reason=BackAfterRestart()))
+    scene.see(in_air=False, armed=True)
+    scene.vehicle.shows("HOLD")
+    assert inputs.Landed() not in scene.tick(10)
+    scene.see(in_air=False, armed=False)
+    scene.vehicle.shows("HOLD")
+    assert inputs.Landed() in scene.tick(10)
 
 
 def test_the_track_is_thinned_to_two_points_a_second(scene: Scene) -> None:
