@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, TypeVar
@@ -12,10 +11,9 @@ from sqlalchemy.exc import DBAPIError
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.auth.registry import Invitation, MachineToken, Person, Session
-from backend.ports import JournalUnavailable
-from backend.reasons.storage import DatabaseSilent
 from backend.store import tables
-from backend.store.reading import why
+from backend.store.patience import patience
+from backend.store.reading import unavailable
 
 Row = Person | Session | Invitation | MachineToken
 TABLES: dict[type[Any], tuple[Table, str]] = {
@@ -78,10 +76,10 @@ class Records:
 
     async def _done(self, work: Callable[[AsyncConnection], Awaitable[Any]]) -> Any:
         try:
-            async with asyncio.timeout(self._timeout_s), self._engine.begin() as connection:
+            async with patience(self._timeout_s), self._engine.begin() as connection:
                 return await work(connection)
         except (DBAPIError, OSError, TimeoutError) as error:
-            raise JournalUnavailable(DatabaseSilent(why(error))) from error
+            raise unavailable(error) from error
 
 
 def _itself(row: Row) -> tuple[Table, ColumnElement[bool]]:

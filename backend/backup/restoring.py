@@ -11,7 +11,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from sqlalchemy import Connection, make_url, select
+from sqlalchemy import Connection, Text, make_url, select
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
@@ -28,6 +28,8 @@ from planner.reason import sentence_of
 ANSWERS_S = 30.0
 AUDIT_BEFORE = "audit.before-restore.jsonl"
 """The audit log of a server that has only started stays under this name, beside the one of the archive."""
+PACKED_SINCE = "0007"
+"""The schema from which on the database may hold compressed bodies of facts."""
 PATTERNS = "patterns"
 """The folder of the data directory that an antenna pattern comes back to."""
 
@@ -148,6 +150,8 @@ async def _must_hold_no_rows(connection: AsyncConnection) -> bool:
 
 async def _write_tables(connection: AsyncConnection, archive: Archive, progress: Callable[[str], None]) -> None:
     metadata = await connection.run_sync(reflected)
+    if archive.manifest.schema_revision < PACKED_SINCE:  # the migrations on the way read plain text
+        metadata.tables["events"].c.body.type = Text()
     listed = {
         member.name.removeprefix(DATABASE).removesuffix(".jsonl"): member
         for member in archive.manifest.members

@@ -15,6 +15,7 @@ from sqlalchemy import Connection, MetaData, Table, insert, inspect, select, tex
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from backend.backup.manifest import BackupError
+from backend.store.packed import MARK, PackedText
 
 VERSION_TABLE = "alembic_version"
 READ_AT_ONCE = 200
@@ -41,6 +42,8 @@ def reflected(connection: Connection) -> MetaData:
     metadata = MetaData()
     names = [name for name in inspect(connection).get_table_names() if name != VERSION_TABLE]
     metadata.reflect(connection, only=names)
+    if "events" in metadata.tables:
+        metadata.tables["events"].c.body.type = PackedText()
     return metadata
 
 
@@ -92,6 +95,8 @@ def _batches(table: Table, lines: Iterator[bytes]) -> Iterator[list[dict[str, An
         if len(values) != len(names):
             raise BackupError(f"a row of table {table.name} has {len(values)} values instead of {len(names)}")
         batch.append({n: _read(table, v, k) for n, v, k in zip(names, values, kinds, strict=True)})
+        if str(batch[-1].get("body", "")).startswith(MARK):
+            raise BackupError(f"a row of table {table.name} is packed, which no archive of ours is")
         size += len(line)
         if len(batch) >= WRITE_AT_ONCE or size >= WRITE_BYTES_AT_ONCE:
             yield batch

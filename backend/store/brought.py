@@ -22,14 +22,13 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, MissionBroughtIn, Recorded
 from backend.mission.state import fold as fold_mission
-from backend.ports import JournalUnavailable, TrackPoint
+from backend.ports import TrackPoint
 from backend.reasons.request import BundleFileWrong, BundleUnreadable
-from backend.reasons.storage import DatabaseSilent
 from backend.store.digest import MissionDigest, fold, to_columns
 from backend.store.entries import EventRow, SweepEntry, TrackEntry, decode, to_records, to_row
 from backend.store.exported import RECORDED, ExportedLater, NotExported, export_of_today
 from backend.store.patience import patience
-from backend.store.reading import why
+from backend.store.reading import unavailable
 from backend.store.tables import events, missions
 from planner.reason import ReasonedError
 
@@ -283,6 +282,6 @@ async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: 
             for at in range(0, len(rows), AT_ONCE):
                 await connection.execute(events.insert(), rows[at : at + AT_ONCE])
             for entry in (*brought.sweeps, *brought.tracks):
-                await entry.write(connection)
+                await connection.run_sync(entry.write)
     except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-        raise JournalUnavailable(DatabaseSilent(why(error))) from error
+        raise unavailable(error) from error

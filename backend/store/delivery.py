@@ -14,23 +14,27 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Literal
 
-from sqlalchemy import exc, text
+from sqlalchemy import Connection, exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.ports import FactRefused, JournalUnavailable
-from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, NothingStores
+from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, MachineBusy, NothingStores
 from backend.store.entries import Entry, EventsEntry, JournalConflict, decode
-from backend.store.patience import patience
+from backend.store.patience import StarvedError, patience
 from backend.store.reading import why
 from backend.store.spool import Spool, SpoolFull
+from backend.store.transactions import transactions_of
 
 log = logging.getLogger("crossfix.store")
 
 RETRY_FIRST_S, RETRY_LAST_S = 0.25, 5.0
+RETRY_BUSY_S = 1.0
+"""Nobody is away: there is only little time for each try."""
 PROBE_S = 1.0
 DRAIN_BATCH = 64
 MOST_TRIES = 5
@@ -41,7 +45,16 @@ REFUSED = (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingEr
 
 
 class DatabaseAway(RuntimeError):
-    """The database did not answer; nothing is known about the last transaction."""
+    """The database did not answer; nothing is known about the last transaction. busy: on a machine that is too busy to
+    say that it is away."""
+
+    def __init__(self, why: str, busy: bool = False) -> None:
+        super().__init__(why)
+        self.busy = busy
+
+
+def _away(error: BaseException) -> DatabaseAway:
+    return DatabaseAway(why(error), isinstance(error, StarvedError))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +63,7 @@ class DatabaseReport:
     never take (kept in a file)."""
 
     state: Literal["ok", "slow", "lost"]
-    reason: DatabaseSilent | DatabaseSlow | DiskLow | None
+    reason: DatabaseSilent | DatabaseSlow | MachineBusy | DiskLow | None
     spooled: int
     refused: int
 
@@ -69,7 +82,7 @@ class Delivery:
         disk_low_bytes: int,
     ) -> None:
         self._engine = engine
-        self._writer = engine.execution_options(write=True)
+        self._transactions = transactions_of(engine, timeout_s)
         self._spool = spool
         self._settled = settled
         self._timeout_s = timeout_s
@@ -79,6 +92,8 @@ class Delivery:
         self._wake = asyncio.Event()
         self._fault: str | None = None
         self._answers = True
+        self._busy = False
+        self._at_once = DRAIN_BATCH
         self._took_s = 0.0
         self._refused = 0
         self._tries = 0
@@ -128,13 +143,12 @@ class Delivery:
         """All in one transaction. Raises DatabaseAway, and what `REFUSED` names."""
         began = time.monotonic()
         try:
-            async with patience(self._timeout_s), self._writer.begin() as connection:
-                for entry in entries:
-                    await entry.write(connection)
+            async with patience(self._timeout_s):
+                await self._transactions.run(partial(_write, entries))
         except REFUSED:
             raise
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(why(error)) from error
+            raise _away(error) from error
         finally:
             self._took_s = time.monotonic() - began
 
@@ -152,9 +166,12 @@ class Delivery:
     def lost(self, error: Exception) -> None:
         """From now on entries go to the spool, until it is drained."""
         fault = str(error) if isinstance(error, DatabaseAway) else why(error)
-        if self._fault is None:
+        busy = isinstance(error, DatabaseAway) and error.busy
+        if busy and (self._fault is None or not self._busy):
+            log.warning("this machine is too busy to hear the database in time; events are spooled")
+        elif not busy and (self._fault is None or self._busy):
             log.error("database away: %s; events are spooled", fault)
-        self._fault, self._answers = fault, False
+        self._fault, self._answers, self._busy = fault, False, busy
         self._wake.set()
 
     async def run(self) -> None:
@@ -174,7 +191,7 @@ class Delivery:
                 log.exception("the watch over the database met what it did not foresee; it goes on")
                 self.lost(error)
             await asyncio.sleep(retry_s)
-            retry_s = min(2 * retry_s, RETRY_LAST_S)
+            retry_s = min(2 * retry_s, RETRY_BUSY_S if self._busy else RETRY_LAST_S)
 
     async def _look(self) -> None:
         """At the disk and, unless something happens first, at the database a while later."""
@@ -192,7 +209,7 @@ class Delivery:
             async with patience(self._timeout_s), self._engine.connect() as connection:
                 await connection.execute(text("SELECT 1"))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise DatabaseAway(why(error)) from error
+            raise _away(error) from error
         self._took_s = time.monotonic() - began
 
     async def drain(self) -> None:
@@ -200,18 +217,20 @@ class Delivery:
         await self._probe()
         drained = 0
         while self.waiting:
-            batch = list(islice(self.waiting, 1 if self._tries else DRAIN_BATCH))
+            batch = list(islice(self.waiting, 1 if self._tries else self._at_once))
             try:
                 await self._write(batch)
             except REFUSED:
                 del batch[1:]
                 await self._write_or_set_aside(batch[0])
             except DatabaseAway:
+                self._at_once = max(1, len(batch) // 2)  # fewer are done in time
                 raise
             except Exception as error:
                 if not await self._given_up(batch, error):
                     raise
             self._tries = 0
+            self._at_once = min(2 * self._at_once, DRAIN_BATCH)
             drained += len(batch)
             self._answers = True  # slow until the rest is stored, but away no longer
             for _ in batch:
@@ -220,8 +239,8 @@ class Delivery:
             if not self.waiting:
                 await asyncio.to_thread(self._spool.clear)
                 if self._fault is not None:
-                    log.warning("database back, %d spooled entries stored", drained)
-                self._fault = None
+                    log.warning("%d spooled entries stored: nothing waits any more", drained)
+                self._fault, self._busy = None, False
                 self._settled()
 
     async def _write_or_set_aside(self, entry: Entry) -> None:
@@ -238,6 +257,10 @@ class Delivery:
         await self.set_aside(batch[0], f"a spooled entry fails again and again ({type(error).__name__}: {error})")
         return True
 
+    async def close(self) -> None:
+        """Its own connection to the database."""
+        await self._transactions.close()
+
     def waiting_events(self, mission_id: str) -> list[EventsEntry]:
         """Of a mission, in order."""
         return [entry for entry in self.waiting if isinstance(entry, EventsEntry) and entry.mission_id == mission_id]
@@ -245,6 +268,8 @@ class Delivery:
     def report(self) -> DatabaseReport:
         """From what the last attempts showed; asks nobody."""
         waiting = len(self.waiting)
+        if self._fault is not None and self._busy:
+            return DatabaseReport("slow", MachineBusy(), waiting, self._refused)
         if self._fault is not None and not self._answers:
             return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
         if waiting or self._fault is not None or self._took_s > self._slow_s:
@@ -252,6 +277,11 @@ class Delivery:
         if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:
             return DatabaseReport("slow", DiskLow(self._disk_free_bytes), 0, self._refused)
         return DatabaseReport("ok", None, 0, self._refused)
+
+
+def _write(entries: Sequence[Entry], connection: Connection) -> None:
+    for entry in entries:
+        entry.write(connection)
 
 
 def _free_bytes(path: Path) -> int | None:

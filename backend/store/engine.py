@@ -9,11 +9,15 @@ from typing import Any
 from alembic import command
 from alembic.config import Config
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, event, make_url
+from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlalchemy.pool import NullPool
 
 MIGRATIONS = Path(__file__).resolve().parent.parent.parent / "migrations"
+
+
+SHORTER = 0.6
+"""Of the caller's time for an answer: how long SQLite waits for a locked file."""
 
 
 def make_engine(url: str, timeout_s: float) -> AsyncEngine:
@@ -22,8 +26,8 @@ def make_engine(url: str, timeout_s: float) -> AsyncEngine:
     sqlite = make_url(url).get_backend_name() == "sqlite"
     if sqlite:
         _make_folder(url)
-        engine = create_async_engine(url, connect_args={"timeout": 0.6 * timeout_s})
-        _configure_sqlite(engine)
+        engine = create_async_engine(url, connect_args={"timeout": SHORTER * timeout_s})
+        _configure_sqlite(engine.sync_engine)
         return engine
     return create_async_engine(
         url,
@@ -34,17 +38,25 @@ def make_engine(url: str, timeout_s: float) -> AsyncEngine:
     )
 
 
+def make_direct_engine(engine: AsyncEngine, timeout_s: float) -> Engine:
+    """On the same SQLite file, for one thread that does whole transactions by itself."""
+    url = engine.url.set(drivername="sqlite")
+    direct = create_engine(url, connect_args={"timeout": SHORTER * timeout_s})
+    _configure_sqlite(direct)
+    return direct
+
+
 def _make_folder(url: str) -> None:
     database = make_url(url).database
     if database and database != ":memory:":
         Path(database).parent.mkdir(parents=True, exist_ok=True)
 
 
-def _configure_sqlite(engine: AsyncEngine) -> None:
+def _configure_sqlite(engine: Engine) -> None:
     """WAL and synchronous=FULL: a commit that returned survives a power cut. A transaction that will write says so at
     its beginning (execution option `write`), else two of them could deadlock on the upgrade of their lock."""
 
-    @event.listens_for(engine.sync_engine, "connect")
+    @event.listens_for(engine, "connect")
     def set_pragmas(connection: Any, _record: Any) -> None:
         connection.isolation_level = None
         cursor = connection.cursor()
@@ -52,7 +64,7 @@ def _configure_sqlite(engine: AsyncEngine) -> None:
             cursor.execute(f"PRAGMA {pragma}")
         cursor.close()
 
-    @event.listens_for(engine.sync_engine, "begin")
+    @event.listens_for(engine, "begin")
     def begin(connection: Connection) -> None:
         write = connection.get_execution_options().get("write", False)
         connection.exec_driver_sql("BEGIN IMMEDIATE" if write else "BEGIN")
@@ -63,7 +75,7 @@ def engine_for_once(url: str, timeout_s: float) -> AsyncEngine:
     engine = create_async_engine(url, poolclass=NullPool, connect_args={"timeout": timeout_s})
     if make_url(url).get_backend_name() == "sqlite":
         _make_folder(url)
-        _configure_sqlite(engine)
+        _configure_sqlite(engine.sync_engine)
     return engine
 
 

@@ -14,9 +14,8 @@ from typing import Any, Literal
 
 import numpy as np
 from pydantic import TypeAdapter
-from sqlalchemy import Table, select
+from sqlalchemy import Connection, Table, select
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.ext.asyncio import AsyncConnection
 
 from backend.events import FIRST_CRAFT, FORM, Event, Recorded
 from backend.ports import FactRefused, TrackPoint
@@ -89,12 +88,12 @@ class EventsEntry:
         """As the spool keeps it."""
         return _encode("events", {"mission_id": self.mission_id, "rows": [asdict(row) for row in self.rows]})
 
-    async def write(self, connection: AsyncConnection) -> None:
+    def write(self, connection: Connection) -> None:
         """Raises JournalConflict when another writer has used one of the numbers for another fact."""
         first, last = self.rows[0].seq, self.rows[-1].seq
         known = {
             row.seq: EventRow(*row)
-            for row in await connection.execute(
+            for row in connection.execute(
                 select(*ROW).where(events.c.mission_id == self.mission_id, events.c.seq.between(first, last))
             )
         }
@@ -104,21 +103,21 @@ class EventsEntry:
         new = [row for row in self.rows if row.seq not in known]
         if not new:
             return
-        before = await read_digest(connection, self.mission_id)
+        before = _read_digest(connection, self.mission_id)
         if new[0].seq != (before.last_seq if before else 0) + 1:
             raise JournalConflict(WrittenElsewhere(self.mission_id, new[0].seq))
         after = to_columns(fold(before, to_records(self.mission_id, new)))
         after["name"] = after["name"].replace("\x00", "")
         if before is None:
-            await connection.execute(missions.insert().values(after))
+            connection.execute(missions.insert().values(after))
         else:
-            await connection.execute(missions.update().where(missions.c.mission_id == self.mission_id).values(after))
-        await connection.execute(events.insert(), [{"mission_id": self.mission_id, **asdict(row)} for row in new])
+            connection.execute(missions.update().where(missions.c.mission_id == self.mission_id).values(after))
+        connection.execute(events.insert(), [{"mission_id": self.mission_id, **asdict(row)} for row in new])
 
 
-async def read_digest(connection: AsyncConnection, mission_id: str) -> MissionDigest | None:
+def _read_digest(connection: Connection, mission_id: str) -> MissionDigest | None:
     """None: no fact of it is stored."""
-    rows = await connection.execute(select(missions).where(missions.c.mission_id == mission_id))
+    rows = connection.execute(select(missions).where(missions.c.mission_id == mission_id))
     found = rows.mappings().one_or_none()
     return None if found is None else from_columns(dict(found))
 
@@ -147,9 +146,9 @@ class SweepEntry:
         """As the spool keeps it."""
         return _encode("sweep", {**asdict(self), "samples": base64.b64encode(self.samples).decode()})
 
-    async def write(self, connection: AsyncConnection) -> None:
+    def write(self, connection: Connection) -> None:
         """A sweep that is stored already is left as it is."""
-        await _insert_new(connection, sweeps, [asdict(self)])
+        _insert_new(connection, sweeps, [asdict(self)])
 
     def sweep(self) -> Sweep:
         """As it was measured; an altitude or a drift that was not known is NaN again."""
@@ -210,7 +209,7 @@ class TrackEntry:
         """As the spool keeps it."""
         return _encode("track", asdict(self))
 
-    async def write(self, connection: AsyncConnection) -> None:
+    def write(self, connection: Connection) -> None:
         """Points without a finite place are left out: they say nothing about the path."""
         rows = [
             {
@@ -229,7 +228,7 @@ class TrackEntry:
             if math.isfinite(point.lat_deg) and math.isfinite(point.lon_deg) and math.isfinite(point.at_s)
         ]
         if rows:
-            await _insert_new(connection, tracks, rows)
+            _insert_new(connection, tracks, rows)
 
 
 Entry = EventsEntry | SweepEntry | TrackEntry
@@ -264,10 +263,10 @@ def _encode(kind: Literal["events", "sweep", "track"], content: dict[str, Any]) 
     return json.dumps({"entry": kind, "fields": content}, separators=(",", ":")).encode()
 
 
-async def _insert_new(connection: AsyncConnection, table: Table, rows: Sequence[dict[str, Any]]) -> None:
+def _insert_new(connection: Connection, table: Table, rows: Sequence[dict[str, Any]]) -> None:
     """Rows whose key is already there are left as they are."""
     dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
-    await connection.execute(dialect.insert(table).on_conflict_do_nothing(), rows)
+    connection.execute(dialect.insert(table).on_conflict_do_nothing(), rows)
 
 
 def _finite(value: float | None) -> float | None:

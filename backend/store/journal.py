@@ -231,6 +231,7 @@ class SqlJournal:
         """Wait for appends that run; what is spooled stays on disk for the next start."""
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._spool.close()
+        await self._delivery.close()
         await self._engine.dispose()
 
     # Reading: missions in flight from memory, the rest from the database
@@ -266,7 +267,7 @@ class SqlJournal:
 
     async def of_nets(self) -> list[Recorded]:
         """Of the newest missions, oldest first: who flies a hundred missions puts the nets of the first back before."""
-        newest = (await self._patiently(self._stored.missions))[:NETS_MISSIONS]
+        newest = await self._patiently(lambda: self._stored.missions(NETS_MISSIONS))
         known = {digest.mission_id for digest in newest} | set(self._written)
         stored = [d.mission_id for d in reversed(newest)] + sorted(known - {d.mission_id for d in newest})
         found = [await self.read_kinds(each, ("nets_noted", "nets_put_back", "mission_brought_in")) for each in stored]

@@ -13,6 +13,7 @@ from sqlalchemy.exc import DBAPIError
 from backend.reasons.storage import AnotherServer, DatabaseUnfit, ForeignSpool
 from backend.settings import Settings
 from backend.store.engine import make_engine, migrate
+from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
 from backend.store.reading import why
 from backend.store.retention import keep_thin
@@ -88,7 +89,7 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
     try:
         await journal.start_up()
         beside.append(asyncio.create_task(journal.run()))
-        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days)))
+        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, IqFolder.of_settings(settings))))
         yield journal
     finally:
         for task in beside:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -11,12 +12,12 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, Recorded
 from backend.ports import JournalUnavailable, Kept, TrackPoint
-from backend.reasons.storage import DatabaseSilent
+from backend.reasons.storage import DatabaseSilent, MachineBusy
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
-from backend.store.patience import patience
+from backend.store.patience import StarvedError, patience
 from backend.store.tables import events, missions, sweeps, tracks
-from backend.store.upgrade import OF_A_SWEEP, kinds_of_old
+from backend.store.upgrade import OF_A_SWEEP, Imports, kinds_of_old
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,8 @@ class Wanted:
 
 
 ANY = Wanted()
+
+MANY_ROWS = 64
 
 
 def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
@@ -87,21 +90,21 @@ class StoredFacts:
         rows = [EventRow(*row) for row in await self._fetch(query)]
         whole = after == 0 and kinds is None
         if whole or all(row.form == FORM or row.kind not in OF_A_SWEEP for row in rows):
-            return to_records(mission_id, rows)
+            return await _records(mission_id, rows)
         imports = await self._fetch(
             select(*ROW).where(events.c.mission_id == mission_id, events.c.kind == "recording_imported")
         )
-        return to_records(mission_id, rows, imported_before(EventRow(*row) for row in imports))
+        return await _records(mission_id, rows, imported_before(EventRow(*row) for row in imports))
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
         """None for an unknown mission."""
         rows = await self._fetch(select(missions).where(missions.c.mission_id == mission_id))
         return from_columns(rows[0]._mapping) if rows else None
 
-    async def missions(self) -> list[MissionDigest]:
-        """The last drafted first."""
-        rows = await self._fetch(select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id))
-        return [from_columns(row._mapping) for row in rows]
+    async def missions(self, most: int | None = None) -> list[MissionDigest]:
+        """The last drafted first, the deleted ones among them; most None: all."""
+        newest = select(missions).order_by(missions.c.drafted_at_us.desc(), missions.c.mission_id).limit(most)
+        return [from_columns(row._mapping) for row in await self._fetch(newest)]
 
     async def page(self, most: int, before: PlaceInList | None, wanted: Wanted) -> list[MissionDigest]:
         """The next missions of the same list. before: the last one known, None for the first page."""
@@ -155,7 +158,19 @@ class StoredFacts:
             async with patience(self._timeout_s), self._engine.connect() as connection:
                 return list(await connection.execute(query))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise JournalUnavailable(DatabaseSilent(why(error))) from error
+            raise unavailable(error) from error
+
+
+async def _records(mission_id: str, rows: list[EventRow], imports: Imports | None = None) -> list[Recorded]:
+    """See to_records. Many are read in a thread, so that an abort is answered meanwhile."""
+    if len(rows) < MANY_ROWS:
+        return to_records(mission_id, rows, imports)
+    return await asyncio.to_thread(to_records, mission_id, rows, imports)
+
+
+def unavailable(error: BaseException) -> JournalUnavailable:
+    """The driver's error, as readers of the journal know it."""
+    return JournalUnavailable(MachineBusy() if isinstance(error, StarvedError) else DatabaseSilent(why(error)))
 
 
 def why(error: BaseException) -> str:

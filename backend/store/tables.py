@@ -1,7 +1,8 @@
 """The database: missions, their events, raw sweeps and the thinned tracks. The same on SQLite and PostgreSQL.
 
 Times are UTC microseconds since the epoch, exact on both. An event's body is the JSON text that the wire sends, kept
-as text so that it is read back byte for byte; its form says in which words it was written (see upgrade).
+as text so that it is read back byte for byte (a long one compressed: see packed); its form says in which words it was
+written (see upgrade).
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from sqlalchemy import (
     Text,
     text,
 )
+
+from backend.store.packed import PackedText
 
 metadata = MetaData()
 
@@ -65,7 +68,7 @@ events = Table(
     Column("at_us", BigInteger, nullable=False),
     Column("kind", String(40), nullable=False),
     Column("form", Integer, nullable=False),
-    Column("body", Text, nullable=False),
+    Column("body", PackedText, nullable=False),
     PrimaryKeyConstraint("mission_id", "seq"),
     Index("events_by_kind", "mission_id", "kind"),
 )

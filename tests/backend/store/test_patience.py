@@ -7,7 +7,8 @@ import time
 
 import pytest
 
-from backend.store.patience import patience
+from backend.store import patience as waiting
+from backend.store.patience import StarvedError, patience
 
 
 async def test_a_silence_ends_it() -> None:
@@ -40,3 +41,26 @@ async def test_nothing_is_left_over_once_it_is_answered() -> None:
     assert this is not None
     assert this.cancelling() == 0
     assert asyncio.all_tasks() == {this}
+
+
+async def test_a_silence_while_our_threads_are_heard_is_the_others_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(waiting, "PROMPT_SHARE", 0.1)  # the machine of the tests may be busy itself
+    with pytest.raises(TimeoutError) as silent:
+        async with patience(2.0):
+            await asyncio.Event().wait()
+    assert not isinstance(silent.value, StarvedError)
+
+
+async def test_a_silence_while_no_thread_of_ours_gets_its_turn_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on a machine that is busy with other things: an idle thread is heard from as late as the database's."""
+    monkeypatch.setattr(waiting, "_nothing", lambda: time.sleep(0.5))
+    with pytest.raises(StarvedError):
+        async with patience(0.6):
+            await asyncio.Event().wait()
+
+
+async def test_an_own_time_limit_inside_is_nobodys_silence() -> None:
+    with pytest.raises(TimeoutError) as own:
+        async with patience(5.0):
+            raise TimeoutError("its own")
+    assert not isinstance(own.value, StarvedError)
