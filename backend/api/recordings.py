@@ -83,15 +83,17 @@ async def import_recording(
 ) -> RecordingImport:
     """Import recorded sweeps of an emitter into a mission, as if they had been flown there; in flight, too.
 
-    One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
-    heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
+    One file, or for SigMF its meta and data file (which are kept) and, when the recording carries no headings, a CSV of
+    time and heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
     """
-    upload = await _read(form, services.workers)
-    await _must_fit(services, mission_id, upload)
-    facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
+    with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
+        upload = await _read(form, services.workers, Path(folder))
+        await _must_fit(services, mission_id, upload)
+        facts, already = await services.missions.drafts.import_recording(mission_id, upload, principal.name)
+        iq_kept = await asyncio.to_thread(services.iq.keep, mission_id, upload.recording_id, Path(folder))
     if already:
         response.status_code = 200
-    return _reply(facts, already)
+    return _reply(facts, already, iq_kept)
 
 
 async def _must_fit(services: Services, mission_id: str, upload: Upload) -> None:
@@ -104,22 +106,21 @@ async def _must_fit(services: Services, mission_id: str, upload: Upload) -> None
     await services.stocks["recordings"].must_take(len(sweeps), size_bytes)
 
 
-async def _read(form: RecordingForm, workers: Workers) -> Upload:
-    """Raises MissionInputError."""
+async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
+    """folder: where the files are put. Raises MissionInputError."""
     if (form.lat is None) != (form.lon is None):
         raise MissionInputError(reasons.HalfGiven("place"), "lat")
     if (form.pulse_width_s is None) != (form.pulse_period_s is None):
         raise MissionInputError(reasons.HalfGiven("pulses"), "pulse_period_s")
     place = None if form.lat is None or form.lon is None else Place(lat=form.lat, lon=form.lon)
-    with tempfile.TemporaryDirectory(prefix="crossfix-recording-") as folder:
-        names = await asyncio.to_thread(_stored, form.files, Path(folder))
-        owners = {str(path): name for path, name in names.items()}
-        recording_id = await asyncio.to_thread(_identity, names, form)
-        try:
-            pulses = _pulses(form)
-            recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
-        except (RecordingError, SpectrumError) as error:
-            raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
+    names = await asyncio.to_thread(_stored, form.files, folder)
+    owners = {str(path): name for path, name in names.items()}
+    recording_id = await asyncio.to_thread(_identity, names, form)
+    try:
+        pulses = _pulses(form)
+        recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
+    except (RecordingError, SpectrumError) as error:
+        raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
     first = next(iter(names.values()))
     return Upload(
         recording_id,
@@ -175,7 +176,7 @@ def _parsed(
     return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))
 
 
-def _reply(facts: Sequence[Recorded], already: bool) -> RecordingImport:
+def _reply(facts: Sequence[Recorded], already: bool, iq_kept: bool) -> RecordingImport:
     imported = facts[0].event
     assert isinstance(imported, RecordingImported)
     sweeps = [
@@ -196,6 +197,7 @@ def _reply(facts: Sequence[Recorded], already: bool) -> RecordingImport:
         recording_id=imported.recording_id,
         filename=imported.filename,
         already=already,
+        iq_kept=iq_kept,
         sweeps=sweeps,
         remarks=imported.remarks,
         last_seq=facts[-1].seq,
