@@ -22,6 +22,7 @@ from backend.api.problems import PROBLEM_RESPONSES
 from backend.maps.coverage import TileSet, coverage
 from backend.maps.drawing import Theme, map_layers
 from backend.maps.folder import MapFolder
+from backend.maps.make_basemap import MADE
 from backend.maps.overlay_folder import OverlayFolder
 from backend.wire.maps import (
     Coverage,
@@ -42,6 +43,10 @@ TILES: dict[int | str, dict[str, object]] = {
         "content": {"application/vnd.pmtiles": {"schema": {"type": "string", "format": "binary"}}},
     }
     for status, text in ((200, "The whole archive"), (206, "The asked range of bytes"))
+}
+
+BASEMAP: dict[int | str, dict[str, object]] = {
+    200: {"description": "The basemap that ships, gzipped", "content": {"application/json": {"schema": {}}}}
 }
 
 
@@ -131,6 +136,13 @@ async def map_tiles(map_id: ContentId, folder: MapFolderDep) -> Response:
     path = await in_thread("map", folder.path, map_id)
     headers = {"ETag": f'"{map_id}"', "Cache-Control": "private, max-age=0, must-revalidate"}
     return FileResponse(path, media_type="application/vnd.pmtiles", headers=headers)
+
+
+@router.get("/basemap", response_class=Response, responses=BASEMAP)
+async def small_basemap() -> Response:
+    """Land, lakes, rivers and towns of the world for low zoom, where no map was uploaded: always sent compressed."""
+    headers = {"Content-Encoding": "gzip", "Cache-Control": "private, max-age=86400"}
+    return FileResponse(MADE, media_type="application/json", headers=headers)
 
 
 @router.get("/overlays")

@@ -12,6 +12,16 @@ export type Coverage = Schemas["Coverage"];
 export type Overlay = Schemas["Overlay"];
 export type OverlayList = Schemas["OverlayList"];
 
+/** As `backend/maps/make_basemap.py` writes it: lines by steps in units of 1/scale degree; towns by x, y, rank, name. */
+export interface World {
+  scale: number;
+  land: number[][][];
+  lakes: number[][][];
+  rivers: number[][];
+  towns: [number, number, number, string][];
+}
+
+export const world = () => json<World>("/basemap");
 export const listMaps = () => json<MapList>("/maps");
 export const mapLayers = (id: string, theme: "light" | "dark") => json<MapLayers>(`/maps/${id}/layers?theme=${theme}`);
 export const deleteMap = (id: string) => requestEmpty(`/maps/${id}`, { method: "DELETE" });

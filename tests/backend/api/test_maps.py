@@ -137,6 +137,13 @@ async def test_a_damaged_map_does_not_take_the_list_along(
     assert listed["unusable"]
 
 
+async def test_the_small_basemap_is_sent_as_it_lies(client: httpx.AsyncClient) -> None:
+    reply = await client.get("/api/basemap")
+    assert reply.headers["content-encoding"] == "gzip"
+    assert int(reply.headers["content-length"]) < 150_000
+    assert set(reply.json()) == {"scale", "land", "lakes", "rivers", "towns"}
+
+
 async def test_overlays(client: httpx.AsyncClient) -> None:
     reply = await client.post("/api/overlays", params={"name": "Nests"}, content=GEOJSON)
     assert reply.status_code == 201
