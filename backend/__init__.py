@@ -1,0 +1,1 @@
+import planner as planner  # it sets the threads of linear algebra, before numpy is loaded

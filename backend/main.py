@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncGenerator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
@@ -9,6 +10,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from backend.api.application import make_application
+from backend.api.gate import lay_routes
 from backend.api.scene import close_scene_views
 from backend.api.services import Services
 from backend.live.connections import Door, allow_descriptors, limited
@@ -34,8 +36,10 @@ def create_app(settings: Settings, opening: OpenServices = open_services) -> Fas
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncGenerator[None]:
+        laying = asyncio.create_task(asyncio.to_thread(lay_routes, app))
         async with opening(settings) as services:
             app.state.services = services
+            await laying
             try:
                 async with app.state.meters.watched_loop():
                     yield

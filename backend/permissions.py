@@ -137,6 +137,7 @@ ENDPOINTS: Mapping[str, Need] = {
     "DELETE /api/maps/{map_id}": PLAN,
     "GET /api/maps/{map_id}/layers": WATCH,
     "GET /api/maps/{map_id}/tiles.pmtiles": WATCH,
+    "GET /api/basemap": WATCH,
     "GET /api/overlays": WATCH,
     "POST /api/overlays": PLAN,
     "GET /api/overlays/{overlay_id}": WATCH,

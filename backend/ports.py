@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from backend.events import Event, MissionPhase, Phase, Recorded
+from backend.events import Event, Level, MissionPhase, Phase, Recorded, Topic
 from backend.reasons import Reason
 from backend.reasons.flight import OrderName, Way
 from backend.terrain import Terrain
@@ -197,10 +197,22 @@ class OrderStatus:
 
 
 @dataclass(frozen=True, slots=True)
+class CraftAlert:
+    """An open alert of a craft that flies for no mission. raised_at_s: UTC epoch seconds."""
+
+    alert_id: str
+    topic: Topic
+    level: Level
+    reason: Reason
+    raised_at_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class CraftStatus:
     """What a craft does now, and the health of its parts. mission_id None: it flies for none; phase is not "ground"
     when it is in the air all the same. order None: nothing was ordered, or something else has come of it.
-    resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed."""
+    resume_refused: why resuming would be refused now; None: it would not, or nothing waits to be resumed. alerts: of a
+    craft that flies for no mission; those of one that does are its mission's facts."""
 
     craft_id: str
     mission_id: str | None
@@ -211,6 +223,7 @@ class CraftStatus:
     battery_to_return_percent: float | None
     order: OrderStatus | None = None
     resume_refused: Reason | None = None
+    alerts: tuple[CraftAlert, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,6 +77,8 @@ class Settings(BaseSettings):
     recordings_max_sweeps: int = Field(default=20_000, ge=0)
     recordings_max_bytes: int = Field(default=2 * 10**9, ge=0)
     """Of the raw sweeps of all imported recordings together, as they are stored."""
+    iq_max_bytes: int = Field(default=2 * 10**9, ge=0)
+    """Of the IQ of all imported SigMF recordings together; what finds no room is not kept. 0: none is."""
 
     payload_tokens: tuple[str, ...] = ()
     """What payload agents show to be let in; a JSON list in the environment. None: no payload may connect."""
@@ -107,6 +109,9 @@ class Settings(BaseSettings):
     """A server that is killed leaves its simulated vehicle in the air, as a real one would stay; the next finds it."""
     world: Literal["open", "multipath"] = "open"
     """The simulated emitter's surroundings: open ground, or walls that reflect, so that some bearings are wrong."""
+    emitters: tuple[str, ...] = ()
+    """Simulated emitters besides those of the presets: MHZ, MHZ/PULSE_PERIOD_S, and ,GAIT:SPEED behind either; a JSON
+    list in the environment."""
     time_factor: float = Field(default=1.0, gt=0, le=1000, allow_inf_nan=False)
     seed: int = Field(default=1, ge=0, le=2**31 - 1)
     home_lat_deg: float = Field(default=50.6234, ge=-80, le=80, allow_inf_nan=False)

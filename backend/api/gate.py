@@ -17,6 +17,7 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
 
 from fastapi.routing import iter_route_contexts
+from starlette.applications import Starlette
 from starlette.datastructures import Headers
 from starlette.routing import BaseRoute, compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -54,6 +55,12 @@ class Call:
     method: str | None
 
 
+def lay_routes(app: Starlette) -> None:
+    """What the first request would else wait for, and every order meanwhile: FastAPI lays out the routes of all
+    routers, with the models of their requests, when it first looks at them. For a thread, before anybody is let in."""
+    app.state.calls = calls_of(app.routes)
+
+
 def calls_of(routes: Iterable[BaseRoute]) -> list[Call]:
     """Every call that the application answers, in the order in which its router looks at them."""
     found: list[Call] = []
@@ -84,7 +91,6 @@ class Gate:
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
-        self._calls: list[Call] = []
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """A refused request reaches no endpoint, and none of its body is read."""
@@ -127,11 +133,12 @@ class Gate:
                 raise
 
     def _call(self, scope: Scope) -> str | None:
-        if not self._calls:
-            self._calls = calls_of(scope["app"].routes)
+        app: Starlette = scope["app"]
+        if not hasattr(app.state, "calls"):
+            lay_routes(app)
         method = "WS" if scope["type"] == "websocket" else scope["method"]
         path = scope["path"]
-        for call in self._calls:
+        for call in app.state.calls:
             if call.method in (method, None) and call.path.match(path):
                 return call.name
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from datetime import UTC, datetime
 from typing import Annotated
 
@@ -40,7 +41,9 @@ async def stored_mission(services: Services, mission_id: str) -> MissionDigest:
 
 async def _mission(services: Services, mission_id: str) -> Mission:
     digest = await stored_mission(services, mission_id)
-    return summary.mission(digest, await services.journal.read_kinds(mission_id, summary.DETAIL_KINDS))
+    kept = await asyncio.to_thread(services.iq.sizes, [mission_id])
+    recorded = await services.journal.read_kinds(mission_id, summary.DETAIL_KINDS)
+    return summary.mission(digest, kept.get(mission_id, 0), recorded)
 
 
 @router.get("")
@@ -73,7 +76,9 @@ async def list_missions(
     digests = await services.journal.page(limit + 1, None if after is None else _place(after), wanted)
     shown, more = digests[:limit], len(digests) > limit
     follow = f"{shown[-1].drafted_at_us}.{shown[-1].mission_id}" if more else None
-    return MissionList(missions=[summary.mission_summary(digest) for digest in shown], next=follow)
+    kept = await asyncio.to_thread(services.iq.sizes, [digest.mission_id for digest in shown])
+    lines = [summary.mission_summary(digest, kept.get(digest.mission_id, 0)) for digest in shown]
+    return MissionList(missions=lines, next=follow)
 
 
 def _box(text: str) -> tuple[float, float, float, float]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
+from fastapi.responses import StreamingResponse
 
 from backend.api import summary
 from backend.api.another_antenna import another_antenna
@@ -15,10 +17,13 @@ from backend.api.beliefs import FOLDED_KINDS, belief_frame
 from backend.api.dependencies import MissionId, ServicesDep, SweepId
 from backend.api.heavy import beside
 from backend.api.missions import stored_mission
-from backend.api.problems import PROBLEM_RESPONSES, not_found
+from backend.api.problems import PROBLEM_RESPONSES, ApiProblem, not_found
+from backend.api.services import Services
 from backend.api.what_if import SUPPOSED_KINDS, what_if
 from backend.events import FIRST_CRAFT, Recorded
+from backend.reasons.request import IqNotKept
 from backend.store.brought import raw_files
+from backend.store.iq_folder import archive_size, archived
 from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
@@ -30,9 +35,11 @@ router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], respons
 CraftId = Annotated[str, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 EmitterId = Annotated[str | None, Query(pattern=r"^[A-Za-z0-9_-]{1,40}$")]
 
-ExportFormat = Literal["geojson", "kml", "csv", "json", "mcap", "cot", "bundle"]
+MadeFormat = Literal["geojson", "kml", "csv", "json", "mcap", "cot", "bundle"]
+"""Made from what the journal tells."""
+ExportFormat = Literal["geojson", "kml", "csv", "json", "mcap", "cot", "bundle", "sigmf"]
 
-EXPORTS: dict[ExportFormat, Callable[[Sequence[Recorded], export.Tracks], str | bytes]] = {
+EXPORTS: dict[MadeFormat, Callable[[Sequence[Recorded], export.Tracks], str | bytes]] = {
     "geojson": export.geojson,
     "kml": export.kml,
     "csv": export.bearings_csv,
@@ -49,6 +56,7 @@ MEDIA_TYPES: dict[ExportFormat, str] = {
     "mcap": "application/vnd.mcap",
     "cot": "application/zip",
     "bundle": "application/zip",
+    "sigmf": "application/x-tar",
 }
 ENDINGS: dict[ExportFormat, str] = {"cot": "tak.zip", "bundle": "zip"}
 
@@ -72,18 +80,18 @@ FILE: dict[int | str, dict[str, object]] = {
 }
 
 
-@router.get("/events")
+@router.get("/events", response_model=EventPage)
 async def list_events(
     mission_id: MissionId,
     services: ServicesDep,
     after: Annotated[int, Query(ge=0, le=2**31 - 1)] = 0,
     limit: Annotated[int, Query(ge=1, le=5000)] = 1000,
-) -> EventPage:
+) -> Response:
     """Recorded events with seq > after."""
     digest = await stored_mission(services, mission_id)
     recorded = await services.journal.read(mission_id, after, limit + 1)
-    page = recorded[:limit]
-    return EventPage(events=page, last_seq=digest.last_seq, more=len(recorded) > len(page))
+    page = EventPage(events=recorded[:limit], last_seq=digest.last_seq, more=len(recorded) > limit)
+    return Response(await asyncio.to_thread(page.model_dump_json), media_type="application/json")
 
 
 @router.get("/beliefs", response_class=Response, responses=BINARY)
@@ -151,8 +159,12 @@ async def get_track(mission_id: MissionId, services: ServicesDep, craft: CraftId
 @router.get("/export/{format}", response_class=Response, responses=FILE)
 async def export_mission(mission_id: MissionId, format: ExportFormat, services: ServicesDep) -> Response:
     """A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
-    data package for TAK), bundle (a zip with all of them)."""
+    data package for TAK), bundle (a zip with all of them), sigmf (the IQ of imported recordings as a SigMF archive; 404
+    where none was kept)."""
     await stored_mission(services, mission_id)
+    headers = {"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'}
+    if format == "sigmf":
+        return await _kept_iq(services, mission_id, headers)
     recorded = await services.journal.read(mission_id)
     tracks = await services.journal.tracks(mission_id)
     making = EXPORTS[format]
@@ -161,5 +173,18 @@ async def export_mission(mission_id: MissionId, format: ExportFormat, services: 
     return Response(
         await beside(services, len(recorded), making, recorded, tracks),
         media_type=MEDIA_TYPES[format],
-        headers={"content-disposition": f'attachment; filename="crossfix-{mission_id}.{ENDINGS.get(format, format)}"'},
+        headers=headers,
+    )
+
+
+async def _kept_iq(services: Services, mission_id: str, headers: dict[str, str]) -> StreamingResponse:
+    """Read from the disk while it is sent: recordings are longer than the memory should hold."""
+    kept = await asyncio.to_thread(services.iq.of, mission_id)
+    if not kept:
+        raise ApiProblem(404, IqNotKept())
+    size = await asyncio.to_thread(archive_size, kept)
+    return StreamingResponse(
+        archived(kept, f"crossfix-{mission_id}"),
+        media_type=MEDIA_TYPES["sigmf"],
+        headers={**headers, "content-length": str(size)},
     )

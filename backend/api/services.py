@@ -14,6 +14,7 @@ from backend.live.hub import Hub
 from backend.maps.overlay_folder import OverlayFolder
 from backend.ports import Kept
 from backend.settings import Settings
+from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
 from backend.wire.health import StockKind
 from backend.workers import Workers
@@ -38,7 +39,7 @@ class Services:
     they never take the planner's threads from the flight. payload: None where no companion computer may connect.
     beside: short work on missions runs in one thread at a time, since each more takes the interpreter from the flight.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
-    stocks: what comes from outside, and how much of it may be kept.
+    stocks: what comes from outside, and how much of it may be kept. iq: of recordings that came as SigMF.
     access: who may enter. provider: whom the settings trust to say who somebody is.
     """
 
@@ -58,6 +59,7 @@ class Services:
     beside: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(1))
     began_monotonic_s: float = field(default_factory=time.monotonic)
     stocks: dict[StockKind, Stock] = field(init=False)
+    iq: IqFolder = field(init=False)
 
     def __post_init__(self) -> None:
         overlays = OverlayFolder(self.settings.data_dir / "overlays")
@@ -67,3 +69,4 @@ class Services:
 
         made = stocks(self.settings, kept_overlays, self.journal.imported_sweeps)
         object.__setattr__(self, "stocks", made)
+        object.__setattr__(self, "iq", IqFolder.of_settings(self.settings))

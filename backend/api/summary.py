@@ -37,7 +37,7 @@ def _utc(at_us: int | None) -> datetime | None:
     return None if at_us is None else EPOCH + timedelta(microseconds=at_us)
 
 
-def _summary(digest: MissionDigest) -> dict[str, object]:
+def _summary(digest: MissionDigest, iq_bytes: int) -> dict[str, object]:
     return {
         "mission_id": digest.mission_id,
         "name": digest.name,
@@ -56,22 +56,23 @@ def _summary(digest: MissionDigest) -> dict[str, object]:
         "notes": digest.entry.notes,
         "deleted_at_utc": _utc(digest.entry.deleted_at_us),
         "sketch": digest.entry.sketch,
+        "iq_bytes": iq_bytes,
     }
 
 
-def mission_summary(digest: MissionDigest) -> MissionSummary:
-    """From the digest alone: no fact is read for a list."""
-    return MissionSummary.model_validate(_summary(digest))
+def mission_summary(digest: MissionDigest, iq_bytes: int) -> MissionSummary:
+    """From the digest alone: no fact is read for a list. iq_bytes: that are kept of the mission."""
+    return MissionSummary.model_validate(_summary(digest, iq_bytes))
 
 
-def mission(digest: MissionDigest, recorded: Sequence[Recorded]) -> Mission:
-    """recorded: the mission's events of DETAIL_KINDS, in order."""
+def mission(digest: MissionDigest, iq_bytes: int, recorded: Sequence[Recorded]) -> Mission:
+    """iq_bytes: that are kept. recorded: the mission's events of DETAIL_KINDS, in order."""
     search = SearchState()
     for record in recorded:
         search = evolve(search, record.event, record.at_utc.timestamp())
     return Mission.model_validate(
         {
-            **_summary(digest),
+            **_summary(digest, iq_bytes),
             "spec": search.mission,
             "editable": search.stage in ("draft", "ready"),
             "home": search.home,

@@ -16,7 +16,7 @@ from backend.first_hold import FirstHold
 from backend.main import create_app, server_config
 from backend.mission.flights import LeftFlying
 from backend.settings import Settings
-from backend.simulation.emitters import EMITTERS, SimulatedEmitter
+from backend.simulation.emitters import SimulatedEmitter
 from backend.simulation.receiver import EmittersAroundHome
 from backend.wiring import open_simulation
 
@@ -67,12 +67,13 @@ class _Server(uvicorn.Server):
 async def running_server(
     settings: Settings,
     leave_flying: bool = False,
-    emitters: Sequence[SimulatedEmitter] = EMITTERS,
+    emitters: Sequence[SimulatedEmitter] | None = None,
     first: FirstHold | None = None,
 ) -> AsyncGenerator[RunningServer]:
     """Answers inside the block, is down after it. Raises CannotServe, DatabaseUnusable, HardwareError.
 
-    emitters: what transmits in the simulated world. first: the vehicle that was found in flight and held already.
+    emitters: what transmits in the simulated world, None: what the settings name. first: the vehicle that was found in
+    flight and held already.
     """
     bound = _bind(settings.host, settings.port)
     try:

@@ -52,6 +52,13 @@ def serve(
         str | None,
         typer.Option(help="Simulated surroundings: open, or multipath (walls that reflect). Default: open."),
     ] = None,
+    emitter: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A simulated emitter more, MHZ, MHZ/PULSE_PERIOD_S, and ,GAIT:SPEED behind either: 150.1/1.5 or "
+            "150.2,animal:0.2. As often as there are emitters."
+        ),
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object when the server answers.")] = False,
 ) -> None:
     """Start the server and say where the page is. Without --vehicle it flies a simulated one. Ctrl-C stops it.
@@ -72,6 +79,7 @@ def serve(
             time_factor=speedup,
             seed=seed,
             world=world,
+            emitters=tuple(emitter) if emitter else None,
         )
         configure(settings, verbose=logging.getLogger().isEnabledFor(logging.INFO))
     except ValueError as error:

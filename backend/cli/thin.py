@@ -28,7 +28,8 @@ def thin(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be taken.")] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Take the raw power samples of missions that ended long ago; bearings, beliefs and paths stay. The server may run.
+    """Take the raw power samples, and the IQ, of missions that ended long ago; bearings, beliefs and paths stay. The
+    server may run.
 
     Example: crossfix thin --keep-days 365 --dry-run
     """
@@ -58,6 +59,7 @@ async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[in
 
     from backend.store import retention
     from backend.store.engine import engine_for_once, shrink
+    from backend.store.iq_folder import IqFolder
     from backend.store.opening import DatabaseUnusable, claimed
 
     url = settings.async_database_url
@@ -67,6 +69,8 @@ async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[in
     try:
         work = retention.old_sweeps if dry_run else retention.thin
         taken = await work(engine, keep_days, datetime.now(UTC))
+        if not dry_run:
+            await retention.thin_iq(engine, IqFolder.of_settings(settings), keep_days, datetime.now(UTC))
         if taken.sweeps and not dry_run and engine.dialect.name == "sqlite":
             try:
                 with claimed(url):

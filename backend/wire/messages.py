@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from backend.events import MissionPhase, Phase, Recorded
+from backend.events import Level, MissionPhase, Phase, Recorded, Topic
 from backend.reasons import Reason
 from backend.reasons.flight import OrderName, Way
 from backend.spec import Model
@@ -99,9 +99,20 @@ class OrderMessage(Model):
     because: Reason | None
 
 
+class CraftAlertMessage(Model):
+    """An open alert of a craft that flies for no mission; raised_at_s: UTC epoch seconds."""
+
+    alert_id: str
+    topic: Topic
+    level: Level
+    reason: Reason
+    raised_at_s: float
+
+
 class CraftStatusMessage(Model):
     """mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
-    resume_refused: while it holds or a pilot flies it, why resuming would be refused now."""
+    resume_refused: while it holds or a pilot flies it, why resuming would be refused now. alerts: open ones of a craft
+    that flies for no mission; a mission's alerts are its facts."""
 
     craft_id: str
     mission_id: str | None
@@ -112,6 +123,7 @@ class CraftStatusMessage(Model):
     battery_to_return_percent: float | None
     order: OrderMessage | None = None
     resume_refused: Reason | None = None
+    alerts: tuple[CraftAlertMessage, ...] = ()
 
 
 class StatusMessage(Model):

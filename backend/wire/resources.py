@@ -63,7 +63,8 @@ class Defaults(Model):
 
 class MissionSummary(Model):
     """One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
-    `ended_at_utc`, `outcome`: None until it happened."""
+    `ended_at_utc`, `outcome`: None until it happened. `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was
+    kept."""
 
     mission_id: str
     name: str
@@ -82,6 +83,7 @@ class MissionSummary(Model):
     notes: str
     deleted_at_utc: datetime | None
     sketch: Sketch
+    iq_bytes: int
 
 
 class EmitterFound(Model):
@@ -289,11 +291,12 @@ class ImportedSweep(Model):
 
 class RecordingImport(Model):
     """`already`: the same recording was imported before, nothing was added. `remarks`: what was left out and why,
-    each naming file and line."""
+    each naming file and line. `iq_kept`: the recording can be exported as SigMF."""
 
     recording_id: str
     filename: str
     already: bool
+    iq_kept: bool
     sweeps: list[ImportedSweep]
     remarks: list[Reason]
     last_seq: int

@@ -9,7 +9,7 @@ import pytest
 from facts import SPEC
 
 from backend.api import bodies
-from backend.api.bodies import MOST_FIELDS, MOST_ITEMS, Bodies, most_bytes, too_rich
+from backend.api.bodies import MOST_FIELDS, MOST_ITEMS, PIECE_BYTES, Bodies, most_bytes, too_rich
 
 
 def reason(reply) -> dict:
@@ -29,6 +29,19 @@ def reason(reply) -> dict:
     ],
 )
 def test_fields_and_items_are_counted_and_what_is_inside_a_text_is_not(text: str, rich: bool) -> None:
+    assert too_rich(text.encode()) == rich
+
+
+def test_more_quotes_than_any_request_has_are_too_rich() -> None:
+    assert too_rich(b'"' * 8_000_000)
+
+
+@pytest.mark.parametrize("shift", range(8))
+@pytest.mark.parametrize("rich", [True, False])
+def test_a_text_that_lies_across_pieces_stays_one(shift: int, rich: bool) -> None:
+    """Escaped quotes and backslashes fall on every place of a border."""
+    inside = 'a\\",:' * 3 + "\\" + ",:" * MOST_ITEMS
+    text = json.dumps(["x" * (PIECE_BYTES - 16 + shift), inside, *[0] * (MOST_ITEMS - (0 if rich else 1))])
     assert too_rich(text.encode()) == rich
 
 

@@ -65,6 +65,24 @@ def test_plain_csv_takes_its_place_from_the_option(tmp_path: Path) -> None:
     assert known["bearing_deg"] == pytest.approx(33.0, abs=0.3)
 
 
+@pytest.mark.parametrize("first_deg", [0.0, 100.0, 215.0])
+def test_a_turn_of_270_degrees_gives_the_bearing_wherever_the_gap_lies(tmp_path: Path, first_deg: float) -> None:
+    """Within two of its sigmas, and into the gap no sharper than outside it."""
+    pattern = load_pattern(SMALL_YAGI)
+    heading = (first_deg + np.arange(0.0, 271.0, 5.0)) % 360.0
+    sigmas: dict[bool, list[float]] = {True: [], False: []}
+    for bearing in np.arange(10.0, 360.0, 50.0):
+        path = tmp_path / "turn.csv"
+        rows = zip(heading, pattern.gain_at(bearing - heading), strict=True)
+        path.write_text("\n".join(f"{h},{p}" for h, p in rows))
+        answer = json.loads(CliRunner().invoke(APP, [str(path), "--json"]).stdout)
+        off = (answer["bearing_deg"] - bearing + 180.0) % 360.0 - 180.0
+        assert answer["accepted"], answer["reason"]
+        assert abs(off) < 2.0 * answer["sigma_deg"]
+        sigmas[bool((bearing - first_deg) % 360.0 > 270.0)].append(answer["sigma_deg"])
+    assert min(sigmas[True]) >= min(sigmas[False])
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

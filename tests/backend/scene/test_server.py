@@ -63,20 +63,20 @@ async def test_an_announced_connection_becomes_a_window_of_its_view(server: Scen
     server.announce(own.getsockname()[1], "view-one")
     async with await connect(server, own) as connection:
         await connection.send(camera_message())
-        view_id, window = await asyncio.to_thread(heard.opened.get, True, 10)
+        view_id, window = await asyncio.to_thread(heard.opened.get, True, 60)
         assert view_id == "view-one"
         a(ClientHandle, window).scene.add_glb("/hello", b"only for this window")
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(60):
             while b"only for this window" not in unpacked(await connection.recv()):
                 pass
-    assert (await asyncio.to_thread(heard.closed.get, True, 10))[0] == "view-one"
+    assert (await asyncio.to_thread(heard.closed.get, True, 60))[0] == "view-one"
 
 
 async def test_whoever_comes_by_himself_is_turned_away(server: SceneServer, heard: Heard) -> None:
     connection = await connect(server, bound_socket())
     with suppress(websockets.ConnectionClosed):
         await connection.send(camera_message())
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await connection.wait_closed()
     assert connection.close_code == 1008
     assert heard.opened.empty()
@@ -87,7 +87,7 @@ async def test_a_port_that_was_forgotten_is_no_announcement(server: SceneServer)
     server.announce(own.getsockname()[1], "view-one")
     server.forget(own.getsockname()[1])
     connection = await connect(server, own)
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         await connection.wait_closed()
     assert connection.close_code == 1008
 

@@ -95,7 +95,7 @@ def open_window(views: SceneViews, view_id: str, number: int = 1) -> list[Scene 
 
 
 async def until(condition: Callable[[], bool]) -> None:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         while not condition():  # noqa: ASYNC110 (scenes are drawn by a task of the views)
             await asyncio.sleep(0.005)
 
