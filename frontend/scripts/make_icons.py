@@ -8,6 +8,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+from PIL import Image
 from playwright.sync_api import sync_playwright
 
 PUBLIC = Path(__file__).resolve().parents[1] / "public"
@@ -16,6 +17,8 @@ MASKABLE, MASKABLE_PX = "icon-maskable.png", 512
 SAFE = 0.72
 """Of the width: what lies outside the middle 80 % may be cut off by a launcher (W3C manifest, maskable icons)."""
 GROUND = "#0047b3"
+COLOURS = 32
+"""Blue, white and what lies between at the edges: a palette of them is a third of the picture's bytes."""
 
 
 def main() -> None:
@@ -30,6 +33,9 @@ def main() -> None:
             sized = drawing.replace("<svg ", f'<svg width="{px * share}" height="{px * share}" ', 1)
             page.set_content(f'<body style="{style}">{sized}</body>')
             page.screenshot(path=PUBLIC / name, omit_background=ground == "transparent")
+            drawn = Image.open(PUBLIC / name).convert("RGBA")
+            few = drawn.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+            few.save(PUBLIC / name, optimize=True)
 
         for name, px in SIZES.items():
             draw(name, px, 1.0, GROUND if name == "icon-touch.png" else "transparent")

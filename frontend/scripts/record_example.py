@@ -28,8 +28,8 @@ import numpy as np
 import websockets
 
 from backend.cli.demo import fly
-from backend.cli.running import RunningServer, running_server, settings_of
-from backend.settings import Settings
+from backend.cli.running import RunningServer, running_server
+from backend.settings import Settings, settings_of
 from backend.wire.belief_frame import DECADES, encode_belief
 
 RECORDING = Path(__file__).resolve().parents[1] / "public" / "example.json"

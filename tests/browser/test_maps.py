@@ -120,7 +120,7 @@ def near(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
 def middle(picture: np.ndarray) -> np.ndarray:
     """Inside the area, where nothing but the map and the belief is drawn before the start."""
     height, width, _ = picture.shape
-    return picture[int(0.3 * height) : int(0.7 * height), int(0.28 * width) : int(0.72 * width)]
+    return picture[int(0.3 * height) : int(0.66 * height), int(0.32 * width) : int(0.72 * width)]
 
 
 def test_pictures_of_a_package_lie_under_the_mission_and_its_belief(server: Server, browser: Browser) -> None:

@@ -116,8 +116,14 @@ def test_a_mission_from_elsewhere_is_found_compared_and_printed(
     expect(part("report")).to_have_attribute("data-ready", "true")
     expect(part("report-lead").first).to_be_visible()
     look(page, "report", tmp_path)
-    sheet = page.pdf(path=tmp_path / "report.pdf", format="A4", print_background=True)
-    assert sheet.startswith(b"%PDF")
+    expect(page.get_by_text("Variant “blunter")).to_have_count(0)
+    for language in ("en", "de"):
+        printed = open_screen(server, f"#/report/{ID}", {"language": language, "theme": "indoor"})
+        expect(printed.part("report")).to_have_attribute("data-ready", "true")
+        expect(printed.part("report-lead").first).to_contain_text("It is at" if language == "en" else "Er ist bei")
+        sheet = printed.page.pdf(path=tmp_path / f"report-{language}.pdf", prefer_css_page_size=True)
+        assert sheet.startswith(b"%PDF")
+        assert sheet.count(b"/Type /Page\n") == 1, "a flight of three bearings is one sheet"
 
 
 def test_found_here_from_a_phone_is_in_the_calibration(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
@@ -126,6 +132,7 @@ def test_found_here_from_a_phone_is_in_the_calibration(server: Server, open_scre
     )
     here = {"latitude": estimate["lat"], "longitude": estimate["lon"], "accuracy": 5}
     phone = open_screen(server, f"#/mission/{ID}", geolocation=here, permissions=["geolocation"], **PHONE)
+    phone.part("card-truth").click()
     phone.part("truth").locator("summary").first.click()
     phone.part("truth-here").click()
     expect(phone.part("truth-error")).to_have_attribute("data-inside", "true")
@@ -143,6 +150,51 @@ def said_of(server: Server, open_screen: OpenScreen, folder: Path) -> list[dict[
     """The events of the mission, which is brought in if it is not here yet."""
     brought_in(open_screen(server), folder)
     return server.events(ID)
+
+
+def test_a_replay_shows_each_event_as_it_stood(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
+    """A click on a bearing: estimate, map, 3D and the stored belief are of that bearing, whatever came later."""
+    events = [(r.seq, r.event) for r in FLOWN]
+    screen = open_screen(server)
+    page, part = screen.page, screen.part
+    brought_in(screen, tmp_path)
+    screen.map_ready()
+    assert part("strip-minutes").locator("span").count() >= 2
+    pace = part("pace")
+    assert pace.locator("option").evaluate_all("all => [all[0].value, all.at(-1).value]") == ["0.5", "50"]
+
+    beliefs = [(seq, event) for seq, event in events if event.kind == "belief_updated" and event.bearings > 0]
+    settled = [seq for seq, _ in beliefs]
+    for count, (seq, believed) in enumerate(beliefs, start=1):
+        assert believed.estimate is not None
+        row = screen.row("bearing_measured").nth(count - 1)
+        row.click()
+        screen.expect_belief(count)
+        stated = str(believed.estimate.expected_rmse_m)
+        expect(part("expected-rmse")).to_have_attribute("data-value", stated)
+        measured = next(e for at, e in reversed(events) if at < seq and e.kind == "bearing_measured")
+        expect(part("sweep-bearing")).to_have_attribute("data-value", str(measured.bearing_deg))
+
+    with page.expect_request("**/api/scene/views/*") as asked:
+        part("scene-switch").click()
+    assert asked.value.post_data is not None
+    assert json.loads(asked.value.post_data)["seq"] == settled[-1]
+    with page.expect_request(
+        lambda r: "/api/scene/views/" in r.url and json.loads(r.post_data or "{}").get("seq") == settled[0]
+    ):
+        screen.row("bearing_measured").first.click()
+    part("scene-switch").click()
+
+    at_first = page.locator("[data-testid=event-row][aria-current=true], li[aria-current=true] [data-testid=event-row]")
+    part("jump").select_option("decision")
+    expect(at_first).to_have_attribute("data-kind", "plan_chosen")
+    part("jump").select_option("bearing")
+    expect(at_first).to_have_attribute("data-kind", "bearing_measured")
+
+    pace.select_option("50")
+    part("play").click()
+    expect(at_first).to_have_attribute("data-kind", "mission_ended")
+    page.screenshot(path=tmp_path / "replay.png")
 
 
 def test_the_page_opens_without_its_server_and_keeps_no_answer(server: Server, open_screen: OpenScreen) -> None:

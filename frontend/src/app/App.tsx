@@ -6,6 +6,7 @@ import { SafetyBar } from "../panels/SafetyBar";
 import { overlay } from "../state/overlay";
 import { type Route, route } from "../state/route";
 import { entered } from "../state/session";
+import { wearTypeface } from "./typeface";
 
 type Page = ComponentType<Record<string, unknown>>;
 type Loader = () => Promise<unknown>;
@@ -33,7 +34,10 @@ function Lazy({ name, quiet = false, ...properties }: { name: keyof typeof loade
   useEffect(() => {
     let wanted = true;
     loaders[name]().then(
-      (page) => wanted && setState({ name, page: page as Page, failed: false }),
+      (page) => {
+        wearTypeface();
+        if (wanted) setState({ name, page: page as Page, failed: false });
+      },
       () => wanted && setState({ name, page: null, failed: true }),
     );
     return () => {

@@ -839,6 +839,10 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "Set {parameter} to {wanted}{watch?station=: else a vehicle without its station hovers until its battery is empty|station_id=, Crossfix' MAVLink system id: the autopilot does not notice the loss of any other|station_time=: 2 to 30 s; later, a vehicle without its station is left to itself for too long|fence=: else the autopilot only reports that the fence was left|transmitter= when a pilot stands by with a transmitter|sticks=: the pilot's sticks must end automatic flight at once|offboard=|battery=: else a vehicle that nobody commands flies until its battery is empty|battery_critical=, in case it does not reach home}.",
   },
+  failsafe_without_threshold: {
+    text: "{watch?station=Ground station lost|station_id=The ground station that its failsafe watches|station_time=Seconds until it takes a silent ground station for lost|fence=Geofence left|transmitter=Transmitter lost|sticks=The pilot's sticks override automatic flight|offboard=Offboard link lost, which Crossfix does not use|battery=Battery low|battery_critical=Battery almost empty}: {parameter} is set, but {voltage_parameter} and {charge_parameter} {known?true=are both 0: it never acts|false=could not both be read: it may never act}.",
+    remedy: "Set {voltage_parameter} to the voltage, or {charge_parameter} to the mAh left, at which it is to act.",
+  },
   parameter_to_set: {
     text: "{parameter} goes from {before} to {after}.",
     remedy: "",
@@ -989,6 +993,10 @@ export const reasonsEn: ReasonTable = {
     text: "How high the autopilot's own return climbs ({parameter}) could not be read.",
     remedy: "Set {parameter} so that the autopilot's own return stays at or below the mission's ceiling of {ceiling_relative_m}.",
   },
+  return_climbs: {
+    text: "The autopilot's own return climbs by {climb_m} from however high it begins ({parameter}): from {from_relative_m} that leads above the mission's ceiling of {ceiling_relative_m}.",
+    remedy: "Set {parameter} to 0, or raise the mission's ceiling.",
+  },
   return_meets_ground: {
     text: "The autopilot's own return climbs to {altitude_relative_m} ({parameter}) and flies straight home: over the ground in between it needs {least_relative_m}.",
     remedy: "Set {parameter} to at least {least_relative_m}, and the mission's ceiling no lower; or choose another home.",
@@ -1044,6 +1052,10 @@ export const reasonsEn: ReasonTable = {
   place_unknown: {
     text: "The vehicle has lost GPS: it no longer knows where it is.",
     remedy: "Be ready to fly it by hand: its autopilot will soon land where it is.",
+  },
+  battery_runs_low: {
+    text: "The battery holds only {charge_percent}.",
+    remedy: "Order the return or the landing: without a mission nobody reckons what the way home takes.",
   },
   payload_link_lost: {
     text: "The link to the companion computer is lost.",
@@ -1237,8 +1249,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Wait for the planner's next place.",
   },
   place_refused_before: {
-    text: "The autopilot has refused to fly to this place.",
-    remedy: "Choose another place.",
+    text: "The place is {near_m:1} from one that the autopilot has refused to fly to.",
+    remedy: "Choose a place {least_m} or more from it.",
   },
   no_such_bearing: {
     text: "This mission has no such bearing.",
@@ -1347,6 +1359,10 @@ export const reasonsEn: ReasonTable = {
   nothing_there: {
     text: "There is no {what?mission=mission|page=page|belief_about=belief about|belief_at=belief at the event|belief_after=belief after this many bearings:|sweep=sweep|map=map|overlay=overlay|terrain=terrain|file=file|recording=recording|craft=craft|scene=3D view|person=person|session=session|invitation=invitation|token=token} {which}.",
     remedy: "It may have been removed, or its name has a mistake in it: look at what there is and choose again.",
+  },
+  iq_not_kept: {
+    text: "No IQ was kept of this mission, only the power of its sweeps.",
+    remedy: "IQ is kept of SigMF recordings that are imported; export everything for the power, sample by sample.",
   },
   http_refused: {
     text: "The request was refused ({status}): {phrase}.",
@@ -1612,6 +1628,10 @@ export const reasonsEn: ReasonTable = {
   database_slow: {
     text: "The database's last answer took {answer_s:1}.",
     remedy: "Look at its load and its disk.",
+  },
+  machine_busy: {
+    text: "The server's machine is so busy that the database's answers come late.",
+    remedy: "End what else runs on this machine; what happens meanwhile is kept in the spool on the disk.",
   },
   disk_low: {
     text: "Only {free_bytes} are left on the disk.",

@@ -6,7 +6,9 @@ import { cancelProposal, proposal, propose } from "../commands/proposal";
 import { tapping, tell } from "../commands/truth";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
+import { Icon } from "../panels/Icon";
 import { shownBelief } from "../state/belief";
+import { isChoosing } from "../state/candidates";
 import { source } from "../state/connection";
 import { boundsOf, lonLat } from "../state/geometry";
 import { highlighted } from "../state/highlight";
@@ -96,6 +98,7 @@ const estimated = computed(() => mission.value.belief);
 const truth = computed(() => mission.value.truth);
 const emitterId = computed(() => mission.value.emitterId);
 const plan = computed(() => (isHomeward(mission.value) ? null : mission.value.plan));
+const choice = computed(() => (isChoosing(mission.value) ? plan.value : null));
 const home = computed(() => mission.value.home);
 const phase = computed(() => mission.value.phase);
 
@@ -123,7 +126,7 @@ function bind(map: GlMap): () => void {
   const stops = [
     showVehicle(map),
     effect(() => put(map, "plan", planFeatures(spec.value))),
-    effect(() => put(map, "candidates", candidateFeatures({ plan: plan.value }, highlighted.value))),
+    effect(() => put(map, "candidates", candidateFeatures({ plan: choice.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => putOverlays(map)),
     effect(() => {
@@ -190,6 +193,24 @@ function placeOf(element: HTMLElement) {
   return { x: left + width / 2, y: top + height / 2, width, height };
 }
 
+/** What the colours mean, beside the switches that show them: a legend of its own would lie over the map. */
+function Legend() {
+  const colours = palettes[settings.value.theme].rounds;
+  return (
+    <div class="map-legend" data-testid="legend">
+      <span>
+        <i class="legend-belief" /> {t("map.legend.belief")}
+      </span>
+      <span>
+        {colours.map((c) => (
+          <i class="legend-dot" style={{ background: c }} key={c} />
+        ))}{" "}
+        {t("map.legend.rounds")}
+      </span>
+    </div>
+  );
+}
+
 function MapTools({ map }: { map: { current: GlMap | null } }) {
   const flip = (which: Switch) => {
     const next = new Set(hidden.value);
@@ -198,14 +219,31 @@ function MapTools({ map }: { map: { current: GlMap | null } }) {
   };
   return (
     <div class="map-tools">
-      <button type="button" data-testid="map-fit" onClick={() => map.current && frameAll(map.current, true)}>
-        {t("map.fit")}
+      <button
+        type="button"
+        class="icon"
+        data-testid="map-fit"
+        title={t("map.fit")}
+        aria-label={t("map.fit")}
+        onClick={() => map.current && frameAll(map.current, true)}
+      >
+        <Icon name="fit" />
       </button>
-      <button type="button" aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
-        {t("map.follow")}
+      <button
+        type="button"
+        class="icon"
+        title={t("map.follow")}
+        aria-label={t("map.follow")}
+        aria-pressed={follow.value}
+        onClick={() => (follow.value = !follow.value)}
+      >
+        <Icon name="follow" />
       </button>
       <details>
-        <summary>{t("map.layers")}</summary>
+        <summary title={t("map.layers")}>
+          <Icon name="layers" />
+          <span class="visually-hidden">{t("map.layers")}</span>
+        </summary>
         <div class="map-layers">
           {SWITCHES.map((name) => (
             <label class="check" key={name}>
@@ -214,6 +252,7 @@ function MapTools({ map }: { map: { current: GlMap | null } }) {
             </label>
           ))}
         </div>
+        <Legend />
       </details>
     </div>
   );
@@ -233,24 +272,6 @@ function Readout() {
         <span class="muted">{t("map.grid", { length: formatLength(gridStepM.value, units) })}</span>
       )}
     </div>
-  );
-}
-
-function Legend() {
-  const colours = palettes[settings.value.theme].rounds;
-  return (
-    <details class="map-legend" data-testid="legend">
-      <summary>{t("map.legend")}</summary>
-      <span>
-        <i class="legend-belief" /> {t("map.legend.belief")}
-      </span>
-      <span>
-        {colours.map((c) => (
-          <i class="legend-dot" style={{ background: c }} key={c} />
-        ))}{" "}
-        {t("map.legend.rounds")}
-      </span>
-    </details>
   );
 }
 
@@ -329,7 +350,6 @@ export function FlyMap() {
     <>
       <div class="map" ref={box} data-testid="map" />
       <MapTools map={map} />
-      <Legend />
       <Readout />
     </>
   );

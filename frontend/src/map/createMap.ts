@@ -17,6 +17,7 @@ import type { UnitSystem } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
 import { gridLines } from "./grid";
 import type { Palette } from "./palette";
+import { addWorld } from "./world";
 
 setWorkerUrl(workerUrl);
 
@@ -40,6 +41,9 @@ export function hasWebgl(): boolean {
 
 const EMPTY: GeoJSON.FeatureCollection = { type: "FeatureCollection", features: [] };
 
+/** Farther away the world is drawn, and squares of kilometres would say nothing. */
+const GRID_FROM_ZOOM = 9;
+
 function plainStyle(colours: Palette): StyleSpecification {
   return {
     version: 8,
@@ -50,6 +54,7 @@ function plainStyle(colours: Palette): StyleSpecification {
         id: "grid",
         type: "line",
         source: "grid",
+        minzoom: GRID_FROM_ZOOM,
         paint: { "line-color": ["case", ["get", "major"], colours.gridMajor, colours.grid], "line-width": 1 },
       },
     ],
@@ -104,27 +109,30 @@ export function createMap(container: HTMLElement, colours: Palette, units: UnitS
       north: b.getNorth() + height / 2,
     };
     const { stepM, lines } = gridLines(box, metresPerPixel, anchor);
-    gridStepM.value = stepM;
+    gridStepM.value = map.getZoom() < GRID_FROM_ZOOM ? null : stepM;
     map.getSource<GeoJSONSource>("grid")?.setData(lines);
   };
-  map.on("load", redrawGrid);
+  map.on("load", () => {
+    redrawGrid();
+    addWorld(map, colours, "grid");
+  });
   map.on("moveend", redrawGrid);
   return map;
 }
 
-/** Pixels that the map's controls and its scale cover along its edges; tools stand at the top left, a legend at the lower right. */
+/** Pixels that the map's controls and its scale cover along its edges; tools stand at the top left. */
 const COVERED = { top: 14, right: 62, bottom: 44, left: 14 };
-const TOOLS = { width: 380, height: 60 };
-const LEGEND_WIDTH = 260;
+const TOOLS = { width: 170, height: 60 };
 
 /** As large as it can be seen, below the tools or beside them. bannerPx: what an alert covers besides, at the top. */
 export function fit(map: GlMap, box: [number, number, number, number], animate: boolean, bannerPx = 0): void {
   const share = Math.min(1, map.getContainer().clientHeight / 360);
   const bottom = share * COVERED.bottom;
   const beside = { ...COVERED, bottom, top: COVERED.top + bannerPx, left: TOOLS.width };
-  const ways = [{ ...beside, right: LEGEND_WIDTH }, beside, { ...COVERED, bottom, top: share * TOOLS.height + bannerPx }].map(
-    (padding) => ({ padding, zoom: map.cameraForBounds(box, { padding })?.zoom ?? -1 }),
-  );
+  const ways = [beside, { ...COVERED, bottom, top: share * TOOLS.height + bannerPx }].map((padding) => ({
+    padding,
+    zoom: map.cameraForBounds(box, { padding })?.zoom ?? -1,
+  }));
   const { padding } = ways.reduce((best, way) => (way.zoom > best.zoom + 0.01 ? way : best));
   map.fitBounds(box, { padding, maxZoom: 18.5, duration: animate ? 400 : 0 });
 }

@@ -57,6 +57,12 @@ it("of several emitters each has its number and colour, and those not looked at 
   expect(properties("c95")).toHaveLength(1);
 });
 
+it("without a bearing the region is drawn and no estimate in its middle", () => {
+  const drawn = (bearings: number) => measuredFeatures(seen(someBelief({ bearings }))).features.map((f) => f.properties?.what);
+  expect(drawn(0)).toEqual(["c95"]);
+  expect(drawn(1)).toEqual(["c95", "circle", "estimate"]);
+});
+
 it("nothing is drawn of an estimate that is not there", () => {
   expect(measuredFeatures(seen()).features).toEqual([]);
 });

@@ -95,6 +95,9 @@ function directionFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   return [...counted, ...leftOut];
 }
 
+/** Nearly all of it: what is missing then are headings that were skipped, not a side that was not looked at. */
+const WHOLE_TURN_DEG = 355;
+
 /** Received power around each measurement place as a rose; the newest strong, older ones fainter. */
 function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   const size = reachM(spec) / 9;
@@ -102,24 +105,25 @@ function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
     const scale = polarScale(fact.binned_db);
     if (!scale) return [];
     const width = 360 / fact.binned_db.length;
-    const ring = fact.binned_db.flatMap((db, bin) =>
-      db === null ? [] : [destination(lonLat(fact.place), (bin + 0.5) * width, size * radius(db, scale))],
-    );
+    const at = lonLat(fact.place);
+    const isSector = fact.turn !== null && fact.turn.turned_deg < WHOLE_TURN_DEG;
+    const ring = fact.binned_db.flatMap((db, bin) => {
+      if (db === null) return isSector ? [at] : [];
+      return [destination(at, (bin + 0.5) * width, size * radius(db, scale))];
+    });
     if (ring.length < 3) return [];
     return [polygon([...ring, ring[0]!], { what: "rose", age: bearings.length - 1 - i, excluded })];
   });
 }
 
-/** The region, the expected error as a circle, the estimate. */
+/** The region; once there is a bearing, the expected error as a circle and the estimate: the middle of an area is none. */
 function estimateFeatures({ belief }: Pick<MissionView, "belief">): GeoJSON.Feature[] {
   const estimate = belief?.fact.estimate;
   if (!estimate) return [];
   const at = lonLat(estimate);
-  return [
-    feature(estimate.c95 as GeoJSON.Geometry, { what: "c95" }),
-    polygon(circle(at, estimate.expected_rmse_m), { what: "circle" }),
-    point(at, { what: "estimate" }),
-  ];
+  const region = feature(estimate.c95 as GeoJSON.Geometry, { what: "c95" });
+  if (belief.fact.bearings === 0) return [region];
+  return [region, polygon(circle(at, estimate.expected_rmse_m), { what: "circle" }), point(at, { what: "estimate" })];
 }
 
 type Emitters = ReadonlyMap<string, EmitterState>;

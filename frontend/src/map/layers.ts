@@ -162,8 +162,8 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       source: "candidates",
       paint: {
         "circle-color": shade,
-        "circle-radius": ["case", ["get", "lit"], 10, ["interpolate", ["linear"], ["get", "shade"], 0, 3.5, 4, 6.5, 5, 8]],
-        "circle-stroke-color": ["case", ["get", "lit"], colours.accent, [">=", ["get", "shade"], 4], colours.halo, colours.ink],
+        "circle-radius": ["case", ["get", "lit"], 10, ["interpolate", ["linear"], ["get", "shade"], 0, 2, 4, 5.5, 5, 8]],
+        "circle-stroke-color": ["case", ["get", "lit"], colours.accent, [">=", ["get", "shade"], 4], colours.halo, colours.rounds[2]],
         "circle-stroke-width": ["case", ["get", "lit"], 3, [">=", ["get", "shade"], 4], 2, 0.6],
         "circle-opacity": 0.95,
       },

@@ -2,6 +2,11 @@
 
 export interface Palette {
   ground: string;
+  /** Of the basemap seen from afar. */
+  land: string;
+  water: string;
+  river: string;
+  town: string;
   grid: string;
   gridMajor: string;
   ink: string;
@@ -22,6 +27,10 @@ export interface Palette {
 export const palettes: Record<"outdoor" | "indoor", Palette> = {
   outdoor: {
     ground: "#fbfbf8",
+    land: "#f4f3ec",
+    water: "#cfdee6",
+    river: "#b3cbd8",
+    town: "#41484d",
     grid: "#e3e3dc",
     gridMajor: "#c9c9c0",
     ink: "#111111",
@@ -39,6 +48,10 @@ export const palettes: Record<"outdoor" | "indoor", Palette> = {
   },
   indoor: {
     ground: "#14181c",
+    land: "#1d242a",
+    water: "#0b1218",
+    river: "#2d3f4d",
+    town: "#b9c3ca",
     grid: "#22292f",
     gridMajor: "#333c44",
     ink: "#f2f5f7",

@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
+import { proposal } from "../commands/proposal";
 import { t } from "../i18n";
 import { AlertBanner, bannerPx } from "../panels/AlertsButton";
 import { AntennaCheck } from "../panels/AntennaCheck";
@@ -13,6 +14,7 @@ import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
 import { TruthCard } from "../panels/TruthCard";
+import { type Card, chosenCard } from "../state/card";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
 import "../style/review.css";
@@ -57,13 +59,42 @@ function MapArea() {
   );
 }
 
+/** For a phone, which has room for one card: which one. */
+function Cards({ cards, shown }: { cards: readonly Card[]; shown: Card }) {
+  return (
+    <nav class="card-tabs" aria-label={t("cards.label")}>
+      {cards.map((card) => (
+        <button
+          type="button"
+          key={card}
+          data-testid={`card-${card}`}
+          aria-pressed={card === shown}
+          onClick={() => (chosenCard.value = card)}
+        >
+          {t(`cards.${card}`)}
+        </button>
+      ))}
+    </nav>
+  );
+}
+
+const RESULTS: readonly Card[] = ["estimate", "sweep", "truth"];
+
 export function FlyPage() {
   const { phase, missionId, bearings, rejected } = mission.value;
   const before = phase === "draft" || phase === "ready";
   const heard = bearings.length + rejected.length > 0;
+  const flown: Card[] = before ? [] : ["plan"];
+  const cards: Card[] = [...(before ? (["checks"] as const) : []), ...(heard || !before ? RESULTS : []), ...flown, "events"];
+  const isProposed = proposal.value !== null;
+  useEffect(() => {
+    if (isProposed) chosenCard.value = "plan";
+  }, [isProposed]);
+  const shown = cards.includes(chosenCard.value) ? chosenCard.value : cards[0]!;
   return (
-    <div class="fly" data-testid="fly">
+    <div class="fly" data-testid="fly" data-card={shown}>
       <MapArea />
+      <Cards cards={cards} shown={shown} />
       <aside class="side">
         {before && missionId && <PreflightPanel missionId={missionId} />}
         {(!before || heard) && (

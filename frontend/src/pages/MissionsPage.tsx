@@ -1,4 +1,5 @@
-// All missions, newest first: open, edit, use again, take away.
+// All missions on a map and as a list, newest first: open, use again, take away; the first one invites.
+import type { ComponentChildren, ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
@@ -15,8 +16,9 @@ import { go, missionAddress } from "../state/route";
 import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
-import { formatDuration } from "../units/quantities";
+import { formatDuration, formatNumber } from "../units/quantities";
 import type { MissionBrought, MissionSummary, Problem } from "../wire";
+import "../style/library.css";
 import "../style/review.css";
 
 const REFRESH_MS = 5000;
@@ -34,7 +36,7 @@ const FORMATS: readonly [api.ExportFormat, string | null][] = [
   ["json", "JSON"],
 ];
 
-function Export({ id }: { id: string }) {
+function Export({ mission: { mission_id: id, iq_bytes } }: { mission: MissionSummary }) {
   return (
     <details class="export">
       <summary class="button">{t("missions.export")}</summary>
@@ -44,6 +46,13 @@ function Export({ id }: { id: string }) {
             {name ?? t("missions.exportAll")}
           </a>
         ))}
+        {iq_bytes > 0 ? (
+          <a class="button" href={api.exportAddress(id, "sigmf")} download data-testid="export-sigmf">
+            {t("missions.exportIq", { size: formatNumber(iq_bytes / 1e6, 1) })}
+          </a>
+        ) : (
+          <span class="muted">{t("missions.noIq")}</span>
+        )}
       </div>
     </details>
   );
@@ -79,8 +88,10 @@ function Row({ mission, editing, onEdit }: RowProperties) {
         </span>
       </td>
       <td class="number">{mission.drafted_at_utc.slice(0, 16).replace("T", " ")}</td>
-      <td class="number">{mission.mission_time_s === null ? "–" : formatDuration(mission.mission_time_s)}</td>
-      <td class="number">
+      <td class="number" data-label={mission.mission_time_s === null ? undefined : t("missions.time")}>
+        {mission.mission_time_s !== null && formatDuration(mission.mission_time_s)}
+      </td>
+      <td class="number" data-label={t("missions.bearings")}>
         {mission.bearings}
         {mission.rejected_sweeps > 0 && <span class="muted"> ({t("missions.rejected", { count: mission.rejected_sweeps })})</span>}
       </td>
@@ -92,7 +103,7 @@ function Row({ mission, editing, onEdit }: RowProperties) {
           <a class="button" href={`#/new/${encodeURIComponent(mission.mission_id)}`}>
             {t("missions.copy")}
           </a>
-          {isOver(mission.phase) && <Export id={mission.mission_id} />}
+          {(isOver(mission.phase) || mission.iq_bytes > 0) && <Export mission={mission} />}
           {isOver(mission.phase) && (
             <a class="button" href={`#/report/${encodeURIComponent(mission.mission_id)}`} data-testid="open-report">
               {t("missions.report")}
@@ -203,6 +214,43 @@ function useLibrary(filter: Filter) {
   return { library, problem, more };
 }
 
+/** The missions on a map, loaded when the list is there; nothing where maps cannot be drawn. */
+function Place({ missions }: { missions: readonly MissionSummary[] }) {
+  const [Drawn, setDrawn] = useState<ComponentType<{ missions: readonly MissionSummary[] }> | null>(null);
+  useEffect(() => {
+    void import("../map/createMap").then(
+      async ({ hasWebgl }) => {
+        if (!hasWebgl()) return;
+        const { LibraryMap } = await import("../map/LibraryMap");
+        setDrawn(() => LibraryMap);
+      },
+      () => undefined,
+    );
+  }, []);
+  return <div class="library-place">{Drawn && <Drawn missions={missions} />}</div>;
+}
+
+/** What a first visitor may do, each with what it is good for. */
+function Welcome({ children }: { children: ComponentChildren }) {
+  return (
+    <div class="welcome" data-testid="welcome">
+      <h2>{t("missions.welcome")}</h2>
+      <a class="welcome-way" href="?tour#/mission/example" data-testid="tour-take">
+        <strong>{t("missions.welcome.example")}</strong>
+        <span>{t("tour.offer")}</span>
+      </a>
+      <a class="welcome-way" href="#/new" data-testid="welcome-new">
+        <strong>{t("missions.welcome.plan")}</strong>
+        <span>{t("missions.welcome.planHint")}</span>
+      </a>
+      <div class="welcome-way">
+        <span>{t("missions.welcome.bring")}</span>
+        <div class="row-actions">{children}</div>
+      </div>
+    </div>
+  );
+}
+
 export function MissionsPage() {
   const [broken, setBroken] = useState<string | null>(null);
   const [filter, setFilter] = useState<Filter>(ANY);
@@ -210,73 +258,85 @@ export function MissionsPage() {
   const [refused, setRefused] = useState<Problem | null>(null);
   const { library, problem, more } = useLibrary(filter);
   const shown = library?.missions;
+  const isEmpty = shown?.length === 0 && filter === ANY;
+  const bringing = (
+    <>
+      <OpenRecording onProblem={setBroken} />
+      <BringIn onProblem={setRefused} />
+    </>
+  );
   return (
-    <div class="page" data-testid="missions">
-      <div class="page-head">
-        <h1>{t("missions.title")}</h1>
-        <input
-          type="search"
-          placeholder={t("missions.search")}
-          aria-label={t("missions.search")}
-          value={filter.named}
-          onInput={(e) => setFilter({ ...filter, named: e.currentTarget.value })}
-        />
-        <OpenRecording onProblem={setBroken} />
-        <BringIn onProblem={setRefused} />
-        <a class="button primary" href="#/new" data-testid="new-mission">
-          {t("missions.new")}
-        </a>
-      </div>
-      <LibraryFilter filter={filter} missions={shown ?? []} onChange={setFilter} />
-      {!settings.value.tourSeen && (
-        <div class="card page-head" data-testid="tour-offer">
-          <span class="grow">{t("tour.offer")}</span>
-          <button type="button" onClick={() => change("tourSeen", true)}>
-            {t("tour.later")}
-          </button>
-          <a class="button primary" href="?tour#/mission/example" data-testid="tour-take">
-            {t("tour.take")}
+    <div class="library" data-testid="missions">
+      <section class="library-list">
+        <div class="page-head">
+          <h1>{t("missions.title")}</h1>
+          <a class="button primary" href="#/new" data-testid="new-mission">
+            {t("missions.new")}
           </a>
         </div>
-      )}
-      {broken && (
-        <p class="refused" role="alert">
-          {broken}
-        </p>
-      )}
-      {refused && <ProblemBox problem={refused} />}
-      {problem && <ProblemBox problem={problem} />}
-      {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
-      {shown?.length === 0 && <p class="card">{t(filter !== ANY ? "missions.noneNamed" : "missions.empty")}</p>}
-      {shown && shown.length > 0 && (
-        <table class="table library-table">
-          <thead>
-            <tr>
-              <th scope="col">
-                <span class="visually-hidden">{t("missions.map")}</span>
-              </th>
-              <th scope="col">{t("missions.name")}</th>
-              <th scope="col">{t("missions.state")}</th>
-              <th scope="col">{t("missions.drafted")}</th>
-              <th scope="col">{t("missions.time")}</th>
-              <th scope="col">{t("missions.bearings")}</th>
-              <th scope="col">
-                <span class="visually-hidden">{t("missions.open")}</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            {shown.map((mission) => (
-              <Row mission={mission} editing={editing === mission.mission_id} onEdit={setEditing} key={mission.mission_id} />
-            ))}
-          </tbody>
-        </table>
-      )}
-      {library?.next && (
-        <button type="button" data-testid="more-missions" onClick={() => void more(library)}>
-          {t("missions.more")}
-        </button>
-      )}
+        {!isEmpty && (
+          <>
+            <div class="library-tools">
+              <input
+                type="search"
+                placeholder={t("missions.search")}
+                aria-label={t("missions.search")}
+                value={filter.named}
+                onInput={(e) => setFilter({ ...filter, named: e.currentTarget.value })}
+              />
+              {bringing}
+            </div>
+            <LibraryFilter filter={filter} missions={shown ?? []} onChange={setFilter} />
+          </>
+        )}
+        {!isEmpty && !settings.value.tourSeen && (
+          <div class="tour-offer" data-testid="tour-offer">
+            <span class="grow">{t("tour.offer")}</span>
+            <button type="button" onClick={() => change("tourSeen", true)}>
+              {t("tour.later")}
+            </button>
+            <a class="button primary" href="?tour#/mission/example" data-testid="tour-take">
+              {t("tour.take")}
+            </a>
+          </div>
+        )}
+        {broken && (
+          <p class="refused" role="alert">
+            {broken}
+          </p>
+        )}
+        {refused && <ProblemBox problem={refused} />}
+        {problem && <ProblemBox problem={problem} />}
+        {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
+        {isEmpty && <Welcome>{bringing}</Welcome>}
+        {shown?.length === 0 && !isEmpty && <p>{t("missions.noneNamed")}</p>}
+        {shown && shown.length > 0 && (
+          <table class="table library-table">
+            <thead class="visually-hidden">
+              <tr>
+                <th scope="col">{t("missions.map")}</th>
+                <th scope="col">{t("missions.name")}</th>
+                <th scope="col">{t("missions.state")}</th>
+                <th scope="col">{t("missions.drafted")}</th>
+                <th scope="col">{t("missions.time")}</th>
+                <th scope="col">{t("missions.bearings")}</th>
+                <th scope="col">{t("missions.open")}</th>
+              </tr>
+            </thead>
+            <tbody>
+              {shown.map((mission) => (
+                <Row mission={mission} editing={editing === mission.mission_id} onEdit={setEditing} key={mission.mission_id} />
+              ))}
+            </tbody>
+          </table>
+        )}
+        {library?.next && (
+          <button type="button" data-testid="more-missions" onClick={() => void more(library)}>
+            {t("missions.more")}
+          </button>
+        )}
+      </section>
+      {shown && <Place missions={shown} />}
     </div>
   );
 }

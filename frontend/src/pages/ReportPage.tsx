@@ -5,9 +5,11 @@ import { locale, reasonText, t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import { ReportMap } from "../panels/ReportMap";
 import * as api from "../sources/api";
+import { polygonsOf } from "../state/areas";
 import { emitterName } from "../state/emitterName";
-import { isMain } from "../state/eventWeight";
 import { eventWords } from "../state/eventWords";
+import { isTold } from "../state/flown";
+import { extent } from "../state/geometry";
 import { type MissionState, missionAt } from "../state/mission";
 import type { Route } from "../state/route";
 import { settings } from "../state/settings";
@@ -15,7 +17,7 @@ import { judge } from "../state/truth";
 import { viewOf } from "../state/view";
 import { formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatClock, formatDuration, formatLength, formatNumber } from "../units/quantities";
-import type { Problem, Recorded } from "../wire";
+import type { Area, Problem, Recorded } from "../wire";
 import "../style/review.css";
 
 interface Told {
@@ -34,6 +36,8 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
   const place = truth?.fact.place ?? null;
   const judged = estimate && place ? judge(estimate, place) : null;
   const left = bearings.filter((b) => b.excluded).length;
+  const parts = estimate ? polygonsOf(estimate.c95 as Area) : [];
+  const reach = extent(parts.flatMap(([outline]) => outline ?? []));
   return (
     <section data-testid="report-emitter">
       <h2>{emitterName(spec?.emitters ?? [], emitterId)}</h2>
@@ -49,8 +53,9 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
         <p>
           {t("report.region", {
             area: formatArea(estimate.c95_area_m2, units),
-            major: formatLength(2 * estimate.major_axis_m, units),
-            bearing: formatBearing(estimate.major_axis_deg % 180),
+            reach: formatLength(reach.metres, units),
+            from: formatBearing(reach.bearing),
+            to: formatBearing(reach.bearing + 180),
           })}
         </p>
       )}
@@ -73,6 +78,7 @@ function EmitterReport({ told, emitterId }: { told: Told; emitterId: string }) {
         {fact && fact.contradicting.length > 0 && (
           <li>{t("estimate.against", { against: fact.contradicting.length, bearings: fact.bearings })}</li>
         )}
+        {parts.length > 1 && <li>{t("report.parts", { count: parts.length })}</li>}
         {view.rejected.length > 0 && <li>{t("report.rejected", { count: view.rejected.length })}</li>}
         {left > 0 && <li>{t("report.leftOut", { count: left })}</li>}
         {fact?.localized && fact.contradicting.length === 0 && view.rejected.length === 0 && left === 0 && (
@@ -119,7 +125,7 @@ function MissionReport({ told }: { told: Told }) {
   const { spec, startedAt, ended } = mission;
   const units = settings.value.units;
   const date = (at: string) => new Date(at).toLocaleString(locale.value, { dateStyle: "long", timeStyle: "short", timeZone: "UTC" });
-  const began = startedAt ?? events[0]?.at_utc;
+  const began = startedAt ?? events[0]?.at_utc ?? "";
   return (
     <article data-testid="report-mission">
       <h1>{spec?.name}</h1>
@@ -134,16 +140,56 @@ function MissionReport({ told }: { told: Told }) {
       <table>
         <tbody>
           {events
-            .filter((e) => isMain(e.event) && e.event.kind !== "order_done")
+            .filter((e) => isTold(e.event))
             .map((e) => (
               <tr key={e.seq}>
-                <td>{formatClock(e.at_utc)}</td>
+                <td>{e.at_utc.slice(0, 10) === began.slice(0, 10) ? formatClock(e.at_utc) : date(e.at_utc)}</td>
                 <td>{eventWords(e, units, spec?.emitters ?? [])}</td>
               </tr>
             ))}
         </tbody>
       </table>
     </article>
+  );
+}
+
+/** Of a sequence: every emitter of every mission in one line each. */
+function Overview({ all }: { all: readonly Told[] }) {
+  const { coordinates, units } = settings.value;
+  const lines = all.flatMap((told) => [...told.mission.emitters.keys()].map((id) => ({ told, id, view: viewOf(told.mission, null, id) })));
+  if (lines.length < 2) return null;
+  return (
+    <section data-testid="report-overview">
+      <h1>{t("report.overview", { count: lines.length })}</h1>
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">{t("missions.name")}</th>
+            <th scope="col">{t("report.emitter")}</th>
+            <th scope="col">{t("report.place")}</th>
+            <th scope="col">{t("report.giveOrTake")}</th>
+            <th scope="col">{t("truth.title")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          {lines.map(({ told, id, view: { belief, truth, spec } }) => {
+            const estimate = belief && belief.fact.bearings > 0 ? belief.fact.estimate : null;
+            return (
+              <tr key={`${told.id} ${id}`}>
+                <td>{spec?.name}</td>
+                <td>{emitterName(spec?.emitters ?? [], id)}</td>
+                <td>{estimate ? formatPlace(estimate, coordinates) : t("report.notKnown")}</td>
+                <td>
+                  {estimate ? formatLength(estimate.expected_rmse_m, units) : "–"}
+                  {estimate && !belief?.fact.localized && ` (${t("report.notCertain")})`}
+                </td>
+                <td>{truth ? (truth.fact.place ? formatPlace(truth.fact.place, coordinates) : t("truth.notFound")) : "–"}</td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </section>
   );
 }
 
@@ -175,6 +221,7 @@ export function ReportPage({ route }: { route: Extract<Route, { page: "report" }
       </div>
       {problem && <ProblemBox problem={problem} />}
       {!told && !problem && <p class="muted">{t("missions.loading")}</p>}
+      {told && <Overview all={told} />}
       {told?.map((one) => (
         <MissionReport told={one} key={one.id} />
       ))}

@@ -1,6 +1,7 @@
 // One minute through the screen: each step marks a part of it and says what it is for.
 import { useEffect, useState } from "preact/hooks";
 import { type MessageKey, t } from "../i18n";
+import { type Card, chosenCard } from "../state/card";
 import { overlay } from "../state/overlay";
 import { change } from "../state/settings";
 
@@ -9,15 +10,24 @@ const STEPS = [1, 2, 3, 4, 5, 6] as const;
 /** On the example every part appears in its time; elsewhere only what is there is explained. */
 const ofExample = () => new URLSearchParams(location.search).has("tour");
 const partOf = (step: number) => document.querySelector(`[data-tour="${step}"]`);
+/** Where a phone keeps what a step is about. */
+const CARDS: Partial<Record<number, Card>> = { 3: "estimate", 4: "sweep", 5: "plan", 6: "events" };
 const CARD = { width: 380, height: 190 };
+
+/** A phone has hold and abort at the foot of the screen: nothing may cover them. */
+function ordersTop(): number {
+  const top = document.querySelector(".urgents")?.getBoundingClientRect().top ?? 0;
+  return top > innerHeight / 2 ? top : innerHeight;
+}
 
 function placeCard(box: DOMRect): { left: number; top: number } {
   const left = box.right + 12 + CARD.width < innerWidth ? box.right + 12 : box.left - CARD.width - 12;
   const inside = left >= 8;
-  const below = box.bottom + 12 + CARD.height < innerHeight ? box.bottom + 12 : box.top - CARD.height - 12;
+  const floor = ordersTop();
+  const below = box.bottom + 12 + CARD.height < floor ? box.bottom + 12 : box.top - CARD.height - 12;
   return {
     left: inside ? left : Math.max(8, Math.min(innerWidth - CARD.width - 8, box.left + 8)),
-    top: Math.max(8, Math.min(innerHeight - CARD.height - 8, inside ? box.top : below)),
+    top: Math.max(8, Math.min(floor - CARD.height - 8, inside ? box.top : below)),
   };
 }
 
@@ -26,7 +36,10 @@ export function Tour() {
   const [box, setBox] = useState<DOMRect | null>(null);
   const [steps] = useState(() => STEPS.filter((step) => ofExample() || partOf(step)));
   const step = steps[index]!;
-  useEffect(() => setBox(partOf(step)?.getBoundingClientRect() ?? null), [step]);
+  useEffect(() => {
+    chosenCard.value = CARDS[step] ?? chosenCard.peek();
+    requestAnimationFrame(() => setBox(partOf(step)?.getBoundingClientRect() ?? null));
+  }, [step]);
   const end = () => {
     change("tourSeen", true);
     overlay.value = null;

@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import { send } from "../commands/send";
 import { type MessageKey, personName, reasonRemedy, reasonText, t } from "../i18n";
 import { alertRank, isOpen, sortAlerts } from "../state/alerts";
+import { shownCraftAlerts } from "../state/craftAlerts";
 import type { Alert } from "../state/mission";
 import { liveMission } from "../state/moment";
 import { overlay, toggle } from "../state/overlay";
@@ -12,7 +13,10 @@ import { mission, shownTimeMs } from "../state/shown";
 import { formatAge } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 
-const open = computed(() => mission.value.alerts.filter(isOpen));
+const all = computed(() => [...mission.value.alerts, ...shownCraftAlerts.value]);
+const open = computed(() => all.value.filter(isOpen));
+/** Of the mission: what a craft without one says nobody acknowledges, it goes by itself. */
+const acknowledgeable = ({ id }: Alert) => mission.value.alerts.some((alert) => alert.id === id);
 const worst = computed(() => sortAlerts(open.value)[0]?.level ?? null);
 
 function AlertRow({ alert }: { alert: Alert }) {
@@ -28,7 +32,7 @@ function AlertRow({ alert }: { alert: Alert }) {
         {alert.acknowledgedBy && <div class="muted">{t("alerts.acknowledged", { by: personName(alert.acknowledgedBy) })}</div>}
         {alert.cleared && <div class="muted">{t("alerts.cleared")}</div>}
       </div>
-      {isOpen(alert) && id && (
+      {isOpen(alert) && id && acknowledgeable(alert) && (
         <button
           type="button"
           data-testid="acknowledge"
@@ -42,7 +46,7 @@ function AlertRow({ alert }: { alert: Alert }) {
 }
 
 function AlertsSheet() {
-  const alerts = sortAlerts(mission.value.alerts);
+  const alerts = sortAlerts(all.value);
   return (
     <div class="popover" role="dialog" aria-label={t("alerts.title")} data-testid="alerts-panel">
       <div class="popover-head">
@@ -120,7 +124,7 @@ export function AlertBanner() {
         <strong>{t(`alerts.${first.level}` satisfies MessageKey)}:</strong> {reasonText(first.reason)}{" "}
         {remedy && t("problem.remedy", { remedy })}
       </span>
-      {id && (
+      {id && acknowledgeable(first) && (
         <button type="button" onClick={() => void send("alerts", id, { kind: "acknowledge_alert", alert_id: first.id })}>
           {t("alerts.acknowledge")}
         </button>

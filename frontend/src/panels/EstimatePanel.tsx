@@ -2,9 +2,10 @@
 import { computed } from "@preact/signals";
 import { useState } from "preact/hooks";
 import { type MessageKey, reasonText, t } from "../i18n";
+import { polygonsOf } from "../state/areas";
 import { shownBelief } from "../state/belief";
 import { chargeAfter, flightBudget, lasts } from "../state/budget";
-import { distanceM, lonLat } from "../state/geometry";
+import { distanceM, extent, lonLat } from "../state/geometry";
 import { craftStatus, telemetry } from "../state/heard";
 import { reviewTimeMs } from "../state/moment";
 import { shareWithin } from "../state/nearness";
@@ -15,18 +16,19 @@ import { remainingTime } from "../state/timeLeft";
 import { vehicle } from "../state/vehicle";
 import { type CoordinateFormat, formatPlace } from "../units/coordinates";
 import { formatArea, formatBearing, formatDuration, formatLength, formatNumber, signedDegrees } from "../units/quantities";
-import type { MissionEnded, SourceErrors } from "../wire";
+import type { Area, MissionEnded, SourceErrors } from "../wire";
 import { Claim } from "./Claim";
 import { copyText } from "./clipboard";
+import { Icon } from "./Icon";
 import { WhichShown } from "./WhichShown";
 
 const FORMATS: readonly CoordinateFormat[] = ["dd", "dms", "utm", "mgrs"];
 
-const CopyIcon = () => (
-  <svg class="copy-icon" viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
-    <path d="M7 7H17V17H7ZM13 7V3H3V13H7" />
-  </svg>
-);
+/** How far the region reaches and which way, as the report says it. */
+function reachWords(region: Area): string {
+  const { metres, bearing } = extent(polygonsOf(region).flatMap(([outline]) => outline ?? []));
+  return t("estimate.reach", { length: formatLength(metres, settings.value.units), bearing: formatBearing(bearing) });
+}
 
 function Coordinates({ lat, lon }: { lat: number; lon: number }) {
   const [copied, setCopied] = useState(false);
@@ -61,7 +63,7 @@ function Coordinates({ lat, lon }: { lat: number; lon: number }) {
           });
         }}
       >
-        {copied ? "✓" : <CopyIcon />}
+        <Icon name={copied ? "check" : "copy"} />
       </button>
     </div>
   );
@@ -192,14 +194,7 @@ export function EstimatePanel() {
               <dt>{t("estimate.c95")}</dt>
               <dd data-testid="c95-area" data-value={estimate.c95_area_m2}>
                 {formatArea(estimate.c95_area_m2, units)}
-                <small>
-                  {" "}
-                  {t("estimate.axes", {
-                    major: formatLength(estimate.major_axis_m, units),
-                    minor: formatLength(estimate.minor_axis_m, units),
-                    bearing: formatBearing(estimate.major_axis_deg % 180),
-                  })}
-                </small>
+                <small> {reachWords(estimate.c95 as Area)}</small>
               </dd>
             </div>
             {fact.sources.map((source) => (

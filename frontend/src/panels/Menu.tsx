@@ -4,6 +4,7 @@ import { flying } from "../state/flying";
 import { type Overlay, overlay, toggle } from "../state/overlay";
 import { bearingsAddress, route } from "../state/route";
 import { me } from "../state/session";
+import { Icon } from "./Icon";
 
 const show = (which: Overlay) => () => {
   overlay.value = which;
@@ -31,7 +32,7 @@ export function Menu() {
         aria-expanded={isOpen}
         onClick={() => toggle("menu")}
       >
-        ☰
+        <Icon name="menu" />
       </button>
       {isOpen && (
         <ul class="popover menu">

@@ -40,6 +40,7 @@ const craftStatus = (changes: Partial<CraftStatus>) =>
         battery_to_return_percent: 10,
         order: null,
         resume_refused: null,
+        alerts: [],
         ...changes,
       },
     ],
@@ -105,7 +106,7 @@ describe("abort, hold and return", () => {
 
   it("act on the mission that flies while another one is shown, and the bar says so", () => {
     show(new FakeSource(), ...happens(drafted), someTelemetry(), craftStatus({ mission_id: "other", phase: "flying" }));
-    expect(part("urgent-note")!.querySelector("a")!.getAttribute("href")).toContain("other");
+    expect(part("other-flies")!.querySelector("a")!.getAttribute("href")).toContain("other");
     expect(sentByAll()).toEqual(both("other"));
   });
 

@@ -243,6 +243,21 @@ function etaS(): number | null {
   return distanceM(at, lonLat(plan.fact.place)) / Math.max(speedMs ?? 0, spec.flight.speed_m_s);
 }
 
+/** What flies is not what is shown: said in the bar itself, since it lasts and a note would lie over the page. */
+function Elsewhere() {
+  const flown = flying.value;
+  if (!flown || (flown.id !== null && flown.id === live.value.mission.missionId)) return null;
+  return flown.id === null ? (
+    <div class="elsewhere" data-testid="no-mission">
+      {t("bar.noMissionFlies")}
+    </div>
+  ) : (
+    <div class="elsewhere" data-testid="other-flies">
+      {live.value.mission.missionId !== null && t("bar.otherFlies")} <a href={missionAddress(flown.id)}>{t("bar.otherFlies.open")}</a>
+    </div>
+  );
+}
+
 function Words() {
   const now = nowMs.value;
   const { link, lastMessageMs, hello } = live.value;
@@ -270,6 +285,7 @@ function Words() {
         </span>
         {lost ? t("state.lost", { age: formatAge(silence) }) : words}
       </div>
+      <Elsewhere />
       <div class="state-more">
         <span data-testid="control">{controlWords()}</span>
         {waits && <span data-testid="waits-for">{t("state.waitsFor", { what: waits })}</span>}
@@ -305,9 +321,6 @@ function OrderNote() {
 function UrgentNote() {
   const sent = Object.entries(urgent.value) as [Urgent, NonNullable<(typeof urgent.value)[Urgent]>][];
   const under = sent.filter(([, state]) => state.stage !== "accepted");
-  const loose = flying.value?.id === null;
-  const flown = flying.value?.id ?? null;
-  const other = flown === live.value.mission.missionId ? null : flown;
   if (sent.length === 0 && !flying.value) return null;
   return (
     <div class="urgent-note" role="status" data-testid="urgent-note">
@@ -317,12 +330,6 @@ function UrgentNote() {
         return <span key={kind}>{t(key, { command, count: state.count })}</span>;
       })}
       <OrderNote />
-      {loose && <span data-testid="no-mission">{t("bar.noMissionFlies")}</span>}
-      {other && (
-        <span>
-          {t("bar.otherFlies")} <a href={missionAddress(other)}>{t("bar.otherFlies.open")}</a>
-        </span>
-      )}
     </div>
   );
 }

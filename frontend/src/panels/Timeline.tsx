@@ -2,19 +2,64 @@
 import { signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { type MessageKey, t } from "../i18n";
+import { minuteStep } from "../state/courses";
 import { type EventTone, isMain, toneOf } from "../state/eventWeight";
 import { eventWords } from "../state/eventWords";
+import { lastFlown } from "../state/flown";
 import { cursor, events, liveMission, look } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { formatClock, formatLength, formatNumber } from "../units/quantities";
-import type { Recorded } from "../wire";
+import type { MissionEvent, Recorded } from "../wire";
+import { Icon } from "./Icon";
 
 const showAll = signal(false);
 
 /** Seconds of the mission a second. */
 const PACES = [0.5, 1, 2, 5, 10, 20, 50];
 const JUMPS = ["decision", "bearing", "alert"] as const;
+
+/** Lanes of the strip under its minutes, each from and to, of 30: what the craft did, decisions, bearings, alerts. */
+const LANES: Record<Exclude<EventTone, "other">, [number, number]> = {
+  mode: [9, 13],
+  decision: [14, 18.5],
+  bearing: [19.5, 24],
+  alert: [25, 29.5],
+};
+
+type Doing = "moving" | "measuring" | "held";
+
+function doingOf(event: MissionEvent): Doing | null {
+  if (event.kind !== "phase_changed") return null;
+  switch (event.after) {
+    case "taking_off":
+    case "flying":
+    case "returning":
+    case "landing":
+      return "moving";
+    case "measuring":
+      return "measuring";
+    case "hold":
+    case "manual":
+    case "waiting":
+      return "held";
+    case "ground":
+    case "planning":
+      return null;
+  }
+}
+
+/** What a craft did from one change of its phase to the next, as bars of the first lane. */
+function Doings({ all, craftId, share }: { all: readonly Recorded[]; craftId: string | null; share: (at: string) => number }) {
+  const changes = all.filter(({ event }) => event.kind === "phase_changed" && event.craft_id === craftId);
+  const [from, to] = LANES.mode;
+  return changes.map(({ event, at_utc, seq }, i) => {
+    const doing = doingOf(event);
+    const x = share(at_utc);
+    const width = (i + 1 < changes.length ? share(changes[i + 1]!.at_utc) : 100) - x;
+    return doing && <rect class={`doing doing-${doing}`} x={x} width={width} y={from} height={to - from} key={seq} />;
+  });
+}
 
 /** Runs through the recorded moments, `speed` seconds of the mission a second. */
 function usePlayback(all: readonly Recorded[]): [number | null, (speed: number | null) => void] {
@@ -29,7 +74,7 @@ function usePlayback(all: readonly Recorded[]): [number | null, (speed: number |
       const time = missionMs + (performance.now() - began) * speed;
       const at = events.peek().findLast((e) => Date.parse(e.at_utc) <= time);
       if (at && at.seq !== cursor.peek()) look(at.seq);
-      if (at?.seq === events.peek().at(-1)?.seq) setSpeed(null);
+      if (at && at.seq >= (lastFlown(events.peek())?.seq ?? 0)) setSpeed(null);
     }, 100);
     return () => clearInterval(timer);
   }, [speed, all.length === 0]);
@@ -42,39 +87,43 @@ function Strip({ all }: { all: readonly Recorded[] }) {
   const emitters = mission.value.spec?.emitters ?? [];
   if (!first || !last) return null;
   const begin = Date.parse((all.find((e) => e.event.kind === "mission_started") ?? first).at_utc);
-  const end = Math.max(begin + 1000, Date.parse(last.at_utc));
-  const share = (at: string) => Math.max(0, (Date.parse(at) - begin) / (end - begin)) * 100;
+  const end = Math.max(begin + 1000, Date.parse(lastFlown(all)!.at_utc));
+  const share = (at: string) => Math.min(1, Math.max(0, (Date.parse(at) - begin) / (end - begin))) * 100;
+  const step = 60 * minuteStep((end - begin) / 1000);
+  const minutes = Array.from({ length: Math.floor((end - begin) / 1000 / step) + 1 }, (_, i) => i * step);
   const rmse = mission.value.beliefs.filter((b) => b.expectedRmse !== null);
   const top = Math.max(1, ...rmse.map((b) => b.expectedRmse!));
   const at = cursor.value === null ? last : (all.findLast((e) => e.seq <= cursor.value!) ?? first);
   const steps = rmse.map((b, i) => {
     const x = share(b.at);
-    const y = 28 - 26 * (b.expectedRmse! / top);
+    const y = 29 - 20 * (b.expectedRmse! / top);
     return i === 0 ? `M${x} ${y}` : `H${x}V${y}`;
   });
+  const eventAt = (seconds: number) => all.findLast((e) => Date.parse(e.at_utc) <= begin + seconds * 1000) ?? first;
   const settle = (seconds: number) => {
-    const time = begin + seconds * 1000;
-    const nearest = all.findLast((e) => Date.parse(e.at_utc) <= time) ?? first;
-    look(nearest.seq === last.seq ? null : nearest.seq);
+    const nearest = eventAt(seconds);
+    look(nearest.seq >= lastFlown(all)!.seq ? null : nearest.seq);
   };
   return (
     <div class="strip">
       <svg class="strip-ticks" viewBox="0 0 100 30" preserveAspectRatio="none" aria-hidden="true">
         {steps.length > 0 && <path class="strip-rmse" d={`${steps.join("")}H100`} vector-effect="non-scaling-stroke" />}
-        {all
-          .filter((e) => toneOf(e.event) !== "other")
-          .map((e) => (
-            <line
-              class={`tick tick-${toneOf(e.event)}`}
-              x1={share(e.at_utc)}
-              x2={share(e.at_utc)}
-              y1={toneOf(e.event) === "mode" ? 20 : 6}
-              y2="30"
-              vector-effect="non-scaling-stroke"
-              key={e.seq}
-            />
-          ))}
+        <Doings all={all} craftId={mission.value.craftId} share={share} />
+        {all.map((e) => {
+          const tone = toneOf(e.event);
+          if (tone === "other" || e.event.kind === "phase_changed") return null;
+          const [y1, y2] = LANES[tone];
+          const x = share(e.at_utc);
+          return <line class={`tick tick-${tone}`} x1={x} x2={x} y1={y1} y2={y2} vector-effect="non-scaling-stroke" key={e.seq} />;
+        })}
       </svg>
+      <div class="strip-minutes" aria-hidden="true" data-testid="strip-minutes">
+        {minutes.map((s) => (
+          <span style={{ left: `${(100_000 * s) / (end - begin)}%` }} key={s}>
+            {s === 0 ? t("timeline.minutes") : s / 60}
+          </span>
+        ))}
+      </div>
       {rmse.length > 0 && (
         <span class="strip-scale" aria-hidden="true">
           {t("timeline.rmse")} ≤ {formatLength(top, settings.value.units)}
@@ -88,8 +137,13 @@ function Strip({ all }: { all: readonly Recorded[] }) {
         min={0}
         max={(end - begin) / 1000}
         step={0.1}
-        value={Math.max(0, (Date.parse(at.at_utc) - begin) / 1000)}
+        value={Math.min(end - begin, Math.max(0, Date.parse(at.at_utc) - begin)) / 1000}
         onInput={(e) => settle(Number(e.currentTarget.value))}
+        onPointerMove={(e) => {
+          const { left, width } = e.currentTarget.getBoundingClientRect();
+          const under = eventAt((Math.max(0, Math.min(1, (e.clientX - left) / width)) * (end - begin)) / 1000);
+          e.currentTarget.title = `${formatClock(under.at_utc)} ${eventWords(under, settings.value.units, emitters)}`;
+        }}
         onKeyDown={(e) => {
           const step = e.key === "ArrowLeft" ? -1 : e.key === "ArrowRight" ? 1 : 0;
           if (step === 0) return;
@@ -191,7 +245,7 @@ export function Timeline() {
           disabled={all.length === 0}
           onClick={() => stepEvent(-1)}
         >
-          ◂
+          <Icon name="back" />
         </button>
         <button
           type="button"
@@ -201,7 +255,7 @@ export function Timeline() {
           disabled={!reviewing}
           onClick={() => stepEvent(1)}
         >
-          ▸
+          <Icon name="on" />
         </button>
         <button
           type="button"
@@ -212,6 +266,7 @@ export function Timeline() {
             play(speed === null ? pace : null);
           }}
         >
+          <Icon name={speed === null ? "play" : "pause"} />
           {t(speed === null ? "timeline.play" : "timeline.pause")}
         </button>
         <select

@@ -3,6 +3,7 @@ import { effect } from "@preact/signals";
 import { reasonText, t } from "../i18n";
 import { isOpen } from "../state/alerts";
 import { live } from "../state/connection";
+import { craftAlerts } from "../state/craftAlerts";
 import { cursor } from "../state/moment";
 import { settings } from "../state/settings";
 import type { AlertLevel } from "../wire";
@@ -43,7 +44,7 @@ export function watchAlerts(): void {
   let primed = false;
   effect(() => {
     const { mission, hello } = live.value;
-    const open = mission.alerts.filter(isOpen);
+    const open = [...mission.alerts, ...craftAlerts.value].filter(isOpen);
     if (mission.missionId !== knownMission || !primed) {
       // What was already open when the page came is shown, but not sounded again.
       knownMission = mission.missionId;

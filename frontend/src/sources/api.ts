@@ -85,7 +85,7 @@ export const withBody = (method: string, body: unknown, signal?: AbortSignal): R
   signal: signal ?? null,
 });
 
-export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" | "bundle";
+export type ExportFormat = "geojson" | "kml" | "csv" | "mcap" | "cot" | "json" | "bundle" | "sigmf";
 
 const missionPath = (id: string) => `/missions/${encodeURIComponent(id)}`;
 

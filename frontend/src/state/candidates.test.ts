@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
-import { somePlan } from "../wire/examples";
-import { rankCandidates, roundShade, SHADES } from "./candidates";
+import { someBearing, somePlan } from "../wire/examples";
+import { isChoosing, rankCandidates, roundShade, SHADES } from "./candidates";
 
 it("the chosen one comes first, then who stayed longest, then the quickest", () => {
   expect(rankCandidates(somePlan()).map((r) => r.index)).toEqual([1, 2, 0]);
@@ -14,4 +14,14 @@ it("later rounds are stronger, survivors stronger still, the chosen one stronges
   expect(shades.toSorted((a, b) => a - b)).toEqual(shades);
   expect(new Set(shades).size).toBe(3);
   expect(roundShade(survivor, plan, true)).toBe(SHADES + 1);
+});
+
+it("nothing is chosen among while a bearing is taken, nor after it; a bearing that somebody reports ends no choice", () => {
+  const plan = { fact: somePlan(), seq: 5, at: "" };
+  const heard = (seq: number, fact = someBearing()) => ({ fact, seq, at: "", leftOut: false, excluded: false });
+  const view = { phase: "flying", plan, bearings: [heard(3)], rejected: [] } as const;
+  expect(isChoosing(view)).toBe(true);
+  expect(isChoosing({ ...view, phase: "measuring" })).toBe(false);
+  expect(isChoosing({ ...view, bearings: [heard(3), heard(7)] })).toBe(false);
+  expect(isChoosing({ ...view, bearings: [heard(7, someBearing({ source: { kind: "person", name: "Ada" } }))] })).toBe(true);
 });

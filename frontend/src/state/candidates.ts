@@ -1,5 +1,6 @@
 // The candidates of a plan in the order one reads them, and how they are shaded by the round that dropped them.
 import type { CandidateFact, PlanChosen } from "../wire";
+import type { MissionView } from "./view";
 
 export interface Ranked {
   candidate: CandidateFact;
@@ -29,4 +30,10 @@ export function roundShade(candidate: CandidateFact, plan: PlanChosen, chosen: b
   if (candidate.dropped_in_round === null) return SHADES;
   const last = Math.max(1, ...plan.candidates.map((c) => c.dropped_in_round ?? 0));
   return Math.min(SHADES - 1, Math.floor(((candidate.dropped_in_round - 1) / last) * SHADES));
+}
+
+/** Whether the plan's places are still to be chosen among: not while a bearing is taken at one of them, nor after it was. */
+export function isChoosing({ phase, plan, bearings, rejected }: Pick<MissionView, "phase" | "plan" | "bearings" | "rejected">): boolean {
+  const heard = [...bearings, ...rejected].filter(({ fact }) => !("source" in fact) || fact.source.kind === "craft");
+  return plan !== null && phase !== "measuring" && heard.every(({ seq }) => seq <= plan.seq);
 }

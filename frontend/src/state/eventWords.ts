@@ -199,6 +199,8 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "mission_restored":
       return t("event.mission_restored", { by: event.by });
     case "mission_ended":
+      // this reason begins with the outcome
+      if (event.reason.code === "not_localized") return t("event.mission_ended_reason", { reason: reasonText(event.reason) });
       return t("event.mission_ended", {
         outcome: t(`outcome.${event.outcome}` satisfies MessageKey),
         reason: reasonText(event.reason),

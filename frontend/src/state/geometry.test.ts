@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LonLat } from "../wire/beliefFrame";
-import { bearingDeg, circle, destination, distanceM, metresPerDegree, ringAreaM2, wedge } from "./geometry";
+import { bearingDeg, circle, destination, distanceM, extent, metresPerDegree, ringAreaM2, wedge } from "./geometry";
 
 const places: LonLat[] = [
   [7.2, 50.62],
@@ -40,4 +40,44 @@ it("a wedge begins and ends at its apex and spans twice its half width", () => {
   expect(ring.at(-1)).toEqual(apex);
   expect(bearingDeg(apex, ring[1]!)).toBeCloseTo(335, 1);
   expect(bearingDeg(apex, ring.at(-2)!)).toBeCloseTo(5, 1);
+});
+
+it("measures how far a region reaches, and which way", () => {
+  const middle: LonLat = [7.2, 50.62];
+  const ends = [destination(middle, 129, 20), destination(middle, 309, 20)];
+  const { metres, bearing } = extent([destination(middle, 39, 5), ...ends, destination(middle, 219, 5)]);
+  expect(metres).toBeCloseTo(40, 2);
+  expect(bearing).toBeCloseTo(129, 1);
+  expect(extent([middle])).toEqual({ metres: 0, bearing: 0 });
+  expect(extent([])).toEqual({ metres: 0, bearing: 0 });
+});
+
+it("finds the same reach as asking every pair of corners, of any shape", () => {
+  let state = 7;
+  const random = () => {
+    state = (state * 16807) % 2147483647;
+    return state / 2147483647 - 0.5;
+  };
+  const shapes: [number, number][] = [
+    [1, 1],
+    [1, 0.01],
+    [1, 0],
+    [0, 1],
+    [0, 0],
+  ];
+  for (const [wide, high] of shapes) {
+    for (const count of [1, 2, 3, 4, 7, 20]) {
+      for (let again = 0; again < 5; again++) {
+        const points = Array.from({ length: count }, (): LonLat => [7.2 + 0.01 * wide * random(), 50.6 + 0.01 * high * random()]);
+        const closed = [...points, points[0]!, points.at(-1)!];
+        const farthest = Math.max(...closed.flatMap((a) => closed.map((b) => distanceM(a, b))));
+        expect(extent(closed).metres).toBeCloseTo(farthest, 6);
+      }
+    }
+  }
+});
+
+it("measures a region of twenty thousand corners", () => {
+  const around = circle([7.2, 50.62], 400, 20_000);
+  expect(extent(around).metres).toBeCloseTo(800, 1);
 });

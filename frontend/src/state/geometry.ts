@@ -42,6 +42,47 @@ export function circle(centre: LonLat, radiusM: number, corners = 72): LonLat[] 
   return [...ring, ring[0]!];
 }
 
+/** How far the two points are apart that lie farthest from each other, and the compass bearing of their line, [0, 180). */
+export function extent(points: readonly LonLat[]): { metres: number; bearing: number } {
+  const corners = hull(points);
+  let [from, to, metres] = [corners[0], corners[0], 0];
+  for (const [a, b] of antipodal(corners)) {
+    const apart = distanceM(a, b);
+    if (apart > metres) [from, to, metres] = [a, b, apart];
+  }
+  return { metres, bearing: from && to ? bearingDeg(from, to) % 180 : 0 };
+}
+
+/** Twice the area of the triangle, positive when a, b, c turn counter-clockwise. */
+const turn = (a: LonLat, b: LonLat, c: LonLat): number => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+
+/** The corners of the convex hull, counter-clockwise, in n log n steps (monotone chain, Andrew 1979). */
+function hull(points: readonly LonLat[]): LonLat[] {
+  const sorted = points.toSorted((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const chain = (along: readonly LonLat[]): LonLat[] => {
+    const kept: LonLat[] = [];
+    for (const point of along) {
+      while (kept.length > 1 && turn(kept.at(-2)!, kept.at(-1)!, point) <= 0) kept.pop();
+      kept.push(point);
+    }
+    return kept.slice(0, -1);
+  };
+  return [...chain(sorted), ...chain(sorted.toReversed())];
+}
+
+/** Pairs of corners between which a pair of parallel lines fits around the hull; the farthest two are one of them
+ * (rotating calipers, Shamos 1978). A stretched plane has the same pairs, so degrees will do. */
+function* antipodal(corners: readonly LonLat[]): Generator<[LonLat, LonLat]> {
+  const n = corners.length;
+  const at = (index: number): LonLat => corners[index % n]!;
+  let across = 1;
+  for (let i = 0; i < n; i++) {
+    const [a, b] = [at(i), at(i + 1)];
+    while (across < 2 * n && turn(a, b, at(across + 1)) > turn(a, b, at(across))) across++;
+    for (const far of [at(across), at(across + 1)]) yield* [[a, far] as [LonLat, LonLat], [b, far] as [LonLat, LonLat]];
+  }
+}
+
 /** A wedge of +-halfWidth around a bearing as a closed ring: apex, arc, apex. */
 export function wedge(apex: LonLat, bearing: number, halfWidthDeg: number, lengthM: number): LonLat[] {
   const steps = Math.max(2, Math.ceil(halfWidthDeg));

@@ -634,8 +634,8 @@ export interface paths {
          * Import Recording
          * @description Import recorded sweeps of an emitter into a mission, as if they had been flown there; in flight, too.
          *
-         *     One file, or for SigMF its meta and data file and, when the recording carries no headings, a CSV of time and
-         *     heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
+         *     One file, or for SigMF its meta and data file (which are kept) and, when the recording carries no headings, a CSV of
+         *     time and heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
          */
         post: operations["import_recording"];
         delete?: never;
@@ -875,7 +875,8 @@ export interface paths {
         /**
          * Export Mission
          * @description A file: geojson, kml, csv (bearings as UAV-RT writes them), json (the whole journal), mcap (Foxglove), cot (a
-         *     data package for TAK), bundle (a zip with all of them).
+         *     data package for TAK), bundle (a zip with all of them), sigmf (the IQ of imported recordings as a SigMF archive; 404
+         *     where none was kept).
          */
         get: operations["export_mission"];
         put?: never;
@@ -1260,6 +1261,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/basemap": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Small Basemap
+         * @description Land, lakes, rivers and towns of the world for low zoom, where no map was uploaded: always sent compressed.
+         */
+        get: operations["small_basemap"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/overlays": {
         parameters: {
             query?: never;
@@ -1560,7 +1581,7 @@ export interface components {
             kind: "alert_raised";
             alert_id: string;
             /** @enum {string} */
-            topic: "vehicle" | "receiver" | "console" | "payload" | "gps" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "order" | "storage" | "autopilot";
+            topic: "vehicle" | "receiver" | "console" | "payload" | "gps" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "order" | "storage" | "autopilot" | "clock";
             /** @enum {string} */
             level: "warning" | "caution" | "advisory";
             reason: components["schemas"]["Reason"];
@@ -2037,6 +2058,15 @@ export interface components {
             kind: "battery_countdown_stopped";
             craft_id: string;
             by: string | null;
+        };
+        /** @description Of a craft that flies for no mission. */
+        BatteryRunsLow: {
+            charge_percent: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "battery_runs_low";
         };
         /** @description left_percent: when the way home begins; needed_percent: for the way home; reserve_percent: of the mission. */
         BatteryShort: {
@@ -2807,6 +2837,16 @@ export interface components {
         CoverageRequest: {
             area: components["schemas"]["Polygon"] | components["schemas"]["MultiPolygon"];
         };
+        /** @description An open alert of a craft that flies for no mission; raised_at_s: UTC epoch seconds. */
+        CraftAlertMessage: {
+            alert_id: string;
+            /** @enum {string} */
+            topic: "vehicle" | "receiver" | "console" | "payload" | "gps" | "pilot" | "battery" | "place" | "heading" | "failure" | "safety" | "ground" | "order" | "storage" | "autopilot" | "clock";
+            /** @enum {string} */
+            level: "warning" | "caution" | "advisory";
+            reason: components["schemas"]["Reason"];
+            raised_at_s: number;
+        };
         /**
          * @description To a craft in the air, in a mission or in none. resume: take it back from a pilot who has given it back; in a
          *     mission that needs its control, hence the fence.
@@ -2828,7 +2868,8 @@ export interface components {
         };
         /**
          * @description mission_id None: it flies for none; when its phase is not "ground" it is in the air all the same.
-         *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now.
+         *     resume_refused: while it holds or a pilot flies it, why resuming would be refused now. alerts: open ones of a craft
+         *     that flies for no mission; a mission's alerts are its facts.
          */
         CraftStatusMessage: {
             craft_id: string;
@@ -2842,6 +2883,8 @@ export interface components {
             battery_to_return_percent: number | null;
             order: components["schemas"]["OrderMessage"] | null;
             resume_refused: components["schemas"]["Reason"] | null;
+            /** @default [] */
+            alerts: components["schemas"]["CraftAlertMessage"][];
         };
         /** @description crossing_deg: the best crossing angle of two bearing lines at the estimate. */
         CrossingAngleTooSmall: {
@@ -3197,6 +3240,20 @@ export interface components {
              * @enum {string}
              */
             code: "failsafe_unread";
+        };
+        /** @description It would act, but nothing sets it off. known: both thresholds were read. */
+        FailsafeWithoutThreshold: {
+            /** @enum {string} */
+            watch: "station" | "station_id" | "station_time" | "fence" | "transmitter" | "sticks" | "offboard" | "battery" | "battery_critical";
+            parameter: string;
+            voltage_parameter: string;
+            charge_parameter: string;
+            known: boolean;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "failsafe_without_threshold";
         };
         /** @description inside: the vehicle must stay in it, else out of it. */
         FenceCircle: {
@@ -3963,6 +4020,13 @@ export interface components {
             /** Format: date-time */
             expires_utc: string;
         };
+        IqNotKept: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "iq_not_kept";
+        };
         /** @description Say no to whoever asked for it. */
         KeepControl: {
             /**
@@ -4248,6 +4312,14 @@ export interface components {
             code: string;
             password: string;
         };
+        /** @description The database may answer; the server does not get to hear it in time. */
+        MachineBusy: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "machine_busy";
+        };
         /** @description link and its QR code (an image as a data address) are shown this once. */
         MadeInvitation: {
             invitation: components["schemas"]["Invitation"];
@@ -4436,6 +4508,7 @@ export interface components {
             notes: string;
             deleted_at_utc: string | null;
             sketch: components["schemas"]["Sketch"];
+            iq_bytes: number;
             spec: components["schemas"]["MissionSpec"];
             editable: boolean;
             home: components["schemas"]["Place"] | null;
@@ -4614,7 +4687,8 @@ export interface components {
         };
         /**
          * @description One line of the list. `flying`: a craft is in the air for it, on its way home too. `started_at_utc`,
-         *     `ended_at_utc`, `outcome`: None until it happened.
+         *     `ended_at_utc`, `outcome`: None until it happened. `iq_bytes`: of the IQ that can be exported as SigMF, 0: none was
+         *     kept.
          */
         MissionSummary: {
             mission_id: string;
@@ -4635,6 +4709,7 @@ export interface components {
             notes: string;
             deleted_at_utc: string | null;
             sketch: components["schemas"]["Sketch"];
+            iq_bytes: number;
         };
         /** @description limit: which one the work on it met; busy: as much work as may wait is waiting. */
         MissionTooHeavy: {
@@ -6131,7 +6206,15 @@ export interface components {
             place: components["schemas"]["Place"];
             reason: components["schemas"]["Reason"];
         };
+        /**
+         * @description near_m: to the refused place; least_m: how far another must be from it. Answers of before this was told stand in
+         *     journals without the two: they were about exactly the same place.
+         */
         PlaceRefusedBefore: {
+            /** @default 0 */
+            near_m: number;
+            /** @default 5 */
+            least_m: number;
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -6558,7 +6641,7 @@ export interface components {
              */
             code: "readings_without_heading";
         };
-        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["TooManyVariants"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["BundleUnreadable"] | components["schemas"]["BundleFileWrong"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
+        Reason: components["schemas"]["QuickestPlace"] | components["schemas"]["LongestLead"] | components["schemas"]["OnlyPlace"] | components["schemas"]["SoonestTogether"] | components["schemas"]["QuickestPlaceFound"] | components["schemas"]["PlannedMeanwhile"] | components["schemas"]["MostInformation"] | components["schemas"]["LeastEntropy"] | components["schemas"]["BesideEllipse"] | components["schemas"]["FirstOfRoute"] | components["schemas"]["NoBearingYet"] | components["schemas"]["TooFewPlaces"] | components["schemas"]["TooFewPlacesAgree"] | components["schemas"]["CrossingAngleTooSmall"] | components["schemas"]["EstimateContradicted"] | components["schemas"]["BearingsDisagree"] | components["schemas"]["BearingMissesArea"] | components["schemas"]["ExpectedErrorTooLarge"] | components["schemas"]["ErrorMayBeFarLarger"] | components["schemas"]["NoPlaceToFly"] | components["schemas"]["NoPlaceInReach"] | components["schemas"]["NoWay"] | components["schemas"]["NoPlaceSeesBelief"] | components["schemas"]["EveryPlaceRefused"] | components["schemas"]["TooManyPlaces"] | components["schemas"]["BudgetTooSmall"] | components["schemas"]["FixedSamplePaths"] | components["schemas"]["BeliefOutOfStep"] | components["schemas"]["UnusableArea"] | components["schemas"]["AreaCrossesItself"] | components["schemas"]["PriorOutsideArea"] | components["schemas"]["UnusableGaussian"] | components["schemas"]["UnusableRing"] | components["schemas"]["MeanAtSensor"] | components["schemas"]["UnusableBearing"] | components["schemas"]["UnusableFlights"] | components["schemas"]["UnusableNumber"] | components["schemas"]["NearerThanStandoff"] | components["schemas"]["TellsLittleOfBias"] | components["schemas"]["BetweenPlaces"] | components["schemas"]["ReceiverMisnamed"] | components["schemas"]["ReceiverNotOpen"] | components["schemas"]["ReceiverSilent"] | components["schemas"]["NothingHeardInTurn"] | components["schemas"]["ReceiverStreamEnded"] | components["schemas"]["ReceiverUnplugged"] | components["schemas"]["SamplesLost"] | components["schemas"]["NonsensicalPower"] | components["schemas"]["GainFixed"] | components["schemas"]["RecordedSweepEmpty"] | components["schemas"]["NoChannel"] | components["schemas"]["FrequencyOutOfRange"] | components["schemas"]["FrequencyTwice"] | components["schemas"]["FrequencyNotAskedFor"] | components["schemas"]["CarriersOnly"] | components["schemas"]["OneChannelOnly"] | components["schemas"]["BandTooNarrow"] | components["schemas"]["OutsideBand"] | components["schemas"]["RecordedElsewhere"] | components["schemas"]["SampleRateTooLow"] | components["schemas"]["ImpossiblePulses"] | components["schemas"]["SoapyMissing"] | components["schemas"]["RadioFailed"] | components["schemas"]["NoReceiveChannel"] | components["schemas"]["TunedElsewhere"] | components["schemas"]["RtlSdrSampleRate"] | components["schemas"]["RtlTcpUnreachable"] | components["schemas"]["RtlTcpBusy"] | components["schemas"]["NotRtlTcp"] | components["schemas"]["RtlTcpEnded"] | components["schemas"]["PayloadStarting"] | components["schemas"]["PayloadListening"] | components["schemas"]["PayloadStateUnknown"] | components["schemas"]["NoPayloadConnected"] | components["schemas"]["PayloadAway"] | components["schemas"]["PayloadTokensMissing"] | components["schemas"]["SpoolUnusable"] | components["schemas"]["SpoolNotWritten"] | components["schemas"]["OtherProtocol"] | components["schemas"]["MessageOutOfTurn"] | components["schemas"]["MessageNotUnderstood"] | components["schemas"]["PayloadConnectedAgain"] | components["schemas"]["RefusedByServer"] | components["schemas"]["ConfigurationUnreadable"] | components["schemas"]["ConfigurationEntryMissing"] | components["schemas"]["ConfigurationEntryWrong"] | components["schemas"]["PulseTimingIncomplete"] | components["schemas"]["HomeNotKnown"] | components["schemas"]["SimulatorRefused"] | components["schemas"]["SimulatorSilent"] | components["schemas"]["NoPulseHeard"] | components["schemas"]["NoHeadingHeard"] | components["schemas"]["HeadingsNotNumbers"] | components["schemas"]["NoPositionHeard"] | components["schemas"]["ClocksApart"] | components["schemas"]["HeadingsInterrupted"] | components["schemas"]["PowerNotNumbers"] | components["schemas"]["Overdriven"] | components["schemas"]["TooFewDirections"] | components["schemas"]["TurnIncomplete"] | components["schemas"]["ConstantPower"] | components["schemas"]["NothingAboveNoise"] | components["schemas"]["NoDirection"] | components["schemas"]["UnlikeAntenna"] | components["schemas"]["DirectionInGap"] | components["schemas"]["PatternBorrowed"] | components["schemas"]["LikelyOtherAntenna"] | components["schemas"]["AntennaAgrees"] | components["schemas"]["NotTheMeasuredAntenna"] | components["schemas"]["EmitterTooNear"] | components["schemas"]["AntennaDead"] | components["schemas"]["AntennaUnlikePattern"] | components["schemas"]["AntennaAskew"] | components["schemas"]["ReceiverClockOff"] | components["schemas"]["TooFewSamples"] | components["schemas"]["NoMagneticModel"] | components["schemas"]["NotAPattern"] | components["schemas"]["PatternRowUnusable"] | components["schemas"]["PatternUnitUnknown"] | components["schemas"]["TooFewPoints"] | components["schemas"]["AngleTwice"] | components["schemas"]["PatternGap"] | components["schemas"]["ImplausibleGains"] | components["schemas"]["PatternOfOtherFrequency"] | components["schemas"]["FileUnreadable"] | components["schemas"]["FileUnusable"] | components["schemas"]["ColumnsUnknown"] | components["schemas"]["CellUnusable"] | components["schemas"]["RowLeftOut"] | components["schemas"]["RotationIrregular"] | components["schemas"]["PulsesOutsideRotations"] | components["schemas"]["TagNotHeard"] | components["schemas"]["OtherTagsLeftOut"] | components["schemas"]["NothingUsable"] | components["schemas"]["PlaceNotStated"] | components["schemas"]["SigmfFieldMissing"] | components["schemas"]["SigmfFieldUnusable"] | components["schemas"]["SigmfFileMissing"] | components["schemas"]["SamplesUnusable"] | components["schemas"]["SamplesNotNumbers"] | components["schemas"]["NoSignalFound"] | components["schemas"]["SilentAt"] | components["schemas"]["NoPulseAt"] | components["schemas"]["HeadingsApart"] | components["schemas"]["HeadingsOfOtherLength"] | components["schemas"]["StrongestUsed"] | components["schemas"]["ReadingsWithoutHeading"] | components["schemas"]["NotIq"] | components["schemas"]["RecordingUnusable"] | components["schemas"]["VehicleLinkNotOpened"] | components["schemas"]["NoAutopilotAnswers"] | components["schemas"]["HeartbeatStopped"] | components["schemas"]["UnknownAutopilot"] | components["schemas"]["VehicleNotConnected"] | components["schemas"]["VehicleSilent"] | components["schemas"]["PositionLost"] | components["schemas"]["SticksMoved"] | components["schemas"]["ModeNotCommanded"] | components["schemas"]["ManoeuvreReplaced"] | components["schemas"]["AutopilotRefused"] | components["schemas"]["PlaceNotTaken"] | components["schemas"]["CommandUnanswered"] | components["schemas"]["ModeNotShown"] | components["schemas"]["ModeLeft"] | components["schemas"]["NotInTheAir"] | components["schemas"]["StandsDisarmed"] | components["schemas"]["TakeOffIgnored"] | components["schemas"]["NoTakeOff"] | components["schemas"]["ClimbTooLow"] | components["schemas"]["NoProgress"] | components["schemas"]["NotArrived"] | components["schemas"]["TurnStopped"] | components["schemas"]["TurnNotMade"] | components["schemas"]["HoldIgnored"] | components["schemas"]["DoesNotHold"] | components["schemas"]["ParameterNotSet"] | components["schemas"]["VehicleConnected"] | components["schemas"]["VehicleUnheard"] | components["schemas"]["VehicleHeardAgain"] | components["schemas"]["AutopilotRestarted"] | components["schemas"]["ClockRateOdd"] | components["schemas"]["AutopilotSaid"] | components["schemas"]["AutopilotRepeats"] | components["schemas"]["AutopilotSaidMore"] | components["schemas"]["ModeChanged"] | components["schemas"]["PositionJumped"] | components["schemas"]["TakenOver"] | components["schemas"]["TakenOverBySticks"] | components["schemas"]["SwitchUndone"] | components["schemas"]["OperatorInControl"] | components["schemas"]["StillMoving"] | components["schemas"]["ParameterSet"] | components["schemas"]["TriedAgain"] | components["schemas"]["LinkChecked"] | components["schemas"]["GpsChecked"] | components["schemas"]["SatellitesUnknown"] | components["schemas"]["RemoteIdChecked"] | components["schemas"]["RemoteIdRefuses"] | components["schemas"]["NeverReported"] | components["schemas"]["ReportAge"] | components["schemas"]["BatteryCharge"] | components["schemas"]["HomeSet"] | components["schemas"]["ArmingChecked"] | components["schemas"]["ControlChecked"] | components["schemas"]["FailsafeParameter"] | components["schemas"]["FailsafeUnread"] | components["schemas"]["FailsafeWithoutThreshold"] | components["schemas"]["ParameterToSet"] | components["schemas"]["NetsToSet"] | components["schemas"]["OwnCeilingLower"] | components["schemas"]["OwnFenceTighter"] | components["schemas"]["FenceTooDetailed"] | components["schemas"]["FenceNotTransferred"] | components["schemas"]["FenceUnknownForm"] | components["schemas"]["FenceReadBackDifferent"] | components["schemas"]["FenceParameterUnread"] | components["schemas"]["SignInNeeded"] | components["schemas"]["FirstAdminNeeded"] | components["schemas"]["FirstAdminExists"] | components["schemas"]["NoPeopleHere"] | components["schemas"]["BehindProxy"] | components["schemas"]["RoleTooLow"] | components["schemas"]["CallNotListed"] | components["schemas"]["OriginMissing"] | components["schemas"]["NotEncrypted"] | components["schemas"]["WrongNameOrPassword"] | components["schemas"]["NoPasswordHere"] | components["schemas"]["NoProvider"] | components["schemas"]["ProviderRefused"] | components["schemas"]["TooManyTries"] | components["schemas"]["CodeUnusable"] | components["schemas"]["NameTaken"] | components["schemas"]["PasswordWeak"] | components["schemas"]["LastAdmin"] | components["schemas"]["CommandIdReused"] | components["schemas"]["ControlFree"] | components["schemas"]["ControlHeld"] | components["schemas"]["ControlStale"] | components["schemas"]["ControlAskedAlready"] | components["schemas"]["ControlNotAsked"] | components["schemas"]["ControlNotYours"] | components["schemas"]["ControlNeedless"] | components["schemas"]["ReturnAltitudeChecked"] | components["schemas"]["ReturnAltitudeUnread"] | components["schemas"]["ReturnClimbs"] | components["schemas"]["ReturnMeetsGround"] | components["schemas"]["RoomToFly"] | components["schemas"]["StartAllowed"] | components["schemas"]["ReceiverDelivers"] | components["schemas"]["NoSamples"] | components["schemas"]["TagUnheard"] | components["schemas"]["PatternInUse"] | components["schemas"]["NoVehicleYet"] | components["schemas"]["ConnectingBroke"] | components["schemas"]["Ordered"] | components["schemas"]["Proceeds"] | components["schemas"]["NoConsole"] | components["schemas"]["VehicleLinkLost"] | components["schemas"]["PlaceUnknown"] | components["schemas"]["BatteryRunsLow"] | components["schemas"]["PayloadLinkLost"] | components["schemas"]["BackAfterRestart"] | components["schemas"]["ServerEnds"] | components["schemas"]["PilotFlies"] | components["schemas"]["FailsafeFlies"] | components["schemas"]["FailsafeStopped"] | components["schemas"]["Landed"] | components["schemas"]["StepBroke"] | components["schemas"]["WatchBroke"] | components["schemas"]["PlaceUnsure"] | components["schemas"]["NotStored"] | components["schemas"]["NotAnArchive"] | components["schemas"]["OldArchive"] | components["schemas"]["TilesNotDrawable"] | components["schemas"]["CompressionNotRead"] | components["schemas"]["ArchiveDamaged"] | components["schemas"]["MapLabelDamaged"] | components["schemas"]["PutByHand"] | components["schemas"]["MapUnusable"] | components["schemas"]["UploadIncomplete"] | components["schemas"]["NoRoomForMap"] | components["schemas"]["MapDrawnPlainly"] | components["schemas"]["AreaOnMaps"] | components["schemas"]["BeyondWebMaps"] | components["schemas"]["NotReadableAs"] | components["schemas"]["OtherCoordinates"] | components["schemas"]["TooManyFeatures"] | components["schemas"]["PartLeftOut"] | components["schemas"]["FileLeftOut"] | components["schemas"]["KindLeftOut"] | components["schemas"]["MoreLeftOut"] | components["schemas"]["NothingToDraw"] | components["schemas"]["NotAreas"] | components["schemas"]["PolygonsUnited"] | components["schemas"]["PositionsThinned"] | components["schemas"]["OverlayUnusable"] | components["schemas"]["NoPolygon"] | components["schemas"]["NotStarted"] | components["schemas"]["AlreadyStarted"] | components["schemas"]["MissionOver"] | components["schemas"]["NotHeld"] | components["schemas"]["NoCountdown"] | components["schemas"]["LandingAlready"] | components["schemas"]["OnTheWayHome"] | components["schemas"]["OnTheGround"] | components["schemas"]["AreaOnlyInHold"] | components["schemas"]["NoProposedPlace"] | components["schemas"]["PlaceRefusedBefore"] | components["schemas"]["NoSuchBearing"] | components["schemas"]["BearingOfAnother"] | components["schemas"]["BearingExcludedAlready"] | components["schemas"]["BearingCountsAlready"] | components["schemas"]["LeftOutByAnother"] | components["schemas"]["NoSuchSource"] | components["schemas"]["MutedAlready"] | components["schemas"]["NoSuchAlert"] | components["schemas"]["NoSuchCraft"] | components["schemas"]["NoSuchEmitter"] | components["schemas"]["VehicleUnknown"] | components["schemas"]["NoHome"] | components["schemas"]["AnotherMissionFlies"] | components["schemas"]["NoMission"] | components["schemas"]["NotEditable"] | components["schemas"]["MissionFlies"] | components["schemas"]["MissionDoesNotFly"] | components["schemas"]["ServerIsEnding"] | components["schemas"]["TooManyVariants"] | components["schemas"]["FieldMissing"] | components["schemas"]["FieldUnknown"] | components["schemas"]["FieldOutOfRange"] | components["schemas"]["FieldWrongLength"] | components["schemas"]["FieldNotOneOf"] | components["schemas"]["FieldInvalid"] | components["schemas"]["RequestInvalid"] | components["schemas"]["NothingThere"] | components["schemas"]["IqNotKept"] | components["schemas"]["HttpRefused"] | components["schemas"]["BodyTooLarge"] | components["schemas"]["BodyTooRich"] | components["schemas"]["BodyTooSlow"] | components["schemas"]["UnknownHost"] | components["schemas"]["ForeignOrigin"] | components["schemas"]["SamplesNotStored"] | components["schemas"]["HalfGiven"] | components["schemas"]["TooManyFiles"] | components["schemas"]["TwoRecordings"] | components["schemas"]["ExportUnreadable"] | components["schemas"]["BundleUnreadable"] | components["schemas"]["BundleFileWrong"] | components["schemas"]["UploadBrokeOff"] | components["schemas"]["NoPayloadExpected"] | components["schemas"]["UnknownToken"] | components["schemas"]["TooManyScenes"] | components["schemas"]["SceneSilent"] | components["schemas"]["ServerBroke"] | components["schemas"]["FailsafeActs"] | components["schemas"]["PilotControls"] | components["schemas"]["NotGivenBack"] | components["schemas"]["NoLink"] | components["schemas"]["NoPosition"] | components["schemas"]["PositionOld"] | components["schemas"]["BatteryUnknown"] | components["schemas"]["BatterySilent"] | components["schemas"]["BatteryShort"] | components["schemas"]["AltitudeOutside"] | components["schemas"]["TooFarFromHome"] | components["schemas"]["AlreadyInAir"] | components["schemas"]["OutsideFence"] | components["schemas"]["InsideNoFly"] | components["schemas"]["NearNoFly"] | components["schemas"]["WayLeavesFence"] | components["schemas"]["WayCrossesNoFly"] | components["schemas"]["NoWayHome"] | components["schemas"]["GroundUnknown"] | components["schemas"]["ClearanceShort"] | components["schemas"]["TooHighAboveGround"] | components["schemas"]["AreaEmpty"] | components["schemas"]["TooFewCorners"] | components["schemas"]["TooManyCorners"] | components["schemas"]["OutlineUnusable"] | components["schemas"]["AreaTooSmall"] | components["schemas"]["AreaTooWide"] | components["schemas"]["AreaTooFar"] | components["schemas"]["HeadingsAskew"] | components["schemas"]["BearingsCorrected"] | components["schemas"]["Localized"] | components["schemas"]["LocalizedAgainst"] | components["schemas"]["RecordingTooLong"] | components["schemas"]["RecordingTooFar"] | components["schemas"]["BearingTooFar"] | components["schemas"]["AskedFromTooFar"] | components["schemas"]["HeardElsewhere"] | components["schemas"]["KrakenUnreadable"] | components["schemas"]["BearingTimeImpossible"] | components["schemas"]["WhichEmitter"] | components["schemas"]["TakenEarlier"] | components["schemas"]["ImportRemark"] | components["schemas"]["OtherFrequency"] | components["schemas"]["SweepIncomplete"] | components["schemas"]["QualityTooLow"] | components["schemas"]["DatabaseSilent"] | components["schemas"]["DatabaseSlow"] | components["schemas"]["MachineBusy"] | components["schemas"]["DiskLow"] | components["schemas"]["StockFull"] | components["schemas"]["NothingStores"] | components["schemas"]["FactUnfit"] | components["schemas"]["WrittenElsewhere"] | components["schemas"]["DatabaseUnfit"] | components["schemas"]["AnotherServer"] | components["schemas"]["ForeignSpool"] | components["schemas"]["NotTerrain"] | components["schemas"]["GeoTiffUnusable"] | components["schemas"]["OtherCoordinateSystem"] | components["schemas"]["TerrariumUnusable"] | components["schemas"]["HeightsImplausible"] | components["schemas"]["TerrainTooLarge"] | components["schemas"]["TerrainLabelDamaged"] | components["schemas"]["NoTerrain"] | components["schemas"]["TerrainCovers"] | components["schemas"]["TerrainPartly"] | components["schemas"]["HomeHeightDiffers"] | components["schemas"]["GroundNotKept"] | components["schemas"]["WholeTurn"] | components["schemas"]["SectorExpected"] | components["schemas"]["MaximumSeen"] | components["schemas"]["WholeCircleSeen"] | components["schemas"]["MaximumAtEdge"] | components["schemas"]["QualityPoor"] | components["schemas"]["ElsewherePossible"] | components["schemas"]["BearingUncertain"] | components["schemas"]["NothingFoundYet"] | components["schemas"]["FileTooHeavy"] | components["schemas"]["ReadersBusy"] | components["schemas"]["DiskFull"] | components["schemas"]["MissionTooHeavy"] | components["schemas"]["ToldBefore"] | components["schemas"]["NoUsableBearing"] | components["schemas"]["NotLocalized"] | components["schemas"]["PlacesUsedUp"] | components["schemas"]["NoLongerLocalized"] | components["schemas"]["ReceiverTrouble"] | components["schemas"]["PreflightFailed"] | components["schemas"]["Interrupted"] | components["schemas"]["OrderedAgainLater"] | components["schemas"]["NotDone"] | components["schemas"]["Instead"] | components["schemas"]["AutopilotFliesHome"];
         /** @description offset_s: receiver's clock minus vehicle's. */
         ReceiverClockOff: {
             offset_s: number;
@@ -6669,12 +6752,13 @@ export interface components {
         };
         /**
          * @description `already`: the same recording was imported before, nothing was added. `remarks`: what was left out and why,
-         *     each naming file and line.
+         *     each naming file and line. `iq_kept`: the recording can be exported as SigMF.
          */
         RecordingImport: {
             recording_id: string;
             filename: string;
             already: boolean;
+            iq_kept: boolean;
             sweeps: components["schemas"]["ImportedSweep"][];
             remarks: components["schemas"]["Reason"][];
             last_seq: number;
@@ -6843,6 +6927,18 @@ export interface components {
              * @enum {string}
              */
             code: "return_altitude_unread";
+        };
+        /** @description Relative to home. from_relative_m: the highest that the mission flies. */
+        ReturnClimbs: {
+            parameter: string;
+            climb_m: number;
+            from_relative_m: number;
+            ceiling_relative_m: number;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            code: "return_climbs";
         };
         /** @description The autopilot's own return; on the way the craft may still be held, and the search resumed. */
         ReturnInput: {
@@ -10190,7 +10286,7 @@ export interface operations {
             path: {
                 /** @description The mission's id */
                 mission_id: string;
-                format: "geojson" | "kml" | "csv" | "json" | "mcap" | "cot" | "bundle";
+                format: "geojson" | "kml" | "csv" | "json" | "mcap" | "cot" | "bundle" | "sigmf";
             };
             cookie?: never;
         };
@@ -10208,6 +10304,7 @@ export interface operations {
                     "application/json": Record<string, never>;
                     "application/vnd.mcap": string;
                     "application/zip": string;
+                    "application/x-tar": string;
                 };
             };
             /** @description What went wrong and how to mend it */
@@ -10925,6 +11022,35 @@ export interface operations {
                 };
                 content: {
                     "application/vnd.pmtiles": string;
+                };
+            };
+            /** @description What went wrong and how to mend it */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    small_basemap: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The basemap that ships, gzipped */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
                 };
             };
             /** @description What went wrong and how to mend it */

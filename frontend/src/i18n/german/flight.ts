@@ -24,6 +24,10 @@ export const flight = {
     text: "Das Fluggerät hat kein GPS mehr: Es weiß nicht, wo es ist.",
     remedy: "Bereit sein, von Hand zu fliegen: Der Autopilot landet bald, wo er ist.",
   },
+  battery_runs_low: {
+    text: "Der Akku hat nur noch {charge_percent}.",
+    remedy: "Rückkehr oder Landung befehlen: Ohne Mission rechnet niemand aus, was der Heimweg kostet.",
+  },
   payload_link_lost: {
     text: "Die Verbindung zum Begleitrechner ist weg.",
     remedy: "Seinen Strom und sein Netz prüfen.",

@@ -64,6 +64,10 @@ export const preflight = {
   },
   failsafe_parameter: { text: `${WATCH}: {parameter} = {value}.`, remedy: SET_IT },
   failsafe_unread: { text: `${WATCH}: {parameter} war nicht zu lesen.`, remedy: SET_IT },
+  failsafe_without_threshold: {
+    text: `${WATCH}: {parameter} ist gesetzt, aber {voltage_parameter} und {charge_parameter} {known?true=sind beide 0: Es greift nie ein|false=waren nicht beide zu lesen: Vielleicht greift es nie ein}.`,
+    remedy: "{voltage_parameter} auf die Spannung oder {charge_parameter} auf die restlichen mAh setzen, bei denen es eingreifen soll.",
+  },
 
   parameter_to_set: { text: "{parameter} geht von {before} auf {after}.", remedy: "" },
   nets_to_set: {
@@ -113,6 +117,10 @@ export const preflight = {
     text: "Wie hoch die eigene Rückkehr des Autopiloten steigt ({parameter}), war nicht zu lesen.",
     remedy:
       "{parameter} so setzen, dass die eigene Rückkehr des Autopiloten nicht über die Höchsthöhe der Mission von {ceiling_relative_m} steigt.",
+  },
+  return_climbs: {
+    text: "Die eigene Rückkehr des Autopiloten steigt um {climb_m}, wo immer sie beginnt ({parameter}): Von {from_relative_m} aus führt das über die Höchsthöhe der Mission von {ceiling_relative_m}.",
+    remedy: "{parameter} auf 0 setzen oder die Höchsthöhe der Mission anheben.",
   },
   room_to_fly: { text: "{area_m2} Flugraum.", remedy: "" },
   start_allowed: { text: "Zaun, Akku und Position erlauben den Start.", remedy: "" },

@@ -72,7 +72,10 @@ export const safety = {
     text: "Das Suchgebiet lässt sich nur ändern, während die Mission hält.",
     remedy: "Halten, dann ändern.",
   },
-  place_refused_before: { text: "Der Autopilot hat es abgelehnt, an diesen Ort zu fliegen.", remedy: "Einen anderen Ort wählen." },
+  place_refused_before: {
+    text: "Der Ort ist {near_m:1} von einem entfernt, zu dem der Autopilot nicht fliegen wollte.",
+    remedy: "Einen Ort wählen, der mindestens {least_m} davon entfernt ist.",
+  },
   no_proposed_place: { text: "Es ist kein Ort vorgeschlagen.", remedy: "Auf den nächsten Ort des Planers warten." },
   no_such_bearing: { text: "Diese Peilung hat die Mission nicht.", remedy: "Die Seite neu laden." },
   bearing_of_another: {

@@ -22,6 +22,10 @@ export const server = {
     text: "Es gibt {what?mission=keine Mission|page=keine Seite|belief_about=keine Karte der Wahrscheinlichkeit für den Sender|belief_at=keine Karte der Wahrscheinlichkeit zum Ereignis|belief_after=keine Karte der Wahrscheinlichkeit nach so vielen Peilungen:|sweep=keine Drehung|map=keine Karte|overlay=keine Überlagerung|terrain=kein Gelände|file=keine Datei|recording=keine Aufnahme|craft=kein Fluggerät|scene=keine 3D-Ansicht|person=keine Person|session=keine Sitzung|invitation=keine Einladung|token=kein Token} {which}.",
     remedy: "Vielleicht wurde es gelöscht, oder der Name ist falsch geschrieben: Sehen Sie nach, was es gibt, und wählen Sie neu.",
   },
+  iq_not_kept: {
+    text: "Von dieser Mission wurde kein IQ behalten, nur die Leistung ihrer Drehungen.",
+    remedy: "Behalten wird das IQ von SigMF-Aufnahmen, die importiert werden; für die Leistung, Messwert für Messwert, alles exportieren.",
+  },
   http_refused: { text: "Die Anfrage wurde abgelehnt ({status}): {phrase}.", remedy: "" },
   body_too_large: {
     text: "Eine Anfrage darf höchstens {most_bytes} haben.",
@@ -91,6 +95,10 @@ export const server = {
   database_slow: {
     text: "Die letzte Antwort der Datenbank dauerte {answer_s:1}.",
     remedy: "Nach ihrer Last und ihrer Platte sehen.",
+  },
+  machine_busy: {
+    text: "Der Rechner des Servers ist so ausgelastet, dass Antworten der Datenbank zu spät ankommen.",
+    remedy: "Anderes auf diesem Rechner beenden; was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
   },
   disk_low: { text: "Auf der Platte sind nur noch {free_bytes} frei.", remedy: "Platz schaffen." },
   nothing_stores: {

@@ -1,0 +1,253 @@
+"""Every screen in both themes and three sizes as pictures, and what is clipped there: `make screens SCREENS=folder`."""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import json
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Error as PlaywrightError
+
+from backend.store.brought import raw_files
+from backend.store.entries import EventRow, to_records
+from backend.store.upgrade import FIRST_FORM
+from backend.wire.bundle import bundle
+from tests.browser.conftest import CHROMIUM, SETTINGS, serving
+from tests.browser.screen import Screen
+from tests.browser.served import REPOSITORY, Server
+
+SIZES = {"laptop": (1440, 900), "tablet": (834, 1112), "phone": (390, 844)}
+THEMES = ("outdoor", "indoor")
+JOURNALS = ("demo-px4-open", "demo-ardupilot-multipath", "aborted", "links")
+"""Flown once and stored: what the library shows before anybody flies."""
+
+CLIPPED = """() => [...document.querySelectorAll("body *")].filter((one) => {
+  const { overflowX, visibility } = getComputedStyle(one);
+  const isDrawn = one.closest("svg, .visually-hidden, .maplibregl-map") !== null;
+  const isSeen = !isDrawn && visibility === "visible" && one.clientWidth > 1;
+  return isSeen && ["hidden", "clip"].includes(overflowX) && one.scrollWidth > one.clientWidth + 1;
+}).map((one) => `${one.tagName.toLowerCase()}.${one.className}: ${one.textContent.trim().slice(0, 60)}`)"""
+"""What is cut off at its right edge: elements that hide what does not fit in them."""
+
+TOO_WIDE = "() => document.documentElement.scrollWidth > innerWidth"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Where the pictures are taken: a server with a library, a draft, and a flight that holds."""
+
+    server: Server
+    draft: str
+    flown: str
+    """Over, and kept with its bearings."""
+    held: str
+
+
+def brought(server: Server) -> list[str]:
+    """The stored journals as missions of this server; their ids."""
+    address = server.url.rstrip("/")
+    ids: list[str] = []
+    for name in JOURNALS:
+        path = REPOSITORY / "tests/golden/journals" / f"{name}.json.gz"
+        stored = json.loads(gzip.decompress(path.read_bytes()))
+        rows = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in stored["rows"]]
+        mission = stored["mission_id"]
+        body = bundle(to_records(mission, rows), {}, raw_files(mission, (), {}))
+        httpx.post(f"{address}/api/bundles", content=body, timeout=60, headers={"Content-Type": "application/zip"})
+        ids.append(mission)
+    return ids
+
+
+def nothing(_: Screen) -> None:
+    """What is there when the page has come to rest."""
+
+
+def map_drawn(screen: Screen) -> None:
+    screen.map_ready()
+
+
+def editor_drawn(screen: Screen) -> None:
+    screen.map_ready("edit-map")
+
+
+def checked(screen: Screen) -> None:
+    screen.map_ready()
+    expect(screen.part("check").first).to_be_visible()
+
+
+def ready_to_resume(screen: Screen) -> None:
+    screen.map_ready()
+    screen.part("resume").click()
+
+
+def proposing(screen: Screen) -> None:
+    screen.map_ready()
+    screen.page.mouse.click(*screen.map_point(0.55, 0.45))
+    expect(screen.part("proposal")).to_be_visible()
+
+
+def last_bearing(screen: Screen) -> None:
+    screen.map_ready()
+    if screen.part("card-events").is_visible():
+        screen.part("card-events").click()
+    screen.row("bearing_measured").last.click()
+    if screen.part("card-sweep").is_visible():
+        screen.part("card-sweep").click()
+
+
+def from_menu(name: str) -> Callable[[Screen], None]:
+    def show(screen: Screen) -> None:
+        screen.part("menu").click()
+        if name != "menu":
+            screen.part(f"menu-{name}").click()
+
+    return show
+
+
+def pressed(name: str) -> Callable[[Screen], None]:
+    return lambda screen: screen.part(name).click()
+
+
+def report_ready(screen: Screen) -> None:
+    expect(screen.part("report")).to_have_attribute("data-ready", "true")
+
+
+def compared(screen: Screen) -> None:
+    expect(screen.part("compare-line").first).to_be_attached()
+
+
+def missions_listed(screen: Screen) -> None:
+    expect(screen.part("mission-row").first).to_be_visible()
+    screen.map_ready("library-map")
+
+
+Prepare = Callable[[Screen], None]
+
+
+def screens(at: Shown) -> dict[str, tuple[str, Prepare]]:
+    """Each screen by its name: its address, and what brings it to where it is looked at."""
+    return {
+        "missions": ("#/", missions_listed),
+        "menu": ("#/", from_menu("menu")),
+        "settings": ("#/", from_menu("settings")),
+        "keys": ("#/", from_menu("keys")),
+        "new": ("#/new", editor_drawn),
+        "preflight": (f"#/mission/{at.draft}", checked),
+        "held": (f"#/mission/{at.held}", map_drawn),
+        "resume": (f"#/mission/{at.held}", ready_to_resume),
+        "proposal": (f"#/mission/{at.held}", proposing),
+        "instruments": (f"#/mission/{at.held}", pressed("indicators")),
+        "alerts": (f"#/mission/{at.held}", pressed("alerts")),
+        "area": (f"#/mission/{at.held}/area", editor_drawn),
+        "bearings": (f"#/mission/{at.held}/bearings", nothing),
+        "example": ("#/mission/example", map_drawn),
+        "review": (f"#/mission/{at.flown}", last_bearing),
+        "report": (f"#/report/{at.flown}", report_ready),
+        "compare": (f"#/compare/{at.flown}", compared),
+        "calibration": ("#/calibration", nothing),
+        "maps": ("#/maps", nothing),
+        "people": ("#/people", nothing),
+        "health": ("#/health", nothing),
+    }
+
+
+HELD = {"held", "resume", "proposal", "instruments", "alerts", "area", "bearings"}
+"""What is looked at in a flight that holds: without one of these none is flown."""
+
+
+def held_flight(server: Server, browser: Browser) -> str:
+    """A flight that holds after its second bearing."""
+    mission = server.draft(expected_rmse_m=0.1, maximum_bearings=200)
+    with page_of(browser, server, SIZES["laptop"], {}) as screen:
+        screen.fly(mission)
+        expect(screen.row("bearing_measured")).to_have_count(2, timeout=180_000)
+        screen.hold()
+    return mission
+
+
+@contextmanager
+def page_of(browser: Browser, server: Server, size: tuple[int, int], settings: dict[str, Any]) -> Iterator[Screen]:
+    """A device of its own with these settings of the page."""
+    width, height = size
+    handheld = width < 900
+    context = browser.new_context(viewport={"width": width, "height": height}, has_touch=handheld, is_mobile=handheld)
+    stored = json.dumps(SETTINGS | settings)
+    context.add_init_script(f"localStorage.setItem('crossfix.settings', {stored!r})")
+    page: Page = context.new_page()
+    page.set_default_timeout(30_000)
+    page.goto(server.url)
+    yield Screen(page, server.url)
+    context.close()
+
+
+def faults(page: Page) -> list[str]:
+    """What does not fit on the page that is shown."""
+    wide = ["the page is wider than the screen"] if page.evaluate(TOO_WIDE) else []
+    return wide + page.evaluate(CLIPPED)
+
+
+SETTLED_MS = 700
+
+
+def taken(screen: Screen, address: str, prepare: Prepare, picture: Path | None) -> list[str]:
+    """One screen, its picture when one is wanted; what does not fit on it."""
+    screen.go("#/health")
+    screen.go(address)
+    prepare(screen)
+    screen.page.wait_for_timeout(SETTLED_MS)
+    if picture is not None:
+        picture.parent.mkdir(parents=True, exist_ok=True)
+        screen.page.screenshot(path=picture)
+    return faults(screen.page)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--only", help="names of screens, with commas between them")
+    parser.add_argument("--sizes", default=",".join(SIZES))
+    parser.add_argument("--themes", default=",".join(THEMES))
+    parser.add_argument("--language", default="en")
+    parser.add_argument("--scale", type=float, default=1.0, help="of the text: 1.3 is 130 percent")
+    arguments = parser.parse_args()
+    found = 0
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        serving(Path(folder)) as server,
+        sync_playwright() as playwright,
+    ):
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=CHROMIUM)
+        flown = brought(server)[0]
+        draft = server.draft()
+        wanted = arguments.only.split(",") if arguments.only else None
+        held = held_flight(server, browser) if wanted is None or HELD & set(wanted) else draft
+        shown = screens(Shown(server, draft, flown, held))
+        for size in arguments.sizes.split(","):
+            for theme in arguments.themes.split(","):
+                worn = {"theme": theme, "language": arguments.language, "scale": arguments.scale}
+                with page_of(browser, server, SIZES[size], worn) as screen:
+                    for name in wanted or shown:
+                        address, prepare = shown[name]
+                        picture = arguments.out / size / f"{name}-{theme}.png"
+                        try:
+                            wrong = taken(screen, address, prepare, picture)
+                        except (PlaywrightError, AssertionError) as fault:
+                            wrong = [f"was not reached: {str(fault).splitlines()[0]}"]
+                        for one in wrong:
+                            print(f"{size} {theme} {name}: {one}")
+                        found += len(wrong)
+        browser.close()
+    print(f"{found} faults")
+
+
+if __name__ == "__main__":
+    main()
