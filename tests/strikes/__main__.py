@@ -132,6 +132,8 @@ def main() -> None:
     given = parser.parse_args()
     if given.rc and len(given.rc) != len(given.vehicle):
         parser.error(f"--rc: {len(given.vehicle)} vehicles need as many transmitters, not {len(given.rc)}.")
+    if given.flavour == "ardupilot":
+        given.scenes = [scene for scene in given.scenes if scene != "stay"]  # its hold is one order
     given.means = given.means or (["mode", "sticks"] if given.flavour == "px4" else ["mode"])
     if given.orders:
         given.scenes = [scene for scene in ORDERS if given.flavour == "ardupilot" or scene != "steering ordered"]

@@ -150,7 +150,7 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
             )
             async with running_server(settings) as running:
                 assert running.receiver is not None
-                running.receiver.pose = witness(proxy)
+                running.receiver.follow(witness(proxy))
                 vehicle = running.services.missions.equipment.crafts[FIRST_CRAFT].vehicle
                 found, failed = dict[str, Any](), ""
                 began_s = time.monotonic()
@@ -160,7 +160,7 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
-                    await _nets_back(running.services.missions.flights)
+                await _nets_back(running.services.missions.flights)
                 took_s = time.monotonic() - began_s
                 home, truth = vehicle.telemetry().home, next(iter(running.receiver.truth.values()), None)
             return Flown(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import sys
 import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -18,6 +19,7 @@ from typing import Any
 from pymavlink.dialects.v20 import development as mavlink
 
 from hardware.autopilot.messages import SET_MODE
+from tests.strikes.hands import NEUTRAL, PILOT_COMPONENT, PILOT_SYSTEM, PUSHED
 from tests.strikes.proxy import (
     COMMAND_ACK,
     COMMAND_INT,
@@ -30,11 +32,6 @@ from tests.strikes.proxy import (
     Proxy,
 )
 from tests.strikes.transmitter import Switch, Transmitter
-
-PILOT_SYSTEM = 254
-NEUTRAL = (0, 0, 500, 0)
-"""Pitch, roll, throttle, yaw of MANUAL_CONTROL: hands off."""
-PUSHED = (700, 0, 500, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +66,9 @@ class Pilot:
         self.transmitter = transmitter
         self.flies = habits.flown[1]
         self._proxy = proxy
-        self._encoder = mavlink.MAVLink(None, PILOT_SYSTEM, 190)
+        self._encoder = mavlink.MAVLink(None, PILOT_SYSTEM, PILOT_COMPONENT)
         self._sticks = NEUTRAL
+        self._hands: asyncio.subprocess.Process | None = None
 
     def _send(self, message: Any) -> float:
         return self._proxy.put_in(bytes(message.pack(self._encoder)), message.get_msgId(), message.to_dict())
@@ -102,10 +100,13 @@ class Pilot:
     def take_by_sticks(self) -> float:
         """Push them; `release_sticks` ends it."""
         self._sticks = PUSHED
+        self._tell_hands()
         return self._move()
 
     def release_sticks(self) -> None:
-        self._sticks = NEUTRAL
+        if self._sticks != NEUTRAL:
+            self._sticks = NEUTRAL
+            self._tell_hands()
 
     def give_back(self) -> float:
         self.release_sticks()
@@ -124,9 +125,25 @@ class Pilot:
 
     async def hands_on(self) -> None:
         """The transmitter stays switched on: without it the autopilot refuses the modes that a pilot flies."""
-        while True:
+        while (address := self._proxy.vehicle_address()) is None:
             self._move()
             await asyncio.sleep(0.05)
+        self._move()  # by the proxy: PX4 answers whoever spoke first, and for good
+        host, port = address
+        given = (sys.executable, "-m", "tests.strikes.hands", host, str(port), str(self._proxy.system))
+        self._hands = await asyncio.create_subprocess_exec(*given, stdin=asyncio.subprocess.PIPE)
+        try:
+            self._tell_hands()
+            await self._hands.wait()
+            raise ChildProcessError("The pilot's hands left the sticks.")
+        finally:
+            if self._hands.returncode is None:
+                self._hands.kill()
+                await self._hands.wait()
+
+    def _tell_hands(self) -> None:
+        if self._hands is not None and self._hands.stdin is not None:
+            self._hands.stdin.write(f"{' '.join(map(str, self._sticks))}\n".encode())
 
     def took(self, since_s: float) -> float | None:
         """When the autopilot first said that the pilot has it (its answer, its text or its mode).

@@ -15,7 +15,7 @@ from typing import Any, Literal
 from hardware.sim.autopilot.launch import free_port
 from tests.strikes.frames import Frame
 from tests.strikes.lane import Lane
-from tests.strikes.wire import Send, datagrams, vehicle_end
+from tests.strikes.wire import Address, Send, datagrams, vehicle_end
 
 HEARTBEAT, SYS_STATUS, COMMAND_INT, COMMAND_LONG, COMMAND_ACK, STATUS_TEXT, CURRENT_MODE = 0, 1, 75, 76, 77, 253, 436
 ATTITUDE, GLOBAL_POSITION, RC_CHANNELS = 30, 33, 65
@@ -38,7 +38,7 @@ class Passed:
 @dataclass
 class Proxy:
     """delay_s: each way. loss: share of frames, each way. url: where the program under test finds the vehicle.
-    system: the vehicle's MAVLink id, since it was heard.
+    system: the vehicle's MAVLink id, since it was heard. vehicle_address: where it hears datagrams, since then.
 
     on_sent(number, fields): a kept message left the program under test and reaches the vehicle `delay_s` later.
     """
@@ -53,6 +53,7 @@ class Proxy:
     chance: random.Random = field(default_factory=lambda: random.Random(1))
     to_vehicle: Send = lambda raw: None
     to_program: Send = lambda raw: None
+    vehicle_address: Callable[[], Address | None] = lambda: None
     _to_lane: Lane = field(default_factory=Lane)
     _from_lane: Lane = field(default_factory=Lane)
 
@@ -108,7 +109,9 @@ async def proxied(vehicle_url: str) -> AsyncIterator[Proxy]:
     proxy.url = f"udpin://127.0.0.1:{port}"
     program = ("127.0.0.1", port)
     async with (
-        vehicle_end(vehicle_url, proxy.from_vehicle) as proxy.to_vehicle,
-        datagrams(proxy.from_program, peer=program) as proxy.to_program,
+        vehicle_end(vehicle_url, proxy.from_vehicle) as vehicle_side,
+        datagrams(proxy.from_program, peer=program) as program_side,
     ):
+        proxy.to_vehicle, proxy.to_program = vehicle_side.send, program_side.send
+        proxy.vehicle_address = vehicle_side.address
         yield proxy

@@ -1,8 +1,12 @@
-"""What the vehicle does when the pilot strikes: it turns, flies, takes off or returns; or is ordered another mode."""
+"""What the vehicle does when the pilot strikes: it turns, flies, brakes, takes off, returns, or is ordered a mode.
+
+stay: it brakes for a hold, and the order to stay that follows once it is slow meets the strike (PX4 only).
+"""
 
 from __future__ import annotations
 
 import asyncio
+import math
 import random
 from collections.abc import Coroutine
 from dataclasses import dataclass, field
@@ -17,7 +21,15 @@ from tests.strikes.proxy import Proxy
 from tests.strikes.strike import REPORT_S, Aim, Means, Moment, Outcome, until, watch
 
 Scene = Literal[
-    "turn", "flight", "take_off", "return", "hold ordered", "return ordered", "landing ordered", "steering ordered"
+    "turn",
+    "flight",
+    "stay",
+    "take_off",
+    "return",
+    "hold ordered",
+    "return ordered",
+    "landing ordered",
+    "steering ordered",
 ]
 SCENES: tuple[Scene, ...] = get_args(Scene)
 ORDERS: tuple[Scene, ...] = ("hold ordered", "return ordered", "landing ordered", "steering ordered")
@@ -27,6 +39,7 @@ MANOEUVRES: tuple[Scene, ...] = tuple(scene for scene in SCENES if scene not in 
 MOMENTS: dict[Scene, tuple[Moment, ...]] = {
     "turn": ("crossing", "before", "crossing", "under way"),
     "flight": ("crossing", "before", "crossing", "under way"),
+    "stay": ("crossing", "before"),
     "take_off": ("under way",),
     "return": ("under way",),
     "hold ordered": ("crossing",),
@@ -38,6 +51,7 @@ MOMENTS: dict[Scene, tuple[Moment, ...]] = {
 COMMANDS: dict[Scene, frozenset[int]] = {
     "turn": frozenset({REPOSITION, CONDITION_YAW}),
     "flight": frozenset({REPOSITION}),
+    "stay": frozenset({REPOSITION}),
     "take_off": frozenset({TAKE_OFF}),
     "return": frozenset({SET_MODE}),
     "hold ordered": frozenset({SET_MODE, REPOSITION}),
@@ -48,6 +62,8 @@ COMMANDS: dict[Scene, frozenset[int]] = {
 HEIGHT_M = 12.0
 SPEED_M_S = 5.0
 RATE_DEG_S = 30.0
+FAST_M_S, NEARLY_SLOW_M_S = 4.0, 0.9
+"""Of a flight when its hold is ordered, and a moment before the order to stay follows."""
 LOOP_S = 0.05
 """Of an autopilot and its radio, and a little more."""
 
@@ -63,17 +79,19 @@ class Field:
     proxy: Proxy
     pilot: Pilot
     chance: random.Random
-    flown: int = 0
     by_nobody: list[str] = field(default_factory=list[str])
+    _legs: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
 
     async def strike(self, scene: Scene, moment: Moment, means: Means) -> Outcome:
         """Raises TimeoutError or VehicleError when the scene does not come about."""
         try:
             await self._prepare(scene)
         finally:
-            self._look_for_takeover_by_nobody(scene)
+            taken = self._look_for_takeover_by_nobody(scene)
+        if taken:
+            raise TimeoutError(f"somebody else has it: {self.by_nobody[-1]}")
         aim = Aim(self.proxy, self.pilot, means, self.chance)
-        if moment == "before":
+        if moment == "before" and scene != "stay":
             aim.after(0.0)
             await asyncio.sleep(self.chance.uniform(0.0, self.proxy.delay_s + REPORT_S))
         elif moment == "crossing" and scene in ORDERS and self.pilot.believed_s:
@@ -82,19 +100,23 @@ class Field:
             lead_s = self.pilot.believed_s - self.proxy.delay_s
             await asyncio.sleep(max(0.0, lead_s + self.chance.uniform(-LOOP_S, self.proxy.delay_s + LOOP_S)))
         elif moment == "crossing":
-            aim.at_command(COMMANDS[scene], self.chance.randrange(4) if scene == "turn" else 0)
+            aim.at_command(COMMANDS[scene], self._skipped(scene))
         doing = asyncio.create_task(self._do(scene))
         try:
             if moment == "under way":
                 await self._under_way(scene, doing)
                 aim.after(self.chance.uniform(0.0, 3.0))
+            if moment == "before" and scene == "stay":
+                await until(lambda: self._speed() < NEARLY_SLOW_M_S, 20.0, "the braking")
+                aim.after(self.chance.uniform(0.0, REPORT_S))
             if not await _first(aim.fired, doing, 40.0):
                 raise TimeoutError(f"nothing to aim at, {_ended(doing)}")
             return await watch(aim, self.proxy, self.pilot, self.vehicle, scene, moment, means)
         finally:
             self.proxy.on_sent = None
             doing.cancel()
-            await asyncio.gather(doing, return_exceptions=True)
+            await asyncio.gather(doing, *self._legs, return_exceptions=True)
+            self._legs.clear()
             await self.give_back()
 
     async def give_back(self) -> None:
@@ -130,24 +152,36 @@ class Field:
                 await self.vehicle.return_home()
             case "flight" | "turn":  # in the mode that steers: ArduCopter has another one to hold
                 await self.vehicle.goto(self._spot(), self._amsl(), SPEED_M_S)
+            case "stay":
+                await self.vehicle.goto(self._spot(), self._amsl(), SPEED_M_S)
+                leg = asyncio.create_task(self.vehicle.goto(self._place(), self._amsl(), SPEED_M_S))
+                self._legs.append(leg)
+                await until(lambda: leg.done() or self._speed() > FAST_M_S, 30.0, "the speed")
             case _:
                 await self.vehicle.hold()
 
+    def _skipped(self, scene: Scene) -> int:
+        """Of the commands that count for a scene, how many pass before the one that is aimed at."""
+        return {"turn": self.chance.randrange(4), "stay": 1}.get(scene, 0)
+
+    def _speed(self) -> float:
+        telemetry = self.vehicle.telemetry()
+        return math.hypot(telemetry.velocity_north_m_s or 0.0, telemetry.velocity_east_m_s or 0.0)
+
     def _do(self, scene: Scene) -> Coroutine[Any, Any, None]:
-        orders = {
-            "turn": self.vehicle.turn(RATE_DEG_S),
-            "flight": self.vehicle.goto(self._place(), self._amsl(), SPEED_M_S),
-            "take_off": self.vehicle.take_off(HEIGHT_M),
-            "return": self.vehicle.return_home(),
-            "return ordered": self.vehicle.return_home(),
-            "hold ordered": self.vehicle.hold(),
-            "landing ordered": self.vehicle.land(),
-            "steering ordered": self.vehicle.goto(self._place(), self._amsl(), SPEED_M_S),
-        }
-        for other, order in orders.items():
-            if other != scene:
-                order.close()
-        return orders[scene]
+        match scene:
+            case "turn":
+                return self.vehicle.turn(RATE_DEG_S)
+            case "flight" | "steering ordered":
+                return self.vehicle.goto(self._place(), self._amsl(), SPEED_M_S)
+            case "take_off":
+                return self.vehicle.take_off(HEIGHT_M)
+            case "return" | "return ordered":
+                return self.vehicle.return_home()
+            case "stay" | "hold ordered":
+                return self.vehicle.hold()
+            case "landing ordered":
+                return self.vehicle.land()
 
     async def _under_way(self, scene: Scene, doing: asyncio.Task[None]) -> None:
         telemetry = self.vehicle.telemetry
@@ -164,18 +198,21 @@ class Field:
             if not begun():
                 raise TimeoutError(_ended(doing))
 
-    def _look_for_takeover_by_nobody(self, scene: Scene) -> None:
+    def _look_for_takeover_by_nobody(self, scene: Scene) -> bool:
+        """A vehicle that the autopilot's failsafe flies is not in the scene: an order would have to select a mode."""
         authority = self.vehicle.telemetry().authority
-        if authority.taken_by is not None:
-            self.by_nobody.append(f"before {scene}, by {authority.taken_by}: {authority.mode}")
-            self.vehicle.take_control()
+        if authority.taken_by is None:
+            return False
+        self.by_nobody.append(f"before {scene}, by {authority.taken_by}: {authority.mode}")
+        self.vehicle.take_control()
+        return True
 
     def _place(self) -> Place:
-        """East and west of home in turn."""
+        """On the other side of home, east or west."""
         home = self.vehicle.telemetry().home
         assert home is not None
-        self.flown += 1
-        return LocalFrame(home).to_geo(60.0 if self.flown % 2 else -60.0, 20.0)
+        frame = LocalFrame(home)
+        return frame.to_geo(-60.0 if frame.to_enu(self._spot())[0] > 0.0 else 60.0, 20.0)
 
     def _spot(self) -> Place:
         """Where it is."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 import asyncio
 import random
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from hardware.autopilot.vehicle import MavsdkVehicle
 from planner.reason import text_of
 from tests.strikes.pilot import Pilot, mode_of, reaching
-from tests.strikes.proxy import COMMAND_INT, COMMAND_LONG, HEARTBEAT, Proxy
+from tests.strikes.proxy import COMMAND_ACK, COMMAND_INT, COMMAND_LONG, HEARTBEAT, STATUS_TEXT, Passed, Proxy
 
 Means = Literal["mode", "sticks"]
 Moment = Literal["crossing", "before", "under way"]
@@ -29,6 +29,8 @@ STICKS_S = 0.5
 READY_S = 120.0
 CRITICAL = 5
 """MAV_STATE of a HEARTBEAT."""
+STORY_FROM_S = 2.0
+"""A story begins so long before its strike."""
 STALE_S = 0.15
 """A report of the mode that was under way inside the autopilot when the pilot took it may still be of before."""
 
@@ -41,7 +43,8 @@ class Outcome:
     told_s: until a report of that mode left the autopilot; None: none did. stalled_s: the longest that this process,
     with the program under test in it, did nothing at all meanwhile. held_up_s: by how much it delivered what the link
     carries later than due, at most. known: what the program knew in the end. failsafe: the autopilot said meanwhile
-    that a failsafe of its own acts.
+    that a failsafe of its own acts. story: what passed at the vehicle's end of the link, when it was undone or not
+    noticed in time.
     last_command_s: the last flight command that reached the vehicle, after the strike; 0 when none did.
     """
 
@@ -60,6 +63,7 @@ class Outcome:
     held_up_s: float = 0.0
     known: str = ""
     failsafe: bool = False
+    story: tuple[str, ...] = ()
 
     @property
     def counts(self) -> bool:
@@ -127,6 +131,7 @@ async def watch(
     took_at_s = pilot.took(aim.at_s)
     back_to = None if took_at_s is None else left_for(proxy, pilot, took_at_s)
     late = reaching(proxy, aim.at_s, FLIGHT)
+    odd = back_to is not None or noticed_s is None
     return Outcome(
         scene=scene,
         moment=moment,
@@ -146,7 +151,29 @@ async def watch(
             passed.way == "from" and passed.number == HEARTBEAT and passed.fields.get("system_status") == CRITICAL
             for passed in proxy.since(aim.at_s)
         ),
+        story=tuple(story(proxy.since(aim.at_s - STORY_FROM_S), aim.at_s)) if odd else (),
     )
+
+
+def story(record: Sequence[Passed], at_s: float) -> Iterator[str]:
+    """Commands, answers, texts and each change of the mode, with seconds since `at_s`."""
+    before = None
+    for passed in record:
+        of, shown = passed.fields, ""
+        if passed.number in (COMMAND_INT, COMMAND_LONG):
+            shown = f"command {of['command']:.0f} ({of['param1']:g}, {of['param2']:g}, {of['param3']:g})"
+        elif passed.number == COMMAND_ACK:
+            shown = f"answer {of['result']} to {of['command']}, for {of.get('target_system')}"
+        elif passed.number == STATUS_TEXT:
+            shown = str(of["text"]).strip()
+        elif (mode := mode_of(passed)) is not None:
+            now = mode, of.get("intended_custom_mode"), of.get("system_status")
+            now = tuple(new if new is not None else old for new, old in zip(now, before or (None,) * 3, strict=True))
+            if now != before:
+                shown = f"mode {now[0]:#x}, intended {now[1]}, system status {now[2]}"
+            before = now
+        if shown:
+            yield f"{passed.at_s - at_s:+.3f} s {passed.way}: {shown}"
 
 
 def _told(proxy: Proxy, pilot: Pilot, since_s: float) -> float | None:

@@ -28,7 +28,7 @@ def line(outcome: Outcome, flown: int) -> str:
     return (
         f"{outcome.scene:9} {outcome.moment:10} {outcome.means:6} {outcome.delay_s * 1e3:4.0f} ms: {took}, {undone}, "
         f"{noticed}, {outcome.commands} commands afterwards, the last {outcome.last_command_s:.2f} s"
-        f"{why}"
+        f"{why}" + "".join(f"\n    {event}" for event in outcome.story)
     )
 
 

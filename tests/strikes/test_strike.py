@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import random
+from unittest.mock import AsyncMock, Mock
 
 import pytest
 
+from hardware.authority import Authority
 from hardware.autopilot.connect import connect_vehicle
 from hardware.clock import WallClock
 from hardware.sim.autopilot.launch import Setting, free_port, launch_simulated
+from tests.strikes.frames import Frame
 from tests.strikes.pilot import HABITS, PILOT_SYSTEM, Pilot, piloted
-from tests.strikes.proxy import COMMAND_ACK, CURRENT_MODE, STATUS_TEXT, Passed, Proxy, proxied
+from tests.strikes.proxy import COMMAND_ACK, COMMAND_LONG, CURRENT_MODE, HEARTBEAT, STATUS_TEXT, Passed, Proxy, proxied
 from tests.strikes.scenes import Field
-from tests.strikes.strike import left_for
+from tests.strikes.strike import left_for, story
+from tests.strikes.wire import datagrams
 
+MANUAL_CONTROL = 69
 POSCTL, HOLD = 3 << 16, 4 << 16 | 3 << 24
 
 
@@ -55,6 +60,67 @@ def test_the_sticks_are_told_by_text() -> None:
     _, pilot = pilot_of(Passed(10.0, "from", STATUS_TEXT, {"text": "Pilot took over using sticks"}))
 
     assert pilot.took(9.9) == 10.0
+
+
+def test_the_story_of_a_takeover_tells_each_change_once() -> None:
+    intended = {"custom_mode": HOLD, "intended_custom_mode": POSCTL}
+    told = story(
+        [
+            Passed(10.0, "pilot", COMMAND_LONG, {"command": 176, "param1": 1.0, "param2": 3.0, "param3": 0.0}),
+            said(10.1, POSCTL),
+            said(10.2, POSCTL),
+            Passed(10.3, "from", HEARTBEAT, {"custom_mode": POSCTL, "system_status": 4}),
+            Passed(12.0, "from", STATUS_TEXT, {"text": "Failsafe activated\t"}),
+            Passed(12.1, "from", CURRENT_MODE, intended),
+        ],
+        10.0,
+    )
+
+    assert list(told) == [
+        "+0.000 s pilot: command 176 (1, 3, 0)",
+        "+0.100 s from: mode 0x30000, intended None, system status None",
+        "+0.300 s from: mode 0x30000, intended None, system status 4",
+        "+2.000 s from: Failsafe activated",
+        "+2.100 s from: mode 0x3040000, intended 196608, system status 4",
+    ]
+
+
+async def test_a_vehicle_that_somebody_else_took_before_is_not_struck_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    vehicle = Mock()
+    vehicle.telemetry.return_value.authority = Authority(who="failsafe", taken_by="mode", mode="RETURN")
+    proxy, pilot = pilot_of()
+    field = Field(vehicle, proxy, pilot, random.Random(1))
+    monkeypatch.setattr(field, "_prepare", AsyncMock())
+
+    with pytest.raises(TimeoutError, match="before stay, by mode: RETURN"):
+        await field.strike("stay", "crossing", "mode")
+
+    vehicle.take_control.assert_called_once()
+    vehicle.hold.assert_not_called()
+    assert proxy.record == []
+
+
+async def test_the_pilots_hands_go_on_by_themselves_and_move_as_they_are_told() -> None:
+    heard: asyncio.Queue[int] = asyncio.Queue()
+    proxy = Proxy(system=7)
+
+    def take(frame: Frame) -> None:
+        if frame.number == MANUAL_CONTROL:
+            assert frame.system == PILOT_SYSTEM
+            heard.put_nowait(frame.fields()["x"])
+
+    async with datagrams(take, bind=("127.0.0.1", port := free_port())):
+        proxy.vehicle_address = lambda: ("127.0.0.1", port)
+        async with piloted(proxy, "px4") as pilot:
+            async with asyncio.timeout(60):
+                for _ in range(3):
+                    assert await heard.get() == 0
+                pilot.take_by_sticks()
+                while await heard.get() == 0:
+                    pass
+                pilot.release_sticks()
+                while await heard.get() != 0:
+                    pass
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from typing import cast
 from urllib.parse import urlsplit
 
@@ -14,6 +15,14 @@ from tests.strikes.frames import Frame, Framer
 Heard = Callable[[Frame], None]
 Send = Callable[[bytes], None]
 Address = tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """send: a frame to whoever is there. address: where that is, once heard; None: not by datagrams."""
+
+    send: Send
+    address: Callable[[], Address | None]
 
 
 class _Datagrams(asyncio.DatagramProtocol):
@@ -40,26 +49,30 @@ class _Datagrams(asyncio.DatagramProtocol):
     def error_received(self, exc: Exception) -> None:
         """Nobody listens yet: as on the air."""
 
+    @property
+    def peer(self) -> Address | None:
+        return self._peer
+
     def send(self, raw: bytes) -> None:
         if self._transport is not None and self._peer is not None and not self._transport.is_closing():
             self._transport.sendto(raw, self._peer)
 
 
 @asynccontextmanager
-async def datagrams(heard: Heard, *, bind: Address | None = None, peer: Address | None = None) -> AsyncIterator[Send]:
+async def datagrams(heard: Heard, *, bind: Address | None = None, peer: Address | None = None) -> AsyncIterator[End]:
     """A UDP socket at `bind` that speaks to `peer`, or to whoever speaks to it."""
     loop = asyncio.get_running_loop()
     local = bind or ("127.0.0.1", 0)
     transport, protocol = await loop.create_datagram_endpoint(lambda: _Datagrams(heard, peer), local_addr=local)
     try:
-        yield protocol.send
+        yield End(protocol.send, lambda: protocol.peer)
     finally:
         transport.close()
         await protocol.closed.wait()  # its port is free for the next one
 
 
 @asynccontextmanager
-async def vehicle_end(url: str, heard: Heard) -> AsyncIterator[Send]:
+async def vehicle_end(url: str, heard: Heard) -> AsyncIterator[End]:
     """url: udpin://, udpout:// or tcpout://HOST:PORT of the autopilot. Raises ValueError for another."""
     parts = urlsplit(url)
     if parts.hostname is None or parts.port is None or parts.scheme not in ("udpin", "udpout", "tcpout", "tcp"):
@@ -67,13 +80,13 @@ async def vehicle_end(url: str, heard: Heard) -> AsyncIterator[Send]:
     address = (parts.hostname, parts.port)
     if parts.scheme.startswith("udp"):
         ends = {"bind": address} if parts.scheme == "udpin" else {"peer": address}
-        async with datagrams(heard, **ends) as send:
-            yield send
+        async with datagrams(heard, **ends) as end:
+            yield end
         return
     reader, writer = await asyncio.open_connection(*address)
     reading = asyncio.create_task(_read(reader, heard))
     try:
-        yield writer.write
+        yield End(writer.write, lambda: None)
     finally:
         reading.cancel()
         writer.close()
