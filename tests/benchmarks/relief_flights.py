@@ -1,37 +1,39 @@
 """Wanted figure 26: missions over real relief, each metre of their flight held against clearance and ceiling.
 
-    python -m tests.benchmarks.relief_flights [--missions 1000] [--out FOLDER]
+    python -m tests.benchmarks.relief_flights [--missions 1000] [--results FILE] [--out FOLDER]
 
-The product's own work flies a made-up vehicle: planner, ways, altitudes, vetoes, take-off, legs, the climb before the
-return. The vehicle wanders beside its way and above and below its altitude within what the product allows for. The
-relief is SRTM's of the Jacksboro fault in Tennessee, which matplotlib ships (a height every 90 m), and the same with
-finer, steeper ground laid over it.
+The product's own work flies a made-up vehicle: planner, ways, altitudes, vetoes, take-off, legs, the return around
+no-fly areas. Every third mission is aborted on the way to its last place and returns from there. The vehicle wanders
+beside its way and above and below its altitude within what the product allows for. With --results each mission is
+kept as a line of that file, which several runs may share (--first begins further on): those in it are not flown again.
 """
 
 from __future__ import annotations
 
 import argparse
 import asyncio
+import json
 import math
 from collections import Counter
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 
 import numpy as np
-from matplotlib import cbook
 from numpy.typing import NDArray
 
 from backend.craft import effects, inputs
 from backend.craft.endurance import Endurance
+from backend.craft.fly_home import AT_HOME_M, fly_home
 from backend.craft.safety import Situation, limits_of
+from backend.craft.under_way import UnderWay
 from backend.craft.work import Work
 from backend.events import BearingMeasured, CraftSource, MissionDrafted, MissionStarted, PlanChosen
 from backend.search.errors import MissionInputError
-from backend.search.ground import LATERAL_TOLERANCE_M, VERTICAL_TOLERANCE_M
 from backend.search.planning import lay_out_ways
 from backend.search.state import SearchState, evolve
 from backend.search.task import SearchTask, search_task
-from backend.spec import FIRST_EMITTER, FlightSpec, MissionSpec, PlannerSpec, Polygon
+from backend.spec import FIRST_EMITTER, Area, FlightSpec, MissionSpec, PlannerSpec, Polygon
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
@@ -39,123 +41,16 @@ from planner.types import PlannerError
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Figure
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
+from tests.benchmarks.relief_world import CalledOff, WanderingVehicle, finer, real_relief
 
 PLACES = 4
-STEP_M = 2.0
-CLIMB_M_S = 3.0
 CRAFT = "craft-1"
+ZONE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)])
+ZONE_FROM_HOME_M = 150.0
+ABORTED = 3
+"""Every third mission is aborted."""
 FRUGAL = Endurance(np.zeros(1), np.zeros(1), np.ones(1), np.array([[0.01, 0.0]]), np.zeros((1, 2, 2)))
 """A hundredth of a percent of the battery a second, without wind: the ground alone decides."""
-
-
-def real_relief() -> Terrain:
-    """Heights of 236 to 1076 m over 30 x 32 km."""
-    found = np.load(cbook.get_sample_data("jacksboro_fault_dem.npz", asfileobj=False))
-    north = max(float(found["ymin"]), float(found["ymax"]))
-    heights = found["elevation"].astype(np.float32)
-    return Terrain(north, float(found["xmin"]), float(found["dy"]), float(found["dx"]), heights, ("SRTM, Jacksboro",))
-
-
-def finer(terrain: Terrain, random: np.random.Generator) -> Terrain:
-    """Three times as many heights, with rough ground of up to some ten metres laid over them."""
-    rows, columns = terrain.heights.shape
-    lat = terrain.north_deg - np.arange(3 * rows - 2) * terrain.lat_step_deg / 3
-    lon = terrain.west_deg + np.arange(3 * columns - 2) * terrain.lon_step_deg / 3
-    smooth = terrain.at(*(axis.ravel() for axis in np.meshgrid(lat, lon, indexing="ij"))).reshape(len(lat), len(lon))
-    rough = np.fft.irfft2(_pink(smooth.shape, random), smooth.shape)
-    heights = smooth + 8.0 * rough / rough.std()
-    return Terrain(
-        terrain.north_deg,
-        terrain.west_deg,
-        terrain.lat_step_deg / 3,
-        terrain.lon_step_deg / 3,
-        heights.astype(np.float32),
-        ("made finer",),
-    )
-
-
-def _pink(shape: tuple[int, ...], random: np.random.Generator) -> NDArray[np.complex128]:
-    """Noise whose amplitude falls with the 1.2th power of its frequency; waves longer than 16 nodes are left out."""
-    frequency = np.hypot(np.fft.fftfreq(shape[0])[:, None], np.fft.rfftfreq(shape[1])[None, :])
-    amplitude = np.where(frequency > 1 / 16, np.maximum(frequency, 1e-9) ** -1.2, 0.0)
-    return amplitude * np.exp(2j * math.pi * random.random(frequency.shape))
-
-
-@dataclass
-class WanderingVehicle:
-    """Flies at once; `lowest`, `highest`: of its height above the ground so far. measuring: past the take-off."""
-
-    terrain: Terrain
-    frame: LocalFrame
-    flight: FlightSpec
-    random: np.random.Generator
-    state: Telemetry
-    measuring: bool = False
-    lowest_m: float = math.inf
-    highest_m: float = -math.inf
-    flown_m: float = 0.0
-    points: int = 0
-    violations: Counter[str] = field(default_factory=Counter[str])
-
-    def telemetry(self) -> Telemetry:
-        return self.state
-
-    async def take_off(self, altitude_relative_m: float) -> None:
-        home = self.state.home_amsl_m or 0.0
-        self.state = replace(
-            self.state,
-            in_air=True,
-            armed=True,
-            altitude_amsl_m=home + altitude_relative_m,
-            altitude_relative_m=altitude_relative_m,
-        )
-        self.measuring = True
-        self._held(*self.frame.to_enu(self._here()), home + altitude_relative_m)
-
-    async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
-    ) -> None:
-        """Sideways and upwards at once, each at its own speed, as autopilots do."""
-        (x0, y0), (x1, y1) = self.frame.to_enu(self._here()), self.frame.to_enu(place)
-        length, before = math.hypot(x1 - x0, y1 - y0), self.state.altitude_amsl_m or 0.0
-        seconds = max(length / speed_m_s, abs(altitude_amsl_m - before) / CLIMB_M_S)
-        count = max(2, math.ceil(max(length, abs(altitude_amsl_m - before)) / STEP_M))
-        t = np.linspace(0.0, max(seconds, 1e-6), count)
-        share = np.minimum(1.0, t * speed_m_s / max(length, 1e-6))
-        climbed = np.clip(t * CLIMB_M_S, 0.0, abs(altitude_amsl_m - before))
-        altitude = before + math.copysign(1.0, altitude_amsl_m - before) * climbed
-        side = self._wander(count, 0.9 * LATERAL_TOLERANCE_M)
-        ahead = np.array([x1 - x0, y1 - y0]) / max(length, 1e-6)
-        x = x0 + share * (x1 - x0) - side * ahead[1]
-        y = y0 + share * (y1 - y0) + side * ahead[0]
-        self._held(x, y, altitude + self._wander(count, 0.6 * VERTICAL_TOLERANCE_M))
-        self.flown_m += length
-        self.state = replace(
-            self.state,
-            position=place,
-            altitude_amsl_m=altitude_amsl_m,
-            altitude_relative_m=altitude_amsl_m - (self.state.home_amsl_m or 0.0),
-        )
-
-    def _here(self) -> Place:
-        assert self.state.position is not None
-        return self.state.position
-
-    def _wander(self, count: int, most: float) -> NDArray[np.float64]:
-        phase, waves = self.random.uniform(0.0, 2 * math.pi), self.random.uniform(0.5, 6.0)
-        return most * np.sin(phase + np.linspace(0.0, waves * 2 * math.pi, count))
-
-    def _held(self, x: Any, y: Any, altitude: Any) -> None:
-        """Against the ground as it is, not as the product reckons with it."""
-        east, north = np.atleast_1d(x), np.atleast_1d(y)
-        lon_lat = np.array(self.frame.to_lon_lat(np.column_stack((east, north))))
-        above = np.atleast_1d(altitude) - self.terrain.at(lon_lat[:, 1], lon_lat[:, 0])
-        self.points += len(above)
-        self.violations["unknown"] += int(np.isnan(above).any())
-        self.violations["clearance"] += int((above < self.flight.minimum_clearance_m).any())
-        self.violations["ceiling"] += int((above > self.flight.maximum_above_ground_m).any())
-        self.lowest_m = min(self.lowest_m, float(np.nanmin(above)))
-        self.highest_m = max(self.highest_m, float(np.nanmax(above)))
 
 
 class _Clock:
@@ -172,40 +67,69 @@ class _Equipment:
 
 
 def mission_at(frame: LocalFrame, random: np.random.Generator) -> MissionSpec:
-    """An area of 300 to 1200 m beside home, turned any way."""
+    """An area of 300 to 1200 m beside home, turned any way, with up to three no-fly areas in it."""
     width, height = random.uniform(300.0, 1200.0, 2)
     turn, away = random.uniform(0.0, 2 * math.pi), random.uniform(-0.5, 0.9)
     corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)]) * (width, height)
     corners += (away * width / 2, 0.0)
     turned = corners @ np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    inside = [turned[0] + random.random(2) @ np.array([turned[1] - turned[0], turned[3] - turned[0]]) for _ in range(3)]
+    zones = [at + ZONE * random.uniform(15.0, 80.0, 2) for at in inside if math.hypot(*at) > ZONE_FROM_HOME_M]
+    no_fly: list[Area] = [Polygon(coordinates=[frame.to_lon_lat(zone)]) for zone in zones[: int(random.integers(0, 4))]]
     return MissionSpec(
         name="relief",
         area=Polygon(coordinates=[frame.to_lon_lat(turned)]),
         planner=PlannerSpec(method="base_policy", standoff_m=20.0, action_spacing_m=30.0),
         flight=FlightSpec(
-            altitude_relative_m=float(random.uniform(30.0, 60.0)), fence_margin_m=float(random.uniform(60.0, 300.0))
+            altitude_relative_m=float(random.uniform(30.0, 60.0)),
+            fence_margin_m=float(random.uniform(60.0, 300.0)),
+            no_fly=no_fly,
         ),
     )
 
 
 @dataclass
 class Flown:
-    """How one mission went. ended: why no further place was flown to."""
+    """How one mission went. ended: why no further place was flown to. own_return: why the autopilot's own was flown.
 
+    legs: to places; raised: of these at another altitude than the mission's. zones: no-fly areas. landed_m: from home.
+    """
+
+    number: int
     ended: str = ""
+    own_return: str = ""
     legs: int = 0
     raised: int = 0
-    vehicle: WanderingVehicle | None = None
+    took_off: bool = False
+    zones: int = 0
+    flown_m: float = 0.0
+    points: int = 0
+    lowest_m: float = math.inf
+    highest_m: float = -math.inf
+    landed_m: float = math.inf
+    violations: dict[str, int] = field(default_factory=dict[str, int])
+
+    @property
+    def came_home(self) -> bool:
+        """By the way of ours."""
+        return not self.own_return and self.landed_m < AT_HOME_M
+
+    def keep(self, vehicle: WanderingVehicle) -> None:
+        """What was seen of its flight."""
+        self.took_off, self.zones, self.flown_m = vehicle.measuring, len(vehicle.no_fly), vehicle.flown_m
+        self.points, self.lowest_m, self.highest_m = vehicle.points, vehicle.lowest_m, vehicle.highest_m
+        self.landed_m, self.violations = vehicle.landed_m, dict(+vehicle.violations)
 
 
-async def fly(terrain: Terrain, random: np.random.Generator) -> Flown:
-    """One mission, from the take-off to above home."""
+async def fly(terrain: Terrain, random: np.random.Generator, number: int) -> Flown:
+    """One mission, from the take-off to the landing."""
+    aborted = number % ABORTED == 0
     rows, columns = terrain.heights.shape
     home = Place(
         terrain.north_deg - random.uniform(0.1, 0.9) * (rows - 1) * terrain.lat_step_deg,
         terrain.west_deg + random.uniform(0.1, 0.9) * (columns - 1) * terrain.lon_step_deg,
     )
-    frame, found = LocalFrame(home), Flown()
+    frame, found = LocalFrame(home), Flown(number)
     mission = mission_at(frame, random)
     ground_m = float(terrain.at(np.array([home.lat]), np.array([home.lon]))[0])
     amsl = ground_m + float(random.normal(0.0, 3.0))  # what the autopilot takes it for
@@ -219,7 +143,7 @@ async def fly(terrain: Terrain, random: np.random.Generator) -> Flown:
         connected=True, at_s=1000.0, position=home, position_at_s=1000.0, altitude_amsl_m=amsl, altitude_relative_m=0.0,
         battery_percent=100.0, battery_at_s=1000.0, armed=False, in_air=False, home=home, home_amsl_m=amsl,
     )  # fmt: skip
-    vehicle = found.vehicle = WanderingVehicle(terrain, frame, mission.flight, random, heard)
+    vehicle = WanderingVehicle(terrain, frame, mission.flight, task.no_fly, random, heard)
     search = evolve(SearchState(), MissionDrafted(spec=mission), 0.0)
     search = evolve(search, MissionStarted(craft_id=CRAFT, by="", home=home, home_amsl_m=amsl, software=""), 0.0)
     work = Work(
@@ -232,23 +156,30 @@ async def fly(terrain: Terrain, random: np.random.Generator) -> Flown:
         found.ended = f"take-off: {up.vetoes[0].code}"
         return found
     avoid: tuple[Place, ...] = ()
-    for number in range(1, PLACES + 1):
-        planned = await work.plan(effects.PlanNext(number, avoid))
+    for place in range(1, PLACES + 1):
+        planned = await work.plan(effects.PlanNext(place, avoid))
         if not isinstance(planned, inputs.Planned):
             found.ended = "no place"
             break
         if planned.vetoes:
             found.ended = f"plan: {planned.vetoes[0].code}"
             break
-        arrived = await work.fly(effects.FlyTo(number, planned.choice.place))
+        vehicle.ends_at = float(random.uniform(0.1, 0.9)) if aborted and place == PLACES else 1.0
+        try:
+            arrived = await work.fly(effects.FlyTo(place, planned.choice.place))
+        except CalledOff:
+            found.ended = "aborted"
+            break
         if not isinstance(arrived, inputs.Arrived):
             found.ended = "flight vetoed"
             break
         found.legs += 1
         found.raised += abs((planned.choice.altitude_amsl_m or 0.0) - amsl - mission.flight.altitude_relative_m) > 0.5
-        search = evolve(search, _bearing(task, planned.choice, emitter, random, number), 0.0)
-    await work.level_off_for_home()
-    await vehicle.goto(home, vehicle.state.altitude_amsl_m or 0.0, mission.flight.speed_m_s)
+        search = evolve(search, _bearing(task, planned.choice, emitter, random, place), 0.0)
+    vehicle.ends_at = 1.0
+    returned = await fly_home(work, UnderWay())
+    found.own_return = "" if returned is None else returned.because.code
+    found.keep(vehicle)
     return found
 
 
@@ -264,44 +195,63 @@ def _bearing(
     )  # fmt: skip
 
 
-def flights(missions: int, seed: int) -> list[Flown]:
-    random = np.random.default_rng(seed)
+def flights(numbers: Sequence[int], seed: int, results: Path | None) -> list[Flown]:
+    """Of missions by number, those among `results` unflown."""
     real = real_relief()
-    grounds = (real, finer(real, random))
-    found: list[Flown] = []
-    for number in range(missions):
-        found.append(asyncio.run(fly(grounds[number % 2], random)))
-        if (number + 1) % 50 == 0:
-            told = sum(sum(one.vehicle.violations.values()) for one in found if one.vehicle)
-            print(f"{number + 1} missions, {sum(one.legs for one in found)} legs, {told} violations", flush=True)
-    return found
+    grounds = (real, finer(real, np.random.default_rng(seed)))
+    found = {one.number: one for one in _kept(results)}
+    for number in numbers:
+        if number in found:
+            continue
+        one = asyncio.run(fly(grounds[number % 2], np.random.default_rng((seed, number)), number))
+        found[number] = one
+        if results is not None:
+            with results.open("a") as file:
+                file.write(json.dumps(asdict(one)) + "\n")
+        if one.violations:
+            print(f"mission {number}: {one.violations}, {one.ended}, {one.own_return}", flush=True)
+        if len(found) % 50 == 0:
+            print(f"{len(found)} missions", flush=True)
+    return list(found.values())
 
 
-def figures(found: list[Flown]) -> list[Figure]:
-    vehicles = [one.vehicle for one in found if one.vehicle is not None and one.vehicle.measuring]
-    violated = sum(1 for vehicle in vehicles if sum(vehicle.violations.values()))
-    legs = sum(one.legs for one in found)
+def _kept(results: Path | None) -> list[Flown]:
+    lines = [] if results is None or not results.exists() else results.read_text().splitlines()
+    return [Flown(**json.loads(line)) for line in lines]
+
+
+def figures(found: Sequence[Flown]) -> list[Figure]:
+    flown = [one for one in found if one.took_off]
+    note = f"{len(found)} missions, {len(flown)} of them took off; a no-fly area entered counts too"
+    home = sum(one.came_home for one in flown)
     return [
-        wanted("terrain", violated, note=f"{len(found)} missions, {len(vehicles)} of them took off"),
-        plain("legs flown to places", legs, ""),
+        wanted("terrain", sum(bool(one.violations) for one in flown), note=note),
+        plain("legs flown to places", sum(one.legs for one in found), ""),
         plain("of these at another altitude than the mission's", sum(one.raised for one in found), ""),
-        plain("missions that ended before their last place", sum(1 for one in found if one.ended), ""),
-        plain("flown", round(sum(vehicle.flown_m for vehicle in vehicles) / 1e3), "km"),
-        plain("points held against the ground", sum(vehicle.points for vehicle in vehicles), ""),
-        plain("least height above ground", round(min(vehicle.lowest_m for vehicle in vehicles), 1), "m"),
-        plain("most height above ground", round(max(vehicle.highest_m for vehicle in vehicles), 1), "m"),
+        plain("missions that ended before their last place", sum(bool(one.ended) for one in found), ""),
+        plain("of these aborted on the way to it", sum(one.ended == "aborted" for one in found), ""),
+        plain("missions with no-fly areas", sum(one.zones > 0 for one in flown), ""),
+        plain("landed at home by our own way", home, "", note=f"of {len(flown)}"),
+        plain("returns by the autopilot's own way", sum(bool(one.own_return) for one in flown), ""),
+        plain("flown", round(sum(one.flown_m for one in flown) / 1e3), "km"),
+        plain("points held against the ground", sum(one.points for one in flown), ""),
+        plain("least height above ground", round(min(one.lowest_m for one in flown), 1), "m"),
+        plain("most height above ground", round(max(one.highest_m for one in flown), 1), "m"),
     ]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--missions", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0, help="its number")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--results", type=Path, help="what is flown already, and is added to")
     add_out(parser)
     given = parser.parse_args()
     begun = begin(__file__)
-    found = flights(given.missions, given.seed)
+    found = flights(range(given.first, given.first + given.missions), given.seed, given.results)
     print(Counter(one.ended or "all places" for one in found))
+    print(Counter(one.own_return or "our own way home" for one in found))
     made = figures(found)
     for figure in made:
         print(f"{figure.name}: {figure.value} {figure.unit} {figure.note}")
