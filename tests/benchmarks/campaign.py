@@ -117,6 +117,14 @@ def chaos(scale: float, out: Path, short: bool) -> list[Step]:
             ("tests.benchmarks.kill_loop", "--database", "postgresql", "--kills", kills, *to),
             killed,
         ),
+        *(
+            Step(
+                f"random stories, {name}",
+                ("tests.benchmarks.random_stories", "--flavour", flavour, "--stories", share(250, scale, 3), *to),
+                ("out_of_reach", "stories"),
+            )
+            for flavour, name in (("px4", "PX4"), ("ardupilot", "ArduCopter"))
+        ),
         Step(
             "database away",
             (storage, "outage", "--minutes", str(max(0.5, 10 * scale)), *to),

@@ -16,6 +16,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from backend.store.packed import unpacked
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
 from tests.benchmarks.figures.record import Column, Figure, Table
@@ -40,7 +41,7 @@ def said_in(database: Path) -> list[Said]:
     plans: dict[str, list[tuple[float, dict]]] = defaultdict(list)
     localized: dict[str, float] = {}
     for mission, at_s, kind, body in rows:
-        fact = json.loads(body)
+        fact = json.loads(unpacked(body))
         if kind == "plan_chosen" and fact["time_90_s"] is not None:
             plans[mission].append((at_s, fact))
         elif kind == "belief_updated" and fact["localized"]:

@@ -20,12 +20,15 @@ from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 FIRST_PLAN = """
 import time
 began = time.perf_counter()
+from dataclasses import replace
 from planner.belief.grid import prior_belief
+from planner.options import STUDY
 from planner.plan import plan
 from planner.study.scenarios import scenario
 imported = time.perf_counter()
 case = scenario("2")
-plan(case.problem, prior_belief(case.problem), (), case.platform, base_policy="ellipse", budget=1000, threads=2)
+options = replace(STUDY, budget=1000)
+plan(case.problem, prior_belief(case.problem), (), case.platform, options, threads=2)
 print(imported - began, time.perf_counter() - imported)
 """
 

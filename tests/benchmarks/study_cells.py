@@ -80,9 +80,9 @@ STUDIES = {
     "times": Study(
         "Time to localization",
         (
-            *_in_all(HALVING, 1000),
-            (Planned("3", planner="rollout"), 1000),
-            (Planned("field", planner="rollout", budget=1000), 1000),
+            *_in_all(Planned(planner="crossfix"), 1000),
+            (Planned("3", planner="crossfix"), 1000),
+            (Planned("field", planner="crossfix"), 1000),
         ),
         ("s2_fast", "s2_medium", "s2_slow", "s3_medium", "field_medium"),
     ),

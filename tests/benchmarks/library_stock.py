@@ -1,0 +1,203 @@
+"""A season's stock for the library: one flown mission, lengthened, and copied inside the database as often as wanted.
+
+The facts of every copy are those of a recorded flight, byte for byte; only what the list is searched by differs. Copies
+are made by the database itself, so that half a million bearings take minutes and not a day.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+from collections.abc import Sequence
+from datetime import UTC, datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+import numpy as np
+from sqlalchemy import Insert, Table, bindparam, func, insert, select, text
+from sqlalchemy.ext.asyncio import AsyncEngine
+
+from backend.events import BearingMeasured, Event, PlanChosen, SweepRejected, SweepStarted
+from backend.ports import TrackPoint
+from backend.search.planning import DEGREES_DIGITS, SECONDS_DIGITS
+from backend.search.sweep_facts import DB_DIGITS
+from backend.store.digest import MissionDigest, to_columns
+from backend.store.entries import EventRow, to_records
+from backend.store.journal import SqlJournal
+from backend.store.tables import events, missions
+from backend.store.upgrade import FIRST_FORM
+from hardware.readings import Place, Sweep
+from tests.benchmarks.figures.circumstances import ROOT
+
+RECORDED = ROOT / "tests" / "golden" / "journals" / "demo-px4-open.json.gz"
+TEMPLATE = "template"
+FIRST_DAY = datetime(2024, 3, 1, 8, tzinfo=UTC)
+BETWEEN = timedelta(hours=4)
+TRACK_HZ = 2.0
+AT_ONCE = 25
+SWEEP_SAMPLES = 800
+"""Of a turn of 16 s with the simulated receiver's 50 powers a second."""
+
+EDGES = ("west", "east", "south", "north")
+PLACES = ("river", "ridge", "moor", "quarry", "orchard", "harbour", "marsh", "gravel pit", "beech wood", "sand dunes")
+SPECIES = ("owl", "marten", "stork", "bat", "curlew", "lynx", "hamster", "kite")
+SEEKERS = ("craft-1", "craft-2", "heron", "kestrel")
+RESULTS = ("localized", "localized", "localized", "not_localized", "aborted")
+
+
+def recorded_flight() -> list[Event]:
+    """Its facts."""
+    told = json.loads(gzip.decompress(RECORDED.read_bytes()))
+    rows = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in told["rows"]]
+    return [_rounded(record.event) for record in to_records(told["mission_id"], rows)]
+
+
+def lengthened(flown: Sequence[Event], bearings: int) -> list[Event]:
+    """The flight with this number of bearings: from the second decision to its belief over and over, then its end."""
+    decisions = [at for at, event in enumerate(flown) if event.kind == "plan_chosen"]
+    beliefs = [at for at, event in enumerate(flown) if event.kind == "belief_updated"]
+    until = next(at for at in beliefs if at > decisions[1]) + 1
+    head, round_, tail = flown[: decisions[1]], flown[decisions[1] : until], flown[beliefs[-1] + 1 :]
+    made: list[Event] = list(head)
+    for number in range(2, bearings + 1):
+        made += [_numbered(event, number) for event in round_]
+    return [*made, *tail]
+
+
+def _rounded(event: Event) -> Event:
+    """As it would be recorded today: what is only shown has the digits that are shown."""
+    if isinstance(event, BearingMeasured):
+        bins = {name: _bins(np.array(getattr(event, name), float)) for name in ("binned_db", "fitted_db")}
+        return event.model_copy(update=bins)
+    if isinstance(event, PlanChosen):
+        told = [
+            c.model_copy(
+                update={
+                    "lat": round(c.lat, DEGREES_DIGITS),
+                    "lon": round(c.lon, DEGREES_DIGITS),
+                    "value_s": round(c.value_s, SECONDS_DIGITS),
+                    "std_error_s": None if c.std_error_s is None else round(c.std_error_s, SECONDS_DIGITS),
+                }
+            )
+            for c in event.candidates
+        ]
+        return event.model_copy(update={"candidates": told})
+    return event
+
+
+def _bins(values: np.ndarray) -> list[float | None]:
+    return [None if np.isnan(value) else round(float(value), DB_DIGITS) for value in values]
+
+
+def _numbered(event: Event, number: int) -> Event:
+    if isinstance(event, BearingMeasured):
+        changed = {"bearing_id": str(UUID(int=number)), "sweep_id": f"sweep-{number}", "place_number": number}
+        return event.model_copy(update=changed)
+    if isinstance(event, SweepStarted | SweepRejected):
+        return event.model_copy(update={"sweep_id": f"sweep-{number}", "place_number": number})
+    return event
+
+
+async def write_template(journal: SqlJournal, bearings: int, track_s: float = 0.0, raw: bool = False) -> MissionDigest:
+    """One mission by way of the journal. track_s: so long a path is kept; raw: a raw sweep of each bearing too."""
+    await journal.append(TEMPLATE, lengthened(recorded_flight(), bearings))
+    if track_s:
+        await journal.save_track(TEMPLATE, "craft-1", _path(round(track_s * TRACK_HZ)))
+    if raw:
+        for number in range(1, bearings + 1):
+            await journal.save_sweep(TEMPLATE, f"sweep-{number}", "craft-1", "emitter-1", number, 1, _turn(number))
+    digest = await journal.mission(TEMPLATE)
+    assert digest is not None
+    return digest
+
+
+def _path(points: int) -> list[TrackPoint]:
+    noise = np.random.default_rng(1).normal(0.0, 1e-6, (points, 2))
+    began_s = FIRST_DAY.timestamp()
+    return [
+        TrackPoint(began_s + n / TRACK_HZ, 50.62 + lat, 7.2 + lon, 140.0 + lat, 40.0, 211.5 + lon, 71.0, "OFFBOARD")
+        for n, (lat, lon) in enumerate(noise)
+    ]
+
+
+def _turn(seed: int) -> Sweep:
+    generator = np.random.default_rng(seed)
+    at_s = FIRST_DAY.timestamp() + np.arange(SWEEP_SAMPLES) / 50.0
+    heading = np.linspace(0.0, 360.0, SWEEP_SAMPLES) + generator.normal(0.0, 0.3, SWEEP_SAMPLES)
+    power = -95.0 + 12.0 * np.cos(np.radians(heading)) + generator.normal(0.0, 1.5, SWEEP_SAMPLES)
+    return Sweep(at_s, heading, power, 148.5e6, Place(50.62, 7.2), 140.0)
+
+
+def _row(template: dict[str, Any], number: int) -> dict[str, Any]:
+    """What the list shows and is searched by, of one copy."""
+    shift_us = round(number * BETWEEN / timedelta(microseconds=1))
+    east, north = 0.01 * (number % 100), 0.01 * (number // 100)
+    species, place = SPECIES[number % len(SPECIES)], PLACES[number % len(PLACES)]
+    moved = {name: template[name] + by for name, by in zip(EDGES, (east, east, north, north), strict=True)}
+    first_us = round(FIRST_DAY.timestamp() * 1e6) - template["drafted_at_us"]
+    times = {
+        name: None if template[name] is None else template[name] + first_us + shift_us
+        for name in ("drafted_at_us", "started_at_us", "ended_at_us")
+    }
+    return {
+        **template,
+        **moved,
+        **times,
+        "mission_id": f"m{number:06d}",
+        "name": f"{species.title()} {number} by the {place}",
+        "tags": f"{species}\nnight" if number % 3 else species,
+        "notes": f"Seen again near the {place} at dusk, wind from the west." if number % 4 == 0 else "",
+        "sought": f"emitter-1 {species} {number % 40} {148 + 0.01 * (number % 200):g}",
+        "vehicles": SEEKERS[number % len(SEEKERS)],
+        "outcome": RESULTS[number % len(RESULTS)],
+        "truths": int(number % 10 == 0),
+        "deleted_at_us": _lately_us() if number % 50 == 49 else None,
+    }
+
+
+def _lately_us() -> int:
+    """Yesterday: the server would bury what was deleted long ago, beside the questions that are timed."""
+    return round((datetime.now(UTC) - timedelta(days=1)).timestamp() * 1e6)
+
+
+async def multiply(
+    engine: AsyncEngine, flown: MissionDigest, copies: range, tables: Sequence[Table] = (events,)
+) -> None:
+    """A copy of the template's rows of these tables for each number."""
+    template = to_columns(flown)
+    writer = engine.execution_options(write=True)
+    for first in range(0, len(copies), AT_ONCE):
+        numbers = copies[first : first + AT_ONCE]
+        async with writer.begin() as connection:
+            await connection.execute(missions.insert(), [_row(template, number) for number in numbers])
+            for table in tables:
+                query = _copying(table)
+                for number in numbers:
+                    await connection.execute(query, {"copy": f"m{number:06d}"})
+    if engine.dialect.name == "postgresql":
+        async with writer.begin() as connection:
+            await connection.execute(text("ANALYZE"))
+
+
+def _copying(table: Table) -> Insert:
+    names = [column.name for column in table.c if column.name != "mission_id"]
+    copied = select(bindparam("copy", type_=table.c.mission_id.type), *(table.c[name] for name in names))
+    return insert(table).from_select(["mission_id", *names], copied.where(table.c.mission_id == TEMPLATE))
+
+
+async def size_bytes(engine: AsyncEngine) -> int:
+    """Of the whole database, its indexes included."""
+    if engine.dialect.name == "postgresql":
+        query = "SELECT pg_database_size(current_database())"
+    else:
+        query = "SELECT page_count * page_size FROM pragma_page_count(), pragma_page_size()"
+    async with engine.connect() as connection:
+        return int((await connection.execute(text(query))).scalar_one())
+
+
+async def counted(engine: AsyncEngine) -> tuple[int, int]:
+    """Missions and bearings that lie there."""
+    async with engine.connect() as connection:
+        of = (await connection.execute(select(func.count()).select_from(missions))).scalar_one()
+        kept = select(func.count()).select_from(events).where(events.c.kind == "bearing_measured")
+        return int(of), int((await connection.execute(kept)).scalar_one())
