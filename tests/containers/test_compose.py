@@ -72,3 +72,27 @@ def test_prometheus_finds_its_token_where_it_is_written():
     written = next(v for v in SERVICES["secrets"]["volumes"] if v.split(":")[0] == read.split(":")[0])
     assert f"> {written.split(':')[1]}/{name}" in SERVICES["secrets"]["command"][-1]
     assert not any(volume.startswith("secrets:") for volume in SERVICES["prometheus"]["volumes"])
+
+
+def test_an_archive_that_was_copied_in_can_be_read_by_the_server():
+    """`docker compose cp` makes root its owner, archives are for their owner only, and the server is somebody else."""
+    service = SERVICES["secrets"]
+    assert "chown --recursive crossfix:crossfix /backups\n" in service["command"][-1]
+    assert "CHOWN" in service["cap_add"]
+    assert SERVICES["server"]["depends_on"]["secrets"]["condition"] == "service_completed_successfully"
+
+
+def test_the_page_for_teams_names_what_the_file_has():
+    page = (DEPLOY.parent / "docs" / "install-for-a-team.md").read_text()
+    named = {name for row in re.findall(r"^\| (`[A-Z].*?) \|", page, re.MULTILINE) for name in re.findall(r"\w+", row)}
+    assert named - {"COMPOSE_PROFILES"} <= set(re.findall(r"\$\{(\w+):-", yaml.safe_dump(COMPOSE)))
+    assert {"ADDRESS", "LISTEN"} <= named
+
+
+def test_a_restore_empties_all_that_a_backup_holds():
+    """Not the archives, nor the password with which the database is made again."""
+    page = (DEPLOY.parent / "docs" / "install-for-a-team.md").read_text()
+    emptied = re.search(r"docker volume rm (.+)", page)
+    assert emptied is not None
+    kept = {volume.split(":")[0] for name in ("server", "database") for volume in SERVICES[name]["volumes"]}
+    assert set(emptied[1].split()) == {f"{COMPOSE['name']}_{volume}" for volume in kept - {"backups", "secrets"}}
