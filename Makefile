@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real
+.PHONY: run test coverage check-unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -59,17 +59,15 @@ browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
 test: ## everything CI runs
-	$(call step,1/6,Python packages into .venv,two minutes the first time)
+	$(call step,1/5,Python packages into .venv,two minutes the first time)
 	@$(MAKE) --no-print-directory setup-dev
-	$(call step,2/6,packages of the page,half a minute the first time)
+	$(call step,2/5,packages of the page,half a minute the first time)
 	@$(MAKE) --no-print-directory frontend/node_modules/.installed
-	$(call step,3/6,style; types; imports; schemas; figures; the tests of the page,two minutes)
-	@$(MAKE) --no-print-directory check
-	$(call step,4/6,the page and the planner's machine code,half a minute the first time)
+	$(call step,3/5,the page and the planner's machine code,half a minute the first time)
 	@$(MAKE) --no-print-directory build kernel
-	$(call step,5/6,unit tests here; whole missions beside them,ten minutes)
-	@$(MAKE) --no-print-directory unit-and-system
-	$(call step,6/6,what a user does on the page; in Chromium,five minutes)
+	$(call step,4/5,checks and unit tests here; whole missions beside them,twenty minutes)
+	@$(MAKE) --no-print-directory check-unit-and-system
+	$(call step,5/5,what a user does on the page; in Chromium,ten minutes)
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
@@ -95,11 +93,15 @@ kernel: setup-dev ## compiled once here, not by each test worker
 	$(BIN)/python -c "from planner.plan import warm_up; warm_up()"
 
 # By file, since what a file computes once is computed once; xdist knows no groups under this pytest.
-UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not system and not browser and not long"
+# tests/conftest.py holds the marks to the folders, so that no run has to import the others' tests.
+UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not system and not browser and not long" \
+  --ignore tests/browser --ignore tests/system
 
-unit-and-system: # missions wait for the wall's clock, and the unit tests fill their pauses
+# Missions wait for the wall's clock, and all that only computes fills their pauses. A failed check ends them.
+check-unit-and-system:
 	@mkdir -p $(STAMPS); $(MAKE) --no-print-directory system >$(STAMPS)/system.log 2>&1 & missions=$$!; \
 	trap "kill $$missions; exit 130" INT TERM; \
+	nice -n 10 $(MAKE) --no-print-directory check || { kill $$missions; exit 1; }; \
 	$(MAKE) --no-print-directory unit; unit=$$?; \
 	echo "Waiting for the whole missions; what they say so far is in $(STAMPS)/system.log"; \
 	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
@@ -112,10 +114,10 @@ coverage: kernel ## how much of the code the unit tests run: they take longer so
 	@echo "The unit tests run $$($(BIN)/coverage report --format=total) % of the code; by file: $(BIN)/coverage report"
 
 system: setup-dev build ## whole missions over real sockets
-	$(BIN)/pytest -m "system and not browser" --durations 8
+	$(BIN)/pytest tests/system tests/fuzz -m system --durations 8
 
 stories: setup-dev build browser ## what a user does on the page, in Chromium; in a process of its own, since it keeps an event loop
-	$(BIN)/pytest -n 2 --dist loadfile -m browser --durations 8
+	$(BIN)/pytest tests/browser -n 2 --dist loadfile --durations 8
 
 long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
@@ -146,6 +148,10 @@ takeovers: setup-dev ## 200 pilots' switches aimed at our commands on each simul
 
 battery-home: setup-dev ## a thousand simulated returns in wind: what was promised of the battery, and what they took
 	$(BIN)/python -m tests.benchmarks.battery_home --flights 1000 --out $(MEASUREMENTS)
+
+SCREENS ?= test-results/screens
+screens: setup-dev build browser ## every screen in both themes and three sizes into SCREENS, and what is clipped there: ten minutes
+	$(BIN)/python -m tests.browser.sweep $(SCREENS)
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
@@ -182,7 +188,7 @@ CAMPAIGN = $(BIN)/python -m tests.benchmarks.campaign $@ $(if $(SHORT),--short,-
 soak: setup-dev build ## a hundred viewers for ten minutes, aborts under load, files of 50 MB: figures 6, 7 and 20; SHORT=1: five minutes
 	$(CAMPAIGN)
 
-chaos: setup-dev build kernel ## kills, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13 and 15; hours, or SHORT=1
+chaos: setup-dev build kernel ## kills, random stories, outages, bad links, takeovers, odd requests: figures 8, 10, 12, 13, 15 and 19; hours, or SHORT=1
 	$(CAMPAIGN)
 
 example: setup-dev ## the flight that the page plays as its example, recorded again: after each change of the wire

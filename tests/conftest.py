@@ -30,6 +30,21 @@ from backend.store.spool import Spool
 sys.path.insert(0, str(Path(__file__).parent / "doubles"))  # not tests/ itself: it would hide the packages
 sys.path.append(str(Path(__file__).parents[1]))  # for `from tests.reasons import ...`
 
+FOLDERS = {"browser": ("browser",), "system": ("system", "fuzz/test_http.py", "fuzz/test_live.py")}
+"""Where `make stories` and `make system` look for their tests, and where `make unit` looks for none."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """A test that lies where no target of the Makefile looks for its mark would never run."""
+    here = Path(__file__).parent
+    for item in items:
+        if item.get_closest_marker("long") is not None:  # `make long` looks everywhere
+            continue
+        for mark, folders in FOLDERS.items():
+            lies_there = any(item.path.is_relative_to(here / folder) for folder in folders)
+            if lies_there != (item.get_closest_marker(mark) is not None):
+                raise pytest.UsageError(f"{item.nodeid}: {mark!r} must mark the tests of {folders}, and no others")
+
 
 class PostgresCluster:
     """A cluster of its own on a loopback port; `pause` and `resume` make it hang, `stop` and `start` take it away."""
