@@ -7,7 +7,7 @@ SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 MEASUREMENTS := docs/measurements
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -path frontend/dist -prune -o -type f -print 2>/dev/null)
 
-.PHONY: run test coverage check-unit-and-system check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
+.PHONY: run test coverage check check-python check-page kernel bench figures long fuzz load page-load sensor-faults truth takeovers battery-home codegen example architecture containers wheel requirements audit soak chaos compare-direction-finders setup setup-dev build browser unit system stories clean help fly-real screens
 
 # Says where `make` is: $(call step,NUMBER/OF ALL,WHAT,HOW LONG).
 step = @printf '\n[%s] %s (%s)\n' "$(1)" "$(2)" "$(3)"
@@ -59,15 +59,19 @@ browser: ## Debian's Chromium, if there is none
 	@command -v chromium >/dev/null || ($(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq -y --no-install-recommends chromium)
 
 test: ## everything CI runs
-	$(call step,1/5,Python packages into .venv,two minutes the first time)
+	$(call step,1/7,Python packages into .venv,two minutes the first time)
 	@$(MAKE) --no-print-directory setup-dev
-	$(call step,2/5,packages of the page,half a minute the first time)
+	$(call step,2/7,packages of the page,half a minute the first time)
 	@$(MAKE) --no-print-directory frontend/node_modules/.installed
-	$(call step,3/5,the page and the planner's machine code,half a minute the first time)
+	$(call step,3/7,style; types; imports; schemas; figures; the tests of the page,three minutes)
+	@$(MAKE) --no-print-directory check
+	$(call step,4/7,the page and the planner's machine code,half a minute the first time)
 	@$(MAKE) --no-print-directory build kernel
-	$(call step,4/5,checks and unit tests here; whole missions beside them,twenty minutes)
-	@$(MAKE) --no-print-directory check-unit-and-system
-	$(call step,5/5,what a user does on the page; in Chromium,ten minutes)
+	$(call step,5/7,unit tests,fifteen minutes)
+	@$(MAKE) --no-print-directory unit
+	$(call step,6/7,whole missions; nothing beside them since they wait for the wall's clock,ten minutes)
+	@$(MAKE) --no-print-directory system
+	$(call step,7/7,what a user does on the page; in Chromium,twelve minutes)
 	@$(MAKE) --no-print-directory stories
 
 check: setup-dev frontend/node_modules/.installed ## style, types, import contracts, wire schema, figures, picture, compose file, page unit tests
@@ -97,17 +101,8 @@ kernel: setup-dev ## compiled once here, not by each test worker
 UNIT_TESTS := $(BIN)/pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not system and not browser and not long" \
   --ignore tests/browser --ignore tests/system
 
-# Missions wait for the wall's clock, and all that only computes fills their pauses. A failed check ends them.
-check-unit-and-system:
-	@mkdir -p $(STAMPS); $(MAKE) --no-print-directory system >$(STAMPS)/system.log 2>&1 & missions=$$!; \
-	trap "kill $$missions; exit 130" INT TERM; \
-	nice -n 10 $(MAKE) --no-print-directory check || { kill $$missions; exit 1; }; \
-	$(MAKE) --no-print-directory unit; unit=$$?; \
-	echo "Waiting for the whole missions; what they say so far is in $(STAMPS)/system.log"; \
-	wait $$missions; system=$$?; cat $(STAMPS)/system.log; exit $$((unit + system))
-
 unit: kernel ## tests without a vehicle or a browser
-	nice -n 10 $(UNIT_TESTS) --durations 25
+	$(UNIT_TESTS) --durations 25
 
 coverage: kernel ## how much of the code the unit tests run: they take longer so
 	$(UNIT_TESTS) --cov --cov-report=
