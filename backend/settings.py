@@ -26,6 +26,8 @@ class Settings(BaseSettings):
     port: int = Field(default=8600, ge=0, le=65535)
     allowed_hosts: tuple[str, ...] = ()
     """Host names besides loopback under which a browser may reach the server."""
+    public_url: str | None = None
+    """Where people open the page when that is not where the server listens, as behind a proxy: for links it prints."""
     users: bool = False
     """People sign in, though the server listens to this machine only: behind a proxy on the same machine."""
     trusted_proxies: tuple[str, ...] = ()

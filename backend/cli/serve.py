@@ -111,18 +111,19 @@ async def _serve(settings: Settings, json_: bool) -> None:
             print_json(shown if code is None else {**shown, "first_admin_code": code})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
-            typer.echo(_who_may_enter(access.mode, code), err=False)
+            typer.echo(who_may_enter(access.mode, (settings.public_url or running.url).rstrip("/"), code), err=False)
         if settings.plain_http and settings.reachable_from_outside:
             remark("CROSSFIX_PLAIN_HTTP: passwords cross the network as they are; it has to encrypt by itself.")
         await running.gone
 
 
-def _who_may_enter(mode: Mode, code: str | None) -> str:
+def who_may_enter(mode: Mode, page: str, code: str | None) -> str:
+    """page: its address. code: of the first admin, where there is none yet."""
     match mode:
         case "alone":
             return "Only this machine reaches it: one person, no sign-in."
         case "waiting":
-            return f"Nobody can use it yet. Open the page and make the first admin; the code for it works once: {code}"
+            return f"Nobody can use it yet. Make the first admin (the code works once): {page}/#/first-admin/{code}"
         case "people":
             return "Whoever uses it signs in."
 

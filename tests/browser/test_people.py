@@ -91,15 +91,22 @@ def control(screen: Screen, kind: str) -> None:
 @pytest.mark.browser
 def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: OpenScreen) -> None:
     """One story: its steps need one another."""
-    admin = opened(open_screen, shared)
+    admin = opened(open_screen, shared, f"#/first-admin/{shared.code}")
     expect(admin.part("sign-in-page")).to_be_visible()
     expect(admin.part("indicators")).to_have_count(0)
+    expect(admin.part("entry-code")).to_have_value(shared.code)
     admin.part("entry-code").fill("AAAA-AAAA-AAAA-AAAA")
     enter(admin, "Ada")
     expect(admin.page.get_by_role("alert")).to_contain_text("not known")
     admin.part("entry-code").fill(shared.code.lower())
     admin.part("entry-submit").click()
     expect(admin.part("menu")).to_be_visible()
+    admin.page.get_by_label("For how many phones").select_option("2")
+    admin.part("invite").click()
+    expect(admin.part("made-invitation")).to_have_count(2)
+    links = {each.input_value() for each in admin.part("invitation-link").all()}
+    assert len(links) == 2, "each phone has a link of its own"
+    admin.page.get_by_role("button", name="Done").click()
 
     late = opened(open_screen, shared)
     expect(late.part("entry-code")).to_have_count(0)

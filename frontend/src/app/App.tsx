@@ -26,6 +26,7 @@ const loaders: Record<Route["page"] | "sheets", Loader> = {
   people: () => import("../pages/PeoplePage").then((m) => m.PeoplePage),
   join: () => import("../pages/JoinPage").then((m) => m.JoinPage),
   signIn: () => import("../pages/SignInPage").then((m) => m.SignInPage),
+  firstAdmin: () => import("../pages/SignInPage").then((m) => m.SignInPage),
   sheets: () => import("../pages/Sheets").then((m) => m.Sheets),
 };
 
@@ -75,7 +76,7 @@ export function App() {
       </main>
     );
   }
-  const shown = current.page === "signIn" ? "missions" : current.page;
+  const shown = current.page === "signIn" || current.page === "firstAdmin" ? "missions" : current.page;
   return (
     <>
       <SafetyBar />

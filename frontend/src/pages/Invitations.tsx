@@ -1,4 +1,4 @@
-// Letting somebody in: a link and its QR code, each for one person, shown once.
+// Letting people in: a link and its QR code, each for one person, shown once.
 import { useState } from "preact/hooks";
 import { t } from "../i18n";
 import * as access from "../sources/accessApi";
@@ -6,8 +6,9 @@ import type { Try } from "./PeoplePage";
 import { RolePick } from "./RolePick";
 
 const HOURS = [1, 24, 168] as const;
+const COUNTS = [1, 2, 3, 4, 6, 8] as const;
 
-function Made({ made, onClose }: { made: access.MadeInvitation; onClose: () => void }) {
+function Made({ made }: { made: access.MadeInvitation }) {
   return (
     <div class="card made-invitation" data-testid="made-invitation">
       <img src={made.qr} alt={t("people.qr")} width={240} height={240} />
@@ -20,9 +21,6 @@ function Made({ made, onClose }: { made: access.MadeInvitation; onClose: () => v
           data-testid="invitation-link"
           onFocus={(e) => e.currentTarget.select()}
         />
-        <button type="button" onClick={onClose}>
-          {t("people.qr.done")}
-        </button>
       </div>
     </div>
   );
@@ -32,7 +30,15 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
   const [role, setRole] = useState<access.Role>("operator");
   const [admin, setAdmin] = useState(false);
   const [hours, setHours] = useState<number>(24);
-  const [made, setMade] = useState<access.MadeInvitation | null>(null);
+  const [count, setCount] = useState<number>(1);
+  const [made, setMade] = useState<access.MadeInvitation[]>([]);
+  const makeAll = async () => {
+    setMade([]);
+    for (let k = 0; k < count; k++) {
+      const one = await access.invite(role, admin, hours);
+      setMade((before) => [...before, one]);
+    }
+  };
   return (
     <section>
       <div class="page-head">
@@ -41,6 +47,13 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
       <div class="card person">
         <div class="person-acts">
           <RolePick value={role} label={t("people.role")} onPick={setRole} />
+          <select aria-label={t("people.count")} value={String(count)} onChange={(e) => setCount(Number(e.currentTarget.value))}>
+            {COUNTS.map((each) => (
+              <option value={String(each)} key={each}>
+                {t("people.forPhones", { count: each })}
+              </option>
+            ))}
+          </select>
           <select aria-label={t("people.lasts")} value={String(hours)} onChange={(e) => setHours(Number(e.currentTarget.value))}>
             {HOURS.map((each) => (
               <option value={String(each)} key={each}>
@@ -52,17 +65,23 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
             <input type="checkbox" checked={admin} onChange={(e) => setAdmin(e.currentTarget.checked)} />
             {t("people.admin")}
           </label>
-          <button
-            type="button"
-            class="primary"
-            data-testid="invite"
-            onClick={() => attempt(access.invite(role, admin, hours).then(setMade))}
-          >
+          <button type="button" class="primary" data-testid="invite" onClick={() => attempt(makeAll())}>
             {t("people.invite.submit")}
           </button>
         </div>
       </div>
-      {made && <Made made={made} onClose={() => setMade(null)} />}
+      {made.length > 0 && (
+        <>
+          <div class="made-invitations">
+            {made.map((one) => (
+              <Made made={one} key={one.invitation.invitation_id} />
+            ))}
+          </div>
+          <button type="button" class="invitations-done" onClick={() => setMade([])}>
+            {t("people.qr.done")}
+          </button>
+        </>
+      )}
       <ul class="cards">
         {list.map((one) => (
           <li class="card person" key={one.invitation_id} data-testid="invitation">
@@ -75,7 +94,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
                 })}
               </span>
             </span>
-            <button type="button" onClick={() => attempt(access.takeBackInvitation(one.invitation_id).then(() => setMade(null)))}>
+            <button type="button" onClick={() => attempt(access.takeBackInvitation(one.invitation_id).then(() => setMade([])))}>
               {t("people.takeBack")}
             </button>
           </li>

@@ -35,14 +35,19 @@ function Code({ value, onInput }: { value: string; onInput: (value: string) => v
   );
 }
 
-function FirstAdmin({ encrypted }: { encrypted: boolean }) {
-  const [code, setCode] = useState("");
+/** given: by the link that the server prints. Whoever made the account lets the others in next. */
+function FirstAdmin({ encrypted, given }: { encrypted: boolean; given: string }) {
+  const [code, setCode] = useState(given);
   return (
     <EntryForm
       title={t("entry.firstAdmin")}
       submit={t("entry.firstAdmin.submit")}
       fresh
-      onSubmit={(name, password) => makeFirstAdmin(code, name, password).then((now) => (session.value = now))}
+      onSubmit={async (name, password) => {
+        const entered = await makeFirstAdmin(code, name, password);
+        go("#/people");
+        session.value = entered;
+      }}
     >
       {!encrypted && <NotEncrypted />}
       <p>{t("entry.firstAdmin.explain")}</p>
@@ -109,7 +114,11 @@ export function SignInPage({ route }: { route: Route }) {
   if (now === null || now === "unreachable") return null;
   return (
     <div class="page entry-page" data-testid="sign-in-page">
-      {now.mode === "waiting" ? <FirstAdmin encrypted={now.encrypted} /> : <SignIn now={now} fault={fault} />}
+      {now.mode === "waiting" ? (
+        <FirstAdmin encrypted={now.encrypted} given={route.page === "firstAdmin" ? route.code : ""} />
+      ) : (
+        <SignIn now={now} fault={fault} />
+      )}
     </div>
   );
 }

@@ -15,7 +15,8 @@ export type Route =
   | { page: "compare"; missionIds: string[] }
   | { page: "people" }
   | { page: "join"; code: string }
-  | { page: "signIn"; fault: string };
+  | { page: "signIn"; fault: string }
+  | { page: "firstAdmin"; code: string };
 
 export function parseRoute(hash: string): Route {
   const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
@@ -24,6 +25,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people" || parts[0] === "calibration") return { page: parts[0] };
   if ((parts[0] === "report" || parts[0] === "compare") && id) return { page: parts[0], missionIds: parts.slice(1) };
   if (parts[0] === "sign-in" && id) return { page: "signIn", fault: id };
+  if (parts[0] === "first-admin" && id) return { page: "firstAdmin", code: id };
   if (parts[0] === "join" && id) return { page: "join", code: id };
   if (parts[0] === "mission" && id) {
     const below = parts[2];
