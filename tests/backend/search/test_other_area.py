@@ -119,6 +119,7 @@ async def held(stage: Stage) -> str:
     mission_id = await flying(stage)
     await stage.until(mission_id, "bearing_measured")
     assert (await order(stage, mission_id, commands.Hold())).accepted
+    await stage.until(mission_id, "order_done")
     await stage.until_true(lambda: stage.journal.state(mission_id).search.beliefs_current)
     return mission_id
 

@@ -243,13 +243,13 @@ async def test_a_cancelled_flight_sends_nothing_more_and_the_vehicle_obeys_the_n
     assert rig.vehicle.telemetry().authority.who == "ours"
 
 
-async def test_telemetry_keeps_its_rates_in_simulated_time(rig: Rig) -> None:
-    await rig.clock.sleep(12.0)
-    headings = rig.vehicle.headings(rig.clock.now() - 10.0)
+async def test_telemetry_keeps_its_rates_in_simulated_time(slow: Rig) -> None:
+    await slow.clock.sleep(12.0)
+    headings = slow.vehicle.headings(slow.clock.now() - 10.0)
     gaps = np.diff([sample.at_s for sample in headings])
 
     assert len(headings) == pytest.approx(195, abs=15)
-    assert float(np.quantile(gaps, 0.95)) < 0.2, "at 16 times real time a busy machine makes one gap, not many"
+    assert float(np.quantile(gaps, 0.95)) < 0.2
 
 
 async def test_a_switch_that_an_order_undid_before_it_was_told_is_seen_by_its_channel() -> None:
