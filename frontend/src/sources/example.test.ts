@@ -89,6 +89,9 @@ describe("the recorded example", () => {
     await vi.advanceTimersByTimeAsync(LONG_MS);
     const { status, telemetry, mission } = fold(heard);
     expect([status?.value.mission_id, telemetry.get(CRAFT)?.value.battery_percent, viewOf(mission).phase]).toEqual(["real", 2, "done"]);
+    const ownTimes = said.flatMap(([, m]) => (typeof m === "object" && m.type === "telemetry" ? [m.at_utc] : []));
+    tellFromServer(someTelemetry({ at_utc: "2031-01-01T00:00:00Z" }));
+    expect(fold(heard).telemetry.get(CRAFT)?.value.at_utc, "by its own clock").toBe(ownTimes.at(-1));
     await source.send("real", { kind: "abort" }, "c");
     expect(sent.mock.calls).toEqual([["real", { kind: "abort" }, "c", undefined]]);
   });

@@ -17,7 +17,7 @@ const TICK_MS = 50;
 /** When the recording ends the vehicle stands at home and goes on saying so. */
 const AGAIN_MS = 1000;
 
-const isOfVehicle = ({ type }: SourceMessage) => type === "status" || type === "telemetry";
+const isOfVehicle = (message: SourceMessage) => message.type === "status" || message.type === "telemetry";
 
 async function recordedFlight(): Promise<Said> {
   const response = await fetch("example.json");
@@ -35,6 +35,8 @@ export class ExampleSource implements Source {
   private timer: ReturnType<typeof setInterval> | undefined;
   private isStopped = false;
   private somethingFlies = false;
+  /** The recording's own clock, by which the mission's time is counted whoever else flies. */
+  private atUtc: string | undefined;
 
   constructor(
     private readonly flight: () => Promise<Said> = recordedFlight,
@@ -49,7 +51,7 @@ export class ExampleSource implements Source {
     );
     this.server.start((message) => {
       if (message.type === "status") this.somethingFlies = message.crafts.some((craft) => craft.mission_id !== null);
-      if (this.somethingFlies && isOfVehicle(message)) listener(message);
+      if (this.somethingFlies && isOfVehicle(message)) listener({ ...message, at_utc: this.atUtc ?? message.at_utc });
     });
   }
 
@@ -84,6 +86,7 @@ export class ExampleSource implements Source {
       this.listener({ type: "belief", frame });
       return;
     }
+    if (isOfVehicle(message)) this.atUtc = message.at_utc;
     if (message.type === "telemetry") this.keep(message);
     if (this.somethingFlies && isOfVehicle(message)) return;
     this.listener(message);
