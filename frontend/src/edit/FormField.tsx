@@ -3,7 +3,8 @@
 import { t } from "../i18n";
 import type { RequestFailed } from "../sources/problem";
 import { settings } from "../state/settings";
-import { formatPlace, parsePlace } from "../units/coordinates";
+import { formatPlace } from "../units/coordinates";
+import { parsePlace } from "../units/parsePlace";
 import type { Place } from "../wire";
 import { bandMessage } from "./band";
 import { change, draft, type } from "./draft";

@@ -5,7 +5,7 @@ import { t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
 import { source } from "../state/connection";
-import { parsePlace } from "../units/coordinates";
+import { parsePlace } from "../units/parsePlace";
 import type { Place, Problem } from "../wire";
 import { runPreflight } from "./PreflightPanel";
 import { ProblemBox } from "./ProblemNote";

@@ -7,7 +7,7 @@ import { localProblem } from "../sources/problem";
 import { source } from "../state/connection";
 import { inFlight } from "../state/mission";
 import { mission } from "../state/shown";
-import { parsePlace } from "../units/coordinates";
+import { parsePlace } from "../units/parsePlace";
 import { formatBearing, formatNumber } from "../units/quantities";
 import type { Problem, RecordingImport } from "../wire";
 import { ProblemBox } from "./ProblemNote";

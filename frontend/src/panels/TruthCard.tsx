@@ -6,7 +6,8 @@ import { source } from "../state/connection";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { judge } from "../state/truth";
-import { formatPlace, parsePlace } from "../units/coordinates";
+import { formatPlace } from "../units/coordinates";
+import { parsePlace } from "../units/parsePlace";
 import { formatLength } from "../units/quantities";
 import { ProblemNote } from "./ProblemNote";
 

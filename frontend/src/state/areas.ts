@@ -1,5 +1,5 @@
 // Areas as lists of polygons: put together, measured, typed, imported.
-import { parsePlace } from "../units/coordinates";
+import { parsePlace } from "../units/parsePlace";
 import type { Area } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { lonLat, metresPerDegree, ringAreaM2 } from "./geometry";

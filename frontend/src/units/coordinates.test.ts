@@ -1,9 +1,16 @@
-import { describe, expect, it } from "vitest";
-import { type CoordinateFormat, formatPlace, parsePlace } from "./coordinates";
+import { beforeAll, describe, expect, it } from "vitest";
+import { type CoordinateFormat, formatPlace, readGridNotation } from "./coordinates";
+import { parsePlace } from "./parsePlace";
 
 const tower = { lat: 48.8582, lon: 2.2945 };
 
+it("gives degrees until the grid's notation is read", () => {
+  expect(formatPlace(tower, "utm")).toBe("48.85820 N 2.29450 E");
+});
+
 describe("formatPlace", () => {
+  beforeAll(readGridNotation);
+
   it.each([
     ["dd", "48.85820 N 2.29450 E"],
     ["dms", "48°51′29.5″ N 002°17′40.2″ E"],
