@@ -46,11 +46,13 @@ export async function askOutlook(missionId: string, spec: MissionSpec): Promise<
   }
 }
 
-/** What was said of an area holds for that area only. */
+/** What was said of an area holds for that area only, however often the same one is drawn or stored again. */
 export function forgetOutlookOfOthers(): () => void {
-  let before = draft.peek();
   return effect(() => {
-    if (draft.value !== before) clearOutlook();
-    before = draft.value;
+    const now = draft.value;
+    const asked = outlook.peek();
+    if (!asked) return;
+    const isSame = now !== null && JSON.stringify(searchOf(now.spec)) === JSON.stringify(asked.search);
+    if (!isSame || Object.keys(now.text).length > 0) clearOutlook();
   });
 }
