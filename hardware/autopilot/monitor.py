@@ -190,6 +190,8 @@ class Monitor:
                 reboots = self.snapshot.reboots
                 self.announce(AutopilotRestarted())
             elif not ceased or self.silence.seconds > LINK_LOST_WALL_S:
+                if self.snapshot.home is None:
+                    await self.commander.ask(request_message(HOME_POSITION_ID))
                 continue
             await self._request_streams()
 

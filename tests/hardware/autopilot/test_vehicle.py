@@ -13,7 +13,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from hardware.autopilot.connect import connect_vehicle
-from hardware.autopilot.messages import TAKE_OFF
+from hardware.autopilot.messages import HOME_POSITION_ID, TAKE_OFF, message_interval
 from hardware.autopilot.snapshot import Fields, Snapshot
 from hardware.autopilot.vehicle import MavsdkVehicle
 from hardware.clock import ScaledClock
@@ -250,6 +250,15 @@ async def test_telemetry_keeps_its_rates_in_simulated_time(slow: Rig) -> None:
 
     assert len(headings) == pytest.approx(195, abs=15)
     assert float(np.quantile(gaps, 0.95)) < 0.2
+
+
+async def test_a_home_that_was_not_heard_is_asked_for_again(rig: Rig) -> None:
+    """A real ArduCopter was not heard to say it, over a slow link, and no mission could start."""
+    await rig.clock.sleep(12.0)
+    monitor = rig.vehicle._monitor
+    assert await monitor.commander.ask(message_interval(HOME_POSITION_ID, 0.001))
+    monitor.snapshot.home = None
+    await rig.until(lambda: rig.vehicle.telemetry().home is not None)
 
 
 async def test_a_switch_that_an_order_undid_before_it_was_told_is_seen_by_its_channel() -> None:
