@@ -63,17 +63,10 @@ async def _live(websocket: WebSocket, services: Services) -> None:
             last_seq=last_seq,
             time_factor=services.settings.time_factor,
         )
-        await _greet(websocket, hello)
+        await websocket.send_text(hello.model_dump_json())
         await _serve_until_gone(websocket, hub, viewer)
     finally:
         hub.leave(viewer)
-
-
-async def _greet(websocket: WebSocket, hello: Hello) -> None:
-    try:
-        await websocket.send_text(hello.model_dump_json())
-    except RuntimeError as error:  # uvicorn's answer when the viewer left during the handshake
-        raise WebSocketDisconnect(1006) from error
 
 
 async def _serve_until_gone(websocket: WebSocket, hub: Hub, viewer: Viewer) -> None:

@@ -7,15 +7,12 @@ import base64
 import json
 import os
 import socket
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import websockets
-from fastapi import WebSocket
 from narrowing import known
 
-from backend.api.live import live
 from backend.events import HoldOrdered, MissionDrafted
 from backend.spec import MissionSpec, Polygon
 from hardware.readings import Telemetry
@@ -54,21 +51,6 @@ async def test_hello_then_history_then_the_present(served, services):
         belief = GridBelief(np.full((3, 2), 1 / 6), 0.0, 0.0, 1.0, (), (), 1, True)
         services.hub.belief("m", "emitter-1", 7, 1, belief, [(7.0, 50.0)] * 4)
         assert b'"nx":2' in (await take(websocket, "belief"))["frame"]
-
-
-async def test_a_viewer_who_leaves_during_the_handshake_is_no_error(services):
-    """As uvicorn does it: the handshake is not answered, and what follows is refused."""
-
-    async def connecting():
-        return {"type": "websocket.connect"}
-
-    async def gone(message):
-        if message["type"] != "websocket.accept":
-            raise RuntimeError("Expected ASGI message 'websocket.accept' but got 'websocket.send'.")
-
-    app = SimpleNamespace(state=SimpleNamespace(services=services))
-    await live(WebSocket({"type": "websocket", "app": app, "query_string": b"", "headers": []}, connecting, gone))
-    assert services.hub.viewers() == 0
 
 
 async def test_a_dropped_viewer_comes_back_where_it_was(served, services):
