@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from facts import SPEC
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from backend.events import FORM, HoldOrdered, MissionDrafted, MissionEdited, Recorded
@@ -52,6 +52,7 @@ def test_every_fact_is_told_as_if_it_had_been_decoded(name: str) -> None:
         assert to_texts(mission_id, rows) == [r.model_dump_json() for r in to_records(mission_id, rows)]
 
 
+@settings(deadline=None)
 @given(st.integers(0, 4_000_000_000_000_000), st.integers(1, 2**31 - 1))
 def test_times_are_told_alike(at_us: int, seq: int) -> None:
     rows = [to_row(seq, EPOCH + timedelta(microseconds=at_us), HELD)]
