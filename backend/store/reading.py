@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
@@ -15,8 +15,9 @@ from backend.ports import JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent, MachineBusy
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
+from backend.store.paths import unpacked_path
 from backend.store.patience import StarvedError, patience
-from backend.store.tables import events, missions, sweeps, tracks
+from backend.store.tables import events, missions, paths, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, OF_A_SWEEP, Imports, kinds_of_old
 
 
@@ -160,13 +161,12 @@ class StoredFacts:
         return Kept(int(rows[0][0]), int(rows[0][1]))
 
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
-        """By craft, in time order."""
+        """By craft, in time order. The rows are read first: what is packed between the two questions comes twice, and
+        counts once."""
         columns = [column for column in tracks.c if column.name != "mission_id"]
-        query = select(*columns).where(tracks.c.mission_id == mission_id).order_by(tracks.c.craft_id, tracks.c.at_us)
-        found: dict[str, list[TrackPoint]] = {}
-        for craft_id, at_us, *values in await self._fetch(query):
-            found.setdefault(craft_id, []).append(TrackPoint(at_us / 1e6, *values))
-        return found
+        rows = await self._fetch(select(*columns).where(tracks.c.mission_id == mission_id))
+        pieces = await self._fetch(select(paths.c.craft_id, paths.c.points).where(paths.c.mission_id == mission_id))
+        return await asyncio.to_thread(_in_time_order, rows, pieces)
 
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
@@ -181,6 +181,16 @@ async def _beside(count: int, work: Callable[P, T], *args: P.args, **named: P.kw
     if count < MANY_ROWS:
         return work(*args, **named)
     return await asyncio.to_thread(work, *args, **named)
+
+
+def _in_time_order(rows: Iterable[Any], pieces: Iterable[Any]) -> dict[str, list[TrackPoint]]:
+    found: dict[str, dict[int, TrackPoint]] = {}
+    for craft_id, at_us, *values in rows:
+        found.setdefault(craft_id, {})[at_us] = TrackPoint(at_us / 1e6, *values)
+    for craft_id, piece in pieces:
+        told = {round(point.at_s * 1e6): point for point in unpacked_path(piece)}
+        found[craft_id] = told | found.get(craft_id, {})
+    return {craft_id: [by_time[at_us] for at_us in sorted(by_time)] for craft_id, by_time in sorted(found.items())}
 
 
 def unavailable(error: BaseException) -> JournalUnavailable:
