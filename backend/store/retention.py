@@ -114,8 +114,7 @@ async def _pack_piece(connection: AsyncConnection, mission_id: str, craft_id: st
     if (await connection.execute(select(paths.c.at_us).where(*same))).first() is not None:
         await connection.execute(delete(tracks).where(here & (tracks.c.at_us == first_us)))
         return 0
-    points = [TrackPoint(at_us / 1e6, *values) for at_us, *values in rows]
-    small = await asyncio.to_thread(packed_path, points)
+    small = await asyncio.to_thread(lambda: packed_path([TrackPoint(at_us / 1e6, *values) for at_us, *values in rows]))
     await connection.execute(paths.insert().values(piece | {"points": small}))
     await connection.execute(delete(tracks).where(here & (tracks.c.at_us <= last_us)))
     return 1

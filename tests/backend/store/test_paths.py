@@ -24,6 +24,7 @@ from backend.store.tables import missions, paths, tracks
 
 BEGAN_S = 1_795_444_578.745450
 NOW = datetime.fromtimestamp(BEGAN_S, UTC) + timedelta(days=1)
+PATIENCE_S = 60.0
 MODES = ("HOLD", "OFFBOARD", None)
 
 
@@ -117,7 +118,7 @@ async def counted(engine) -> dict[str, tuple[int, int]]:
 
 
 async def test_paths_are_packed_when_their_mission_is_over(bench) -> None:
-    bench.now_s = BEGAN_S
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
     journal = await bench.open()
     await journal.append("over", [*STARTED, *OVER])
     await journal.append("flying", STARTED)
@@ -127,7 +128,7 @@ async def test_paths_are_packed_when_their_mission_is_over(bench) -> None:
     await journal.save_track("over", "craft-2", other)
     before = await journal.tracks("over")
     assert before == {"craft-1": long, "craft-2": other}
-    engine = engine_for_once(bench.url, 5.0)
+    engine = engine_for_once(bench.url, PATIENCE_S)
     assert await pack_paths(engine, NOW) == 3
     assert await counted(engine) == {"over": (0, 3), "flying": (len(long), 0)}
     assert await journal.tracks("over") == before
@@ -137,12 +138,12 @@ async def test_paths_are_packed_when_their_mission_is_over(bench) -> None:
 
 async def test_points_that_come_late_or_twice_count_once(bench) -> None:
     """A spool may be drained when the mission is long over, and writes again whatever it is not sure of."""
-    bench.now_s = BEGAN_S
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
     journal = await bench.open()
     await journal.append("over", [*STARTED, *OVER])
     path = flown(200)
     await journal.save_track("over", "craft-1", path[50:])
-    engine = engine_for_once(bench.url, 5.0)
+    engine = engine_for_once(bench.url, PATIENCE_S)
     assert await pack_paths(engine, NOW) == 1
     await journal.save_track("over", "craft-1", path[:120])
     assert await journal.tracks("over") == {"craft-1": path}
@@ -155,11 +156,11 @@ async def test_points_that_come_late_or_twice_count_once(bench) -> None:
 
 
 async def test_a_deleted_mission_takes_its_packed_path_with_it(bench) -> None:
-    bench.now_s = BEGAN_S
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
     journal = await bench.open()
     await journal.append("over", [*STARTED, *OVER])
     await journal.save_track("over", "craft-1", flown(20))
-    engine = engine_for_once(bench.url, 5.0)
+    engine = engine_for_once(bench.url, PATIENCE_S)
     await pack_paths(engine, NOW)
     async with engine.execution_options(write=True).begin() as connection:
         await connection.execute(missions.update().values(deleted_at_us=0))

@@ -22,6 +22,7 @@ from backend.store.tables import events, missions
 from backend.store.upgrade import FIRST_FORM
 
 JOURNALS = Path(__file__).parents[2] / "golden" / "journals"
+PATIENCE_S = 60.0
 HELD = HoldOrdered(craft_id="craft-1", by='ä \u2028 "quoted"', reason=None)
 
 
@@ -36,7 +37,7 @@ def of_today(rows: Sequence[EventRow]) -> list[EventRow]:
 
 async def lay(url: str, mission_id: str, rows: Sequence[EventRow]) -> None:
     """Rows as a server of then left them."""
-    engine = make_engine(url, 5.0)
+    engine = make_engine(url, PATIENCE_S)
     async with engine.execution_options(write=True).begin() as connection:
         await connection.execute(missions.insert().values(to_columns(fold(None, to_records(mission_id, rows)))))
         named = ("seq", "at_us", "kind", "form", "body")
@@ -79,6 +80,7 @@ async def test_pages_of_a_journal_of_all_forms_say_the_whole(bench) -> None:
     middle = len(old) * 2 // 3
     rows = [*old[:middle], *of_today(old)[middle:]]
     await lay(bench.url, mission_id, rows)
+    bench.timeout_s = PATIENCE_S
     journal = await bench.open()
     whole = [record.model_dump_json() for record in await journal.read(mission_id)]
     pages: list[str] = []
@@ -90,6 +92,7 @@ async def test_pages_of_a_journal_of_all_forms_say_the_whole(bench) -> None:
 
 
 async def test_a_mission_that_is_written_to_is_told_from_memory(bench) -> None:
+    bench.timeout_s = PATIENCE_S
     journal = await bench.open()
     await journal.append("m", [MissionDrafted(spec=SPEC), MissionEdited(spec=SPEC), HELD])
     in_memory = await journal.read_texts("m", after=1, most=2)
