@@ -85,6 +85,7 @@ check-python:
 	$(BIN)/python -m backend.api.schema --check frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue --check frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken --check tests/golden/reasons.json
+	$(BIN)/python -m tests.fact_fields --check tests/golden/facts.json
 	$(BIN)/python -m tests.benchmarks.figures --check
 	$(BIN)/python -m docs.drawing --check
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
@@ -152,6 +153,7 @@ codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScrip
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json
 	$(BIN)/python -m backend.reasons.catalogue frontend/src/i18n/reasons.en.ts
 	$(BIN)/python -m tests.spoken tests/golden/reasons.json
+	$(BIN)/python -m tests.fact_fields tests/golden/facts.json
 	cd frontend && npm run --silent codegen
 
 architecture: setup-dev ## the picture of docs/architecture.md, from the imports

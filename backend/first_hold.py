@@ -31,8 +31,8 @@ if TYPE_CHECKING:  # loaded while the vehicle is listened for
 log = logging.getLogger("crossfix")
 
 ANSWERS_S = 5.0
-FORM = 2
-"""Of the rows that are read here; see backend.events."""
+FORMS = (2, 3)
+"""Of the rows that are read here; see backend.store.upgrade."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +139,7 @@ def _after(stored: LeftInFlight | None, spooled: Sequence[bytes]) -> LeftInFligh
             continue
         mission_id = entry["fields"]["mission_id"]
         for row in entry["fields"]["rows"]:
-            if row.get("form") != FORM:
+            if row.get("form") not in FORMS:
                 raise ValueError("the spool holds rows of before")
             left = _after_row(left, mission_id, row)
     return left
@@ -207,7 +207,7 @@ async def _in_flight(rows: Rows) -> LeftInFlight | None:
         return None
     mission_id = found[0][0]
     at_us, form = (await rows("SELECT max(at_us), min(form) FROM events WHERE mission_id = $1", mission_id))[0]
-    if form != FORM:
+    if form not in FORMS:
         return None
     of_authority = "mission_id = $1 AND kind = 'authority_changed' ORDER BY seq DESC LIMIT 1"
     found = await rows(f"SELECT body FROM events WHERE {of_authority}", mission_id)

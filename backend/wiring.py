@@ -214,7 +214,7 @@ async def open_simulation(
             elif first is not None:
                 await first.vehicle.close()
             vehicle = ReconnectingVehicle(lambda: MavsdkVehicle(url or "", clock), clock, url or "", found)
-            hub = Hub(journal.read, clock.now)
+            hub = Hub(journal.read_texts, clock.now)
             expected = settings.payload_tokens or any(token.scope == "payload" for token in access.machines.tokens)
             payload = PayloadHub(settings.payload_tokens, clock.now) if expected else None
             receiver = _receiver(settings, vehicle, clock, payload, transmitting)

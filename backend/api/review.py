@@ -28,7 +28,7 @@ from backend.wire import export
 from backend.wire.bundle import bundle
 from backend.wire.cot_export import cot_package
 from backend.wire.mcap_export import mcap
-from backend.wire.resources import AntennaReview, EventPage, SweepRecord, Track, WhatIf, WhatIfRequest
+from backend.wire.resources import AntennaReview, EventPage, SweepRecord, Track, WhatIf, WhatIfRequest, event_page
 
 router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], responses=PROBLEM_RESPONSES)
 
@@ -89,9 +89,8 @@ async def list_events(
 ) -> Response:
     """Recorded events with seq > after."""
     digest = await stored_mission(services, mission_id)
-    recorded = await services.journal.read(mission_id, after, limit + 1)
-    page = EventPage(events=recorded[:limit], last_seq=digest.last_seq, more=len(recorded) > limit)
-    return Response(await asyncio.to_thread(page.model_dump_json), media_type="application/json")
+    told = await services.journal.read_texts(mission_id, after, limit + 1)
+    return Response(event_page(told[:limit], digest.last_seq, len(told) > limit), media_type="application/json")
 
 
 @router.get("/beliefs", response_class=Response, responses=BINARY)

@@ -1,4 +1,4 @@
-"""`crossfix thin`: take old raw sweeps now, or see what that would free."""
+"""`crossfix thin`: take old raw sweeps now, or see what that would free; flown paths are packed."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def thin(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be taken.")] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Take the raw power samples, and the IQ, of missions that ended long ago; bearings, beliefs and paths stay. The
-    server may run.
+    """Take the raw power samples, and the IQ, of missions that ended long ago; bearings, beliefs and paths stay, the
+    paths of all missions that are over packed. The server may run.
 
     Example: crossfix thin --keep-days 365 --dry-run
     """
@@ -68,10 +68,12 @@ async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[in
     engine = engine_for_once(url, 10.0)
     try:
         work = retention.old_sweeps if dry_run else retention.thin
+        packed = 0
         taken = await work(engine, keep_days, datetime.now(UTC))
         if not dry_run:
+            packed = await retention.pack_paths(engine, datetime.now(UTC))
             await retention.thin_iq(engine, IqFolder.of_settings(settings), keep_days, datetime.now(UTC))
-        if taken.sweeps and not dry_run and engine.dialect.name == "sqlite":
+        if (taken.sweeps or packed) and engine.dialect.name == "sqlite":
             try:
                 with claimed(url):
                     await shrink(engine)

@@ -183,8 +183,8 @@ __all__ = [
     "VariantKept",
 ]
 
-FORM = 2
-"""Of these facts, as they are stored and exported; what was stored in form 1 is upgraded when it is read."""
+FORM = 3
+"""Of these facts, as they are stored and exported; a field more is a form more. See backend.store.upgrade."""
 
 ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
 

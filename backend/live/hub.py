@@ -33,7 +33,8 @@ SlotKind = Literal["telemetry", "status", "sweep_progress", "belief"]
 SlotName = tuple[SlotKind, str]
 """A kind of value, and the craft, the emitter or both that it speaks of ("" for the server's own)."""
 STATUS: SlotName = ("status", "")
-ReadEvents = Callable[[str, int], Awaitable[list[Recorded]]]
+ReadEvents = Callable[[str, int], Awaitable[list[str]]]
+"""Mission, number -> the events after it, each as the JSON of a Recorded."""
 
 
 class BeliefFrame:
@@ -107,6 +108,11 @@ class Feed:
 def event_text(record: Recorded) -> str:
     """One text for all viewers."""
     return EventMessage(recorded=record).model_dump_json()
+
+
+def stored_event_text(told: str) -> str:
+    """The same of a Recorded that is JSON already."""
+    return f'{{"type":"event","recorded":{told}}}'
 
 
 @dataclass(eq=False, slots=True)

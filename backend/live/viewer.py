@@ -12,8 +12,7 @@ from collections import deque
 from collections.abc import Awaitable, Callable, Sequence
 from contextlib import suppress
 
-from backend.events import Recorded
-from backend.live.hub import BeliefFrame, Hub, Slot, SlotKind, SlotName, Viewer, event_text
+from backend.live.hub import BeliefFrame, Hub, Slot, SlotKind, SlotName, Viewer, stored_event_text
 
 Send = Callable[[str | bytes], Awaitable[None]]
 
@@ -32,7 +31,7 @@ class ViewerStalled(Exception):
 
 async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
     """Runs until cancelled or until `send` raises. The viewer has joined the hub before."""
-    waiting: deque[str | Recorded] = deque()
+    waiting: deque[str] = deque()
     while True:
         if not waiting:
             viewer.wake.clear()
@@ -52,8 +51,7 @@ async def serve(hub: Hub, viewer: Viewer, send: Send) -> None:
                 viewer.sent_at[name] = asyncio.get_running_loop().time()
                 await _send(viewer, send, _content(viewer, name, slot.value, missed))
         for _ in range(min(EVENTS_AT_ONCE, len(waiting))):
-            item = waiting.popleft()
-            await _send(viewer, send, item if isinstance(item, str) else event_text(item))
+            await _send(viewer, send, waiting.popleft())
             viewer.cursor += 1
         if not waiting:
             await _woken(viewer, patience_s)
@@ -73,12 +71,14 @@ async def _woken(viewer: Viewer, patience_s: float | None) -> None:
             await viewer.wake.wait()
 
 
-async def _next_events(hub: Hub, viewer: Viewer) -> Sequence[str | Recorded]:
+async def _next_events(hub: Hub, viewer: Viewer) -> Sequence[str]:
     """The events right after the cursor, from the ring or, when it does not reach back so far, the journal."""
     if viewer.mission_id is None:
         return []
     texts = hub.feed(viewer.mission_id).after(viewer.cursor)
-    return await hub.read(viewer.mission_id, viewer.cursor) if texts is None else texts
+    if texts is not None:
+        return texts
+    return [stored_event_text(told) for told in await hub.read(viewer.mission_id, viewer.cursor)]
 
 
 def _content(viewer: Viewer, name: SlotName, value: str | BeliefFrame, missed: int) -> str | bytes:

@@ -23,7 +23,7 @@ from backend.reasons.storage import WrittenElsewhere
 from backend.spec import FIRST_EMITTER
 from backend.store.digest import EPOCH, MissionDigest, fold, from_columns, to_columns, to_us
 from backend.store.tables import events, missions, sweeps, tracks
-from backend.store.upgrade import FIRST_FORM, Imports, craft_of_sweep, imports_of, upgraded
+from backend.store.upgrade import FIRST_FORM, READ_AS_IT_STANDS, Imports, craft_of_sweep, imports_of, upgraded
 from hardware.readings import Place, Sweep
 
 EVENT: TypeAdapter[Event] = TypeAdapter(Event)
@@ -60,6 +60,25 @@ def to_records(mission_id: str, rows: Sequence[EventRow], imports: Imports | Non
     return [_record(mission_id, row, known) for row in rows]
 
 
+def to_texts(mission_id: str, rows: Sequence[EventRow], imports: Imports | None = None) -> list[str]:
+    """The JSON of what `to_records` gives. A body of today's form is told as it was stored, without a look at it.
+
+    imports: as in to_records. Raises ValueError when an older body is no event.
+    """
+    known = {**(imports or {}), **imported_before(rows)}
+    head = f'"mission_id":{json.dumps(mission_id, ensure_ascii=False)},"at_utc":"'
+    return [
+        f'{{"seq":{row.seq},{head}{_utc_text(row.at_us)}","event":{row.body}}}'
+        if row.form == FORM
+        else _record(mission_id, row, known).model_dump_json()
+        for row in rows
+    ]
+
+
+def _utc_text(at_us: int) -> str:
+    return (EPOCH + timedelta(microseconds=at_us)).isoformat().replace("+00:00", "Z")
+
+
 def imported_before(rows: Iterable[EventRow]) -> dict[str, str]:
     """What the rows of form 1 say about imported sweeps, for `to_records` of others of the mission."""
     imported = (row for row in rows if row.form == FIRST_FORM and row.kind == "recording_imported")
@@ -68,7 +87,7 @@ def imported_before(rows: Iterable[EventRow]) -> dict[str, str]:
 
 def _record(mission_id: str, row: EventRow, imports: Imports) -> Recorded:
     at_utc = EPOCH + timedelta(microseconds=row.at_us)
-    if row.form == FORM:
+    if row.form in READ_AS_IT_STANDS:
         event = EVENT.validate_json(row.body)
     elif row.form == FIRST_FORM:
         event = EVENT.validate_python(upgraded(json.loads(row.body), imports))

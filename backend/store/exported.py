@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from backend.events import FIRST_CRAFT, FORM, MissionDrafted, Recorded
-from backend.store.upgrade import FIRST_FORM, Body, imports_of, upgraded
+from backend.store.upgrade import FIRST_FORM, READ_AS_IT_STANDS, Body, imports_of, upgraded
 
 RECORDED = TypeAdapter(list[Recorded])
 
@@ -36,9 +36,9 @@ def export_of_today(exported: Any) -> Body:
 
 def _of_today(exported: Body) -> Body:
     form, events = exported.get("form", FIRST_FORM), exported["events"]
-    if form not in (FIRST_FORM, FORM):
+    if form != FIRST_FORM and form not in READ_AS_IT_STANDS:
         raise ExportedLater(f"the journal is of form {form}: a later Crossfix exported it")
-    tracks = exported["tracks"] if form == FORM else {FIRST_CRAFT: exported["track"]}
+    tracks = {FIRST_CRAFT: exported["track"]} if form == FIRST_FORM else exported["tracks"]
     if form == FIRST_FORM:
         bodies = [record["event"] for record in events]
         imports = imports_of(body for body in bodies if body["kind"] == "recording_imported")

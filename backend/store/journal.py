@@ -244,6 +244,13 @@ class SqlJournal:
             return self._written[mission_id].recorded[after:][:most]
         return await self._stored.read(mission_id, after, most=most)
 
+    async def read_texts(self, mission_id: str, after: int = 0, most: int | None = None) -> list[str]:
+        """What `read` gives, each as the JSON that the wire tells. Raises JournalUnavailable."""
+        if mission_id in self._written:
+            recorded = self._written[mission_id].recorded[after:][:most]
+            return await asyncio.to_thread(lambda: [record.model_dump_json() for record in recorded])
+        return await self._stored.read_texts(mission_id, after, most)
+
     async def read_kinds(self, mission_id: str, kinds: Iterable[str]) -> list[Recorded]:
         """The events of some kinds only."""
         wanted = set(kinds)

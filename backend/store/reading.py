@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
 from sqlalchemy.ext.asyncio import AsyncEngine
@@ -14,10 +14,11 @@ from backend.events import FORM, Recorded
 from backend.ports import JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import DatabaseSilent, MachineBusy
 from backend.store.digest import MissionDigest, from_columns
-from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records
+from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
+from backend.store.paths import unpacked_path
 from backend.store.patience import StarvedError, patience
-from backend.store.tables import events, missions, sweeps, tracks
-from backend.store.upgrade import OF_A_SWEEP, Imports, kinds_of_old
+from backend.store.tables import events, missions, paths, sweeps, tracks
+from backend.store.upgrade import FIRST_FORM, OF_A_SWEEP, Imports, kinds_of_old
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +49,9 @@ class Wanted:
 ANY = Wanted()
 
 MANY_ROWS = 64
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
@@ -83,18 +87,30 @@ class StoredFacts:
         self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None, most: int | None = None
     ) -> list[Recorded]:
         """Facts of today's form, in order; older ones are upgraded. kinds, most: None for all."""
+        rows = await self._rows(mission_id, after, kinds, most)
+        return await _beside(len(rows), to_records, mission_id, rows, await self._imports(mission_id, rows))
+
+    async def read_texts(self, mission_id: str, after: int = 0, most: int | None = None) -> list[str]:
+        """What `read` gives, each as the wire tells it."""
+        rows = await self._rows(mission_id, after, None, most)
+        told_anew = sum(row.form != FORM for row in rows)
+        return await _beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
+
+    async def _rows(
+        self, mission_id: str, after: int, kinds: Collection[str] | None, most: int | None
+    ) -> list[EventRow]:
         query = select(*ROW).where(events.c.mission_id == mission_id, events.c.seq > after).order_by(events.c.seq)
         query = query.limit(most)
         if kinds is not None:
             query = query.where(events.c.kind.in_(kinds_of_old(kinds)))
-        rows = [EventRow(*row) for row in await self._fetch(query)]
-        whole = after == 0 and kinds is None
-        if whole or all(row.form == FORM or row.kind not in OF_A_SWEEP for row in rows):
-            return await _records(mission_id, rows)
-        imports = await self._fetch(
-            select(*ROW).where(events.c.mission_id == mission_id, events.c.kind == "recording_imported")
-        )
-        return await _records(mission_id, rows, imported_before(EventRow(*row) for row in imports))
+        return [EventRow(*row) for row in await self._fetch(query)]
+
+    async def _imports(self, mission_id: str, rows: Sequence[EventRow]) -> Imports:
+        """What the mission says of imported sweeps, asked for where a row of form 1 needs it."""
+        if not any(row.form == FIRST_FORM and row.kind in OF_A_SWEEP for row in rows):
+            return {}
+        told = select(*ROW).where(events.c.mission_id == mission_id, events.c.kind == "recording_imported")
+        return imported_before(EventRow(*row) for row in await self._fetch(told))
 
     async def mission(self, mission_id: str) -> MissionDigest | None:
         """None for an unknown mission."""
@@ -145,13 +161,12 @@ class StoredFacts:
         return Kept(int(rows[0][0]), int(rows[0][1]))
 
     async def tracks(self, mission_id: str) -> dict[str, list[TrackPoint]]:
-        """By craft, in time order."""
+        """By craft, in time order. The rows are read first: what is packed between the two questions comes twice, and
+        counts once."""
         columns = [column for column in tracks.c if column.name != "mission_id"]
-        query = select(*columns).where(tracks.c.mission_id == mission_id).order_by(tracks.c.craft_id, tracks.c.at_us)
-        found: dict[str, list[TrackPoint]] = {}
-        for craft_id, at_us, *values in await self._fetch(query):
-            found.setdefault(craft_id, []).append(TrackPoint(at_us / 1e6, *values))
-        return found
+        rows = await self._fetch(select(*columns).where(tracks.c.mission_id == mission_id))
+        pieces = await self._fetch(select(paths.c.craft_id, paths.c.points).where(paths.c.mission_id == mission_id))
+        return await asyncio.to_thread(_in_time_order, rows, pieces)
 
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
@@ -161,11 +176,21 @@ class StoredFacts:
             raise unavailable(error) from error
 
 
-async def _records(mission_id: str, rows: list[EventRow], imports: Imports | None = None) -> list[Recorded]:
-    """See to_records. Many are read in a thread, so that an abort is answered meanwhile."""
-    if len(rows) < MANY_ROWS:
-        return to_records(mission_id, rows, imports)
-    return await asyncio.to_thread(to_records, mission_id, rows, imports)
+async def _beside(count: int, work: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
+    """Many facts are read in a thread, so that an abort is answered meanwhile."""
+    if count < MANY_ROWS:
+        return work(*args, **named)
+    return await asyncio.to_thread(work, *args, **named)
+
+
+def _in_time_order(rows: Iterable[Any], pieces: Iterable[Any]) -> dict[str, list[TrackPoint]]:
+    found: dict[str, dict[int, TrackPoint]] = {}
+    for craft_id, at_us, *values in rows:
+        found.setdefault(craft_id, {})[at_us] = TrackPoint(at_us / 1e6, *values)
+    for craft_id, piece in pieces:
+        told = {round(point.at_s * 1e6): point for point in unpacked_path(piece)}
+        found[craft_id] = told | found.get(craft_id, {})
+    return {craft_id: [by_time[at_us] for at_us in sorted(by_time)] for craft_id, by_time in sorted(found.items())}
 
 
 def unavailable(error: BaseException) -> JournalUnavailable:

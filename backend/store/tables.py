@@ -115,6 +115,18 @@ tracks = Table(
     PrimaryKeyConstraint("mission_id", "craft_id", "at_us"),
 )
 
+paths = Table(
+    "paths",
+    metadata,
+    Column("mission_id", String(64), ForeignKey("missions.mission_id"), nullable=False),
+    Column("craft_id", String(40), nullable=False),
+    Column("at_us", BigInteger, nullable=False),
+    Column("points", LargeBinary, nullable=False),
+    PrimaryKeyConstraint("mission_id", "craft_id", "at_us"),
+)
+"""What was in `tracks` of missions that are over: pieces of an hour at most. at_us: of the first point. points: see
+store.paths."""
+
 people = Table(
     "people",
     metadata,

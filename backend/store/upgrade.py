@@ -2,7 +2,8 @@
 
 Each stored event says the form of its body. In form 1 a mission has one craft and one emitter without ids, a reason is
 a sentence, `draft`, `ready` and the ends of a mission are phases of the craft, and control is taken or released. Form 2
-is that of backend.events. Pure; a body is the parsed JSON of one event.
+may lack fields that were added since, each of which has a default: read, it is whole. Form 3 has every field of
+backend.events, so that its text is sent as it is stored. Pure; a body is the parsed JSON of one event.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 from uuid import UUID
 
-from backend.events import FIRST_CRAFT
+from backend.events import FIRST_CRAFT, FORM
 from backend.spec import FIRST_EMITTER
 
 FIRST_FORM = 1
+READ_AS_IT_STANDS = frozenset({2, FORM})
 
 Body = dict[str, Any]
 Imports = Mapping[str, str]
@@ -27,7 +29,7 @@ def imports_of(bodies: Iterable[Body]) -> dict[str, str]:
 
 
 def upgraded(body: Body, imports: Imports) -> Body:
-    """A body of form 1 in form 2. Raises KeyError, ValueError for what never was a fact."""
+    """A body of form 1 in the words of today. Raises KeyError, ValueError for what never was a fact."""
     kind = body["kind"]
     now = CHANGED[kind](body) if kind in CHANGED else dict(body)
     if kind in OF_THE_CRAFT:

@@ -14,13 +14,14 @@ from pathlib import Path
 import pytest
 from facts import FAILSAFE, HOME, OURS, PILOT, SPEC
 
-from backend.events import AuthorityChanged, Event, MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
-from backend.first_hold import FORM, left_in_flight
+from backend.events import FORM, AuthorityChanged, Event, MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
+from backend.first_hold import FORMS, left_in_flight
 from backend.reasons.flight import Ordered
 from backend.settings import Settings
 from backend.store.entries import EventsEntry, to_row
 from backend.store.opening import open_journal
 from backend.store.spool import Spool
+from backend.store.upgrade import FIRST_FORM
 from hardware.authority import NOBODY, Authority
 from hardware.sim.autopilot.launch import free_port
 
@@ -90,7 +91,7 @@ async def test_rows_of_another_form_are_left_to_the_journal(sqlite: Settings, tm
     await stored(sqlite, STARTED, goes("flying"))
     connection = sqlite3.connect(tmp_path / "crossfix.sqlite")
     with connection:
-        connection.execute("UPDATE events SET form = ? WHERE seq = 1", [FORM - 1])
+        connection.execute("UPDATE events SET form = ? WHERE seq = 1", [FIRST_FORM])
     assert await left_in_flight(sqlite) is None
     connection.close()
 
@@ -135,7 +136,7 @@ async def test_a_flight_may_end_and_begin_in_the_spool(
 
 async def test_what_a_spool_holds_and_cannot_be_read_is_left_to_the_journal(settings: Settings) -> None:
     await stored(settings, STARTED, goes("flying"))
-    spooled(settings, goes("measuring"), form=FORM - 1)
+    spooled(settings, goes("measuring"), form=FIRST_FORM)
     assert await left_in_flight(settings) is None
 
 
@@ -146,10 +147,16 @@ async def test_the_vehicle_of_a_server_that_runs_is_left_alone(settings: Setting
     assert await left_in_flight(settings) is not None
 
 
-def test_its_rows_are_of_the_form_that_is_written_now() -> None:
-    from backend import events
-
-    assert events.FORM == FORM
+async def test_rows_of_the_form_before_say_the_same(sqlite: Settings, tmp_path: Path) -> None:
+    await stored(sqlite, STARTED, goes("flying"), authority_is(PILOT))
+    connection = sqlite3.connect(tmp_path / "crossfix.sqlite")
+    with connection:
+        connection.execute("UPDATE events SET form = ?", [FORMS[0]])
+    connection.close()
+    spooled(sqlite, goes("measuring"), form=FORMS[0])
+    left = await left_in_flight(sqlite)
+    assert left is not None
+    assert left.authority == PILOT
 
 
 BEFORE_THE_HOLD = """

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import math
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any
@@ -17,7 +18,16 @@ import numpy as np
 from sqlalchemy import Insert, Table, bindparam, func, insert, select, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
-from backend.events import BearingMeasured, Event, PlanChosen, SweepRejected, SweepStarted
+from backend.events import (
+    BearingMeasured,
+    BeliefUpdated,
+    CraftSource,
+    Event,
+    PlanChosen,
+    SourceErrorsFact,
+    SweepRejected,
+    SweepStarted,
+)
 from backend.ports import TrackPoint
 from backend.search.planning import DEGREES_DIGITS, SECONDS_DIGITS
 from backend.search.sweep_facts import DB_DIGITS
@@ -26,6 +36,7 @@ from backend.store.entries import EventRow, to_records
 from backend.store.journal import SqlJournal
 from backend.store.tables import events, missions
 from backend.store.upgrade import FIRST_FORM
+from hardware.direction_finding.circle import SweepLikelihood
 from hardware.readings import Place, Sweep
 from tests.benchmarks.figures.circumstances import ROOT
 
@@ -35,6 +46,9 @@ FIRST_DAY = datetime(2024, 3, 1, 8, tzinfo=UTC)
 BETWEEN = timedelta(hours=4)
 TRACK_HZ = 2.0
 AT_ONCE = 25
+LEG_POINTS, FLOWN_POINTS = 108, 76
+"""A bearing in 54 s, 16 s of it on the spot."""
+M_PER_DEG = 111_200.0
 SWEEP_SAMPLES = 800
 """Of a turn of 16 s with the simulated receiver's 50 powers a second."""
 
@@ -43,6 +57,11 @@ PLACES = ("river", "ridge", "moor", "quarry", "orchard", "harbour", "marsh", "gr
 SPECIES = ("owl", "marten", "stork", "bat", "curlew", "lynx", "hamster", "kite")
 SEEKERS = ("craft-1", "craft-2", "heron", "kestrel")
 RESULTS = ("localized", "localized", "localized", "not_localized", "aborted")
+
+
+def copy_id(number: int) -> str:
+    """Of a copy: as long as the ids that missions get."""
+    return str(UUID(int=number))
 
 
 def recorded_flight() -> list[Event]:
@@ -65,10 +84,22 @@ def lengthened(flown: Sequence[Event], bearings: int) -> list[Event]:
 
 
 def _rounded(event: Event) -> Event:
-    """As it would be recorded today: what is only shown has the digits that are shown."""
+    """As it would be recorded today: what is only shown has the digits that are shown, a bearing has its likelihood and
+    a belief the errors of its source."""
     if isinstance(event, BearingMeasured):
         bins = {name: _bins(np.array(getattr(event, name), float)) for name in ("binned_db", "fitted_db")}
-        return event.model_copy(update=bins)
+        said = SweepLikelihood.normal(event.bearing_deg, event.sigma_deg).packed()
+        return event.model_copy(update={**bins, "likelihood": said, "taken_at_s": FIRST_DAY.timestamp() + 1 / 3})
+    if isinstance(event, BeliefUpdated):
+        errors = SourceErrorsFact(
+            source=CraftSource(craft_id="craft-1"),
+            bearings=event.bearings,
+            bias_deg=1 / 3,
+            bias_std_error_deg=4 / 3,
+            sigma_scale=7 / 6,
+            outlier_rate=1 / 12,
+        )
+        return event.model_copy(update={"sources": [errors]})
     if isinstance(event, PlanChosen):
         told = [
             c.model_copy(
@@ -112,11 +143,26 @@ async def write_template(journal: SqlJournal, bearings: int, track_s: float = 0.
 
 
 def _path(points: int) -> list[TrackPoint]:
-    noise = np.random.default_rng(1).normal(0.0, 1e-6, (points, 2))
-    began_s = FIRST_DAY.timestamp()
+    """Legs of a minute at 7 m/s with a turn between them, in the steps in which autopilots tell: 1e-7 degree, 1 mm."""
+    generator = np.random.default_rng(1)
+    late_s, sway, climb, yaw = generator.normal(0.0, [[0.05], [1e-7], [0.02], [0.5]], (4, points))
+    course = np.repeat(generator.uniform(0.0, 360.0, -(-points // LEG_POINTS)), LEG_POINTS)[:points]
+    moved = 7.0 / TRACK_HZ * (np.arange(points) % LEG_POINTS < FLOWN_POINTS) / M_PER_DEG
+    lat = 50.62 + np.cumsum(moved * np.cos(np.radians(course))) + sway
+    lon = 7.2 + np.cumsum(moved * np.sin(np.radians(course))) / math.cos(math.radians(50.62)) + sway
+    at_s = FIRST_DAY.timestamp() + np.arange(points) / TRACK_HZ + np.abs(late_s)
     return [
-        TrackPoint(began_s + n / TRACK_HZ, 50.62 + lat, 7.2 + lon, 140.0 + lat, 40.0, 211.5 + lon, 71.0, "OFFBOARD")
-        for n, (lat, lon) in enumerate(noise)
+        TrackPoint(
+            round(at_s[n], 6),
+            round(lat[n], 7),
+            round(lon[n], 7),
+            round(160.0 + climb[n], 3),
+            round(40.0 + climb[n], 3),
+            (course[n] + yaw[n]) % 360.0,
+            float(98 - 70 * n // points),
+            "HOLD",
+        )
+        for n in range(points)
     ]
 
 
@@ -143,7 +189,7 @@ def _row(template: dict[str, Any], number: int) -> dict[str, Any]:
         **template,
         **moved,
         **times,
-        "mission_id": f"m{number:06d}",
+        "mission_id": copy_id(number),
         "name": f"{species.title()} {number} by the {place}",
         "tags": f"{species}\nnight" if number % 3 else species,
         "notes": f"Seen again near the {place} at dusk, wind from the west." if number % 4 == 0 else "",
@@ -173,7 +219,7 @@ async def multiply(
             for table in tables:
                 query = _copying(table)
                 for number in numbers:
-                    await connection.execute(query, {"copy": f"m{number:06d}"})
+                    await connection.execute(query, {"copy": copy_id(number)})
     if engine.dialect.name == "postgresql":
         async with writer.begin() as connection:
             await connection.execute(text("ANALYZE"))
@@ -186,11 +232,14 @@ def _copying(table: Table) -> Insert:
 
 
 async def size_bytes(engine: AsyncEngine) -> int:
-    """Of the whole database, its indexes included."""
+    """Of the whole database, its indexes included, without pages that are free to be used again."""
     if engine.dialect.name == "postgresql":
         query = "SELECT pg_database_size(current_database())"
     else:
-        query = "SELECT page_count * page_size FROM pragma_page_count(), pragma_page_size()"
+        query = (
+            "SELECT (page_count - freelist_count) * page_size"
+            " FROM pragma_page_count(), pragma_freelist_count(), pragma_page_size()"
+        )
     async with engine.connect() as connection:
         return int((await connection.execute(text(query))).scalar_one())
 

@@ -111,7 +111,7 @@ async def serve_fanout(port: int, folder: str, hertz: float) -> None:
     @asynccontextmanager
     async def opening(settings: Settings) -> AsyncIterator[Services]:
         async with open_journal(settings, time.time) as journal:
-            hub = Hub(journal.read, time.time)
+            hub = Hub(journal.read_texts, time.time)
             await journal.append("load", [MissionDrafted(spec=SPEC)])
             nothing: Any = None
             access = Access(None, AuditLog(None, time.time), people_expected=False)

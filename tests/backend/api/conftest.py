@@ -64,7 +64,7 @@ async def running_services(settings: Settings, vehicle: PaperVehicle, workers: W
     await migrate(settings.async_database_url)
     spool = Spool(settings.spool_path, 64 * 1024)
     journal = SqlJournal(make_engine(settings.async_database_url, 2.0), spool, lambda: NOW_S)
-    hub, clock = Hub(journal.read, lambda: NOW_S), SteppedClock(NOW_S)
+    hub, clock = Hub(journal.read_texts, lambda: NOW_S), SteppedClock(NOW_S)
     finder, pattern = SparseDirectionFinder(), load_pattern(SMALL_YAGI)
     craft = CraftEquipment(FIRST_CRAFT, vehicle, HummingReceiver(clock), finder, pattern, clock, hub)
     lessons = LessonsFolder(settings.data_dir / "lessons")

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from backend.api import bodies
+from backend.events import FORM
 from backend.ports import TrackPoint
 from backend.settings import REPOSITORY
 from backend.store.digest import EPOCH
@@ -103,7 +104,7 @@ UNKNOWN_BEFORE = exported_before() | {"events": [exported_before()["events"][0] 
         (WITHOUT_DRAFT, "not_exported"),
         (OF_NO_KIND, "not_exported"),
         (UNKNOWN_BEFORE, "not_exported"),
-        (TODAY | {"form": 3}, "later"),
+        (TODAY | {"form": FORM + 1}, "later"),
     ],
 )
 async def test_anything_else_is_refused(client, content, fault):

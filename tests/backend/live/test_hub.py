@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from backend.events import HoldOrdered, Recorded, SweepStarted
-from backend.live.hub import FEEDS, RING, STALLED_S, Hub, Viewer
+from backend.live.hub import FEEDS, RING, STALLED_S, Hub, Viewer, event_text, stored_event_text
 from backend.live.viewer import ViewerStalled, serve
 from backend.ports import CraftStatus, Status
 from hardware.readings import Place, Telemetry
@@ -38,9 +38,11 @@ class Bench:
         self.hub = Hub(self.read, lambda: 100.0)
         self.tasks: list[asyncio.Task[None]] = []
 
-    async def read(self, mission_id: str, after: int) -> list[Recorded]:
+    async def read(self, mission_id: str, after: int) -> list[str]:
         await asyncio.sleep(0)
-        return [record for record in self.stored if record.mission_id == mission_id and record.seq > after]
+        return [
+            record.model_dump_json() for record in self.stored if record.mission_id == mission_id and record.seq > after
+        ]
 
     def happen(self, count: int, publish: bool = True) -> None:
         for _ in range(count):
@@ -72,6 +74,10 @@ class Link:
 
     def seqs(self) -> list[int]:
         return [message["recorded"]["seq"] for message in self.of("event")]
+
+
+def test_an_event_out_of_the_journal_is_told_as_one_that_happens() -> None:
+    assert stored_event_text(fact(3).model_dump_json()) == event_text(fact(3))
 
 
 async def settle() -> None:
