@@ -13,6 +13,7 @@ import asyncio
 import contextlib
 import json
 import logging
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import Any, TypeVar
@@ -21,7 +22,7 @@ from mavsdk import Mavsdk, System
 from mavsdk.plugins.geofence import Geofence, GeofenceError
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 from mavsdk.plugins.mission_raw import MissionItem, MissionRaw, MissionRawError, MissionRawResult
-from mavsdk.plugins.param import Param, ParamError, ParamResult
+from mavsdk.plugins.param import Param, ParamError
 
 from hardware.autopilot.fence_items import FenceItem
 from hardware.autopilot.opening import Connection, check_url, open_connection
@@ -33,6 +34,10 @@ T = TypeVar("T")
 AUTOPILOT_COMPONENT = 1
 FENCE_WALL_S = 60.0
 """The longest that a fence may take one way; one polygon takes about 4 s on a link of 250 ms each way."""
+PARAMETER_ASKS, PARAMETER_WALL_S = 3, 1.0
+"""How often a parameter is asked for that the autopilot has not named yet, and how long each time."""
+_FLOATS = frozenset({9, 10})
+"""MAV_PARAM_TYPE."""
 CLOSE_WALL_S = 10.0
 """What a parameter is waited for, that nobody answers, and a little more."""
 
@@ -93,6 +98,9 @@ class MavlinkLink:
         self._transfers = ThreadPoolExecutor(2, "mavlink-fence")
         self._under_way: set[Future[Any]] = set()
         self._closed = False
+        self._parameters: dict[str, int] = {}
+        """Name -> MAV_PARAM_TYPE of those that the autopilot has told a value of."""
+        self._parameter_heard = asyncio.Event()
         self.system_id = 0
 
     async def open(self, timeout_s: float) -> None:
@@ -120,7 +128,7 @@ class MavlinkLink:
                 with contextlib.suppress(RuntimeError):  # the loop has ended
                     loop.call_soon_threadsafe(self._dispatch, message)
 
-        for name in self._names:
+        for name in (*self._names, "PARAM_VALUE"):
             direct.subscribe_message(name, heard)
 
     def _lay_out(self, system: System) -> MavlinkDirect:
@@ -149,8 +157,14 @@ class MavlinkLink:
             mavsdk.cancel_first_autopilot(handle)
 
     def _dispatch(self, message: MavlinkMessage) -> None:
-        if not self._closed:
-            self._on_message(message.message_name, json.loads(message.fields_json))
+        if self._closed:
+            return
+        fields = json.loads(message.fields_json)
+        if message.message_name == "PARAM_VALUE":
+            self._parameters[fields["param_id"]] = fields["param_type"]
+            self._parameter_heard.set()
+        else:
+            self._on_message(message.message_name, fields)
 
     async def send(self, name: str, fields: Fields, allowed: Callable[[], bool]) -> bool:
         """Send one message to the autopilot; `allowed` is asked in the instant before, False sends nothing.
@@ -177,18 +191,36 @@ class MavlinkLink:
 
     async def parameter(self, name: str) -> float | None:
         """An autopilot parameter, or None when it has none of that name (or does not answer)."""
+        if not await self._has_parameter(name):
+            return None
         return await self._waiting(self._blocking, self._read_parameter, name)
+
+    def has_answered(self, name: str) -> bool:
+        """The autopilot has named this parameter on this connection."""
+        return name in self._parameters
+
+    async def _has_parameter(self, name: str) -> bool:
+        """MAVSDK asks six times, for 9 s, for one that there is not; ArduPilot answers nothing then."""
+        for _ in range(PARAMETER_ASKS):
+            if name in self._parameters:
+                return True
+            if not await self.send("PARAM_REQUEST_READ", {"param_id": name, "param_index": -1}, lambda: True):
+                return False
+            end_s = time.monotonic() + PARAMETER_WALL_S
+            while name not in self._parameters and (left_s := end_s - time.monotonic()) > 0.0:
+                self._parameter_heard.clear()
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(left_s):
+                        await self._parameter_heard.wait()
+        return name in self._parameters
 
     def _read_parameter(self, name: str) -> float | None:
         if self._param is None:
             return None
-        try:
-            return float(self._param.get_param_int(name))
-        except ParamError as error:
-            if error.result != ParamResult.WRONG_TYPE:
-                return None
+        is_float = self._parameters[name] in _FLOATS
+        read = self._param.get_param_float if is_float else self._param.get_param_int
         with contextlib.suppress(ParamError):
-            return float(self._param.get_param_float(name))
+            return float(read(name))
         return None
 
     async def fence(self) -> list[FenceItem]:
@@ -231,24 +263,19 @@ class MavlinkLink:
 
     async def set_parameter(self, name: str, value: float) -> bool:
         """True when the autopilot confirmed the new value."""
+        if not await self._has_parameter(name):
+            return False
         return await self._waiting(self._blocking, self._write_parameter, name, value)
 
     def _write_parameter(self, name: str, value: float) -> bool:
         """By the type it has: the bytes of a whole number, taken for a float, would be another value."""
         if self._param is None:
             return False
-        try:
-            self._param.get_param_int(name)
-            whole = True
-        except ParamError as error:
-            if error.result != ParamResult.WRONG_TYPE:
-                return False
-            whole = False
         with contextlib.suppress(ParamError):
-            if whole:
-                self._param.set_param_int(name, round(value))
-            else:
+            if self._parameters[name] in _FLOATS:
                 self._param.set_param_float(name, value)
+            else:
+                self._param.set_param_int(name, round(value))
             return True
         return False
 

@@ -93,8 +93,9 @@ class MavsdkVehicle:
 
     async def _first_read(self, names: Sequence[tuple[str, float]]) -> tuple[str, float | None]:
         """names: of one length, with the unit of each in metres. (The one this version has, m); None: none was read."""
-        for name, metres in names:
-            value = await self._monitor.link.parameter(name)
+        link = self._monitor.link
+        for name, metres in sorted(names, key=lambda one: not link.has_answered(one[0])):
+            value = await link.parameter(name)
             if value is not None:
                 return name, value * metres
         return names[0][0], None

@@ -80,6 +80,7 @@ async def test_what_waits_for_an_answer_ends_before_the_link_does(monkeypatch: p
     link, slow = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None), SlowAutopilot()
     monkeypatch.setattr(link, "_mavsdk", slow)
     monkeypatch.setattr(link, "_param", slow)
+    monkeypatch.setattr(link, "_parameters", {"RC_MAP_FLTMODE": 6})
     asking = asyncio.create_task(link.parameter("RC_MAP_FLTMODE"))
     await asyncio.to_thread(slow.asked.wait, 10.0)
     asking.cancel()
