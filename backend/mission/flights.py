@@ -219,7 +219,7 @@ class Flights:
             listening, grounds = self.listening(craft.craft_id), self.equipment.grounds
             checks, task = await checklist(known, craft, listening, state.search.antenna, grounds)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
-            software, antenna = self.equipment.software, antenna_fact(craft.pattern)
+            software, antenna = self.equipment.software, antenna_fact(craft.flown_with(known.sensor).pattern)
             ground, not_kept = await self._keep_ground(task)
             objections += not_kept
             learned = known.sensor.learned

@@ -82,7 +82,8 @@ class CheckedBearing(Model):
 
 
 class SuggestedSensor(Model):
-    """For the next flight, in the fields of the specification. offset_deg: the antenna's."""
+    """For the next flight, in the fields of the specification. offset_deg: for its bearing_offset_deg, the whole of it:
+    what missions had taken off their bearings already is in it."""
 
     sigma_deg: float
     outlier_probability: float

@@ -605,7 +605,8 @@ export interface paths {
         };
         /**
          * Compass
-         * @description What the next mission of this craft starts from, with the antenna that it carries now.
+         * @description What the next mission of this craft starts from, with the antenna that it carries now, when this is taken off its
+         *     bearings.
          */
         get: operations["compass"];
         put?: never;
@@ -2639,7 +2640,8 @@ export interface components {
          * @description What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
          *
          *     flights, bearings: that were learned from; places_known: flights whose emitter was found. bias_deg: mean of the
-         *     flights, clockwise, and bias_spread_deg: its standard deviation from flight to flight; None without a flight.
+         *     flights, clockwise, of what is left after what the next mission takes off its bearings, and bias_spread_deg: its
+         *     standard deviation from flight to flight; None without a flight.
          *     expected_bias_deg: standard deviation of the next flight's bias. sigma_scale: factor on the stated sigmas.
          *     outlier_rate: share of bearings.
          */
@@ -7220,6 +7222,8 @@ export interface components {
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
          *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+         *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
+         *     beyond what its antenna's file says; it is taken off where they are made.
          */
         SensorSpec: {
             /** @default 7 */
@@ -7251,6 +7255,8 @@ export interface components {
              * @enum {string}
              */
             sweep_evidence: "peak" | "whole";
+            /** @default 0 */
+            bearing_offset_deg: number;
         };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
@@ -7261,6 +7267,8 @@ export interface components {
          *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
          *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+         *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
+         *     beyond what its antenna's file says; it is taken off where they are made.
          */
         SensorSpecInput: {
             /** @default 7 */
@@ -7292,6 +7300,8 @@ export interface components {
              * @enum {string}
              */
             sweep_evidence: "peak" | "whole";
+            /** @default 0 */
+            bearing_offset_deg: number;
         };
         /** @description incident: the same id is in the server's log. */
         ServerBroke: {
@@ -7654,7 +7664,10 @@ export interface components {
              */
             code: "strongest_used";
         };
-        /** @description For the next flight, in the fields of the specification. offset_deg: the antenna's. */
+        /**
+         * @description For the next flight, in the fields of the specification. offset_deg: for its bearing_offset_deg, the whole of it:
+         *     what missions had taken off their bearings already is in it.
+         */
         SuggestedSensor: {
             sigma_deg: number;
             outlier_probability: number;
@@ -9777,7 +9790,9 @@ export interface operations {
     };
     compass: {
         parameters: {
-            query?: never;
+            query?: {
+                bearing_offset_deg?: number;
+            };
             header?: never;
             path: {
                 /** @description The craft's id */
@@ -9809,7 +9824,9 @@ export interface operations {
     };
     forget_compass: {
         parameters: {
-            query?: never;
+            query?: {
+                bearing_offset_deg?: number;
+            };
             header?: never;
             path: {
                 /** @description The craft's id */
