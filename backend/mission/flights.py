@@ -34,7 +34,7 @@ from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
 from backend.reasons import Interrupted, Reason
-from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding
+from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
 from backend.reasons.terrain import GroundNotKept
 from backend.search.antenna import antenna_fact
@@ -216,6 +216,8 @@ class Flights:
                 objections = (AnotherMissionFlies(self.active.state.search.mission.name),)
             elif craft.vehicle.telemetry().in_air:
                 objections = (AlreadyInAir(),)
+            elif state.search.deleted:
+                objections = (WasDeleted(),)
             listening, grounds = self.listening(craft.craft_id), self.equipment.grounds
             checks, task = await checklist(known, craft, listening, state.search.antenna, grounds)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)

@@ -1324,6 +1324,14 @@ export const reasonsEn: ReasonTable = {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
   },
+  still_under_way: {
+    text: "The mission is under way.",
+    remedy: "Delete it when it is over and its vehicle is down.",
+  },
+  was_deleted: {
+    text: "The mission was deleted.",
+    remedy: "Restore it first: it is among the deleted ones in the list of missions.",
+  },
   too_many_variants: {
     text: "This mission has {most} variants, the most it may.",
     remedy: "Forget one of them first.",
