@@ -334,7 +334,7 @@ export const de: Record<MessageKey, string> = {
   "payload.samples": "{count} Messwerte",
   "recording.title": "Aufnahme einlesen",
   "recording.explain":
-    "UAV-RT-Drehung, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei zusammen, dazu eine CSV mit Zeit und Kurs, wenn die Aufnahme keinen enthält).",
+    "UAV-RT-Drehung, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei zusammen, dazu eine CSV mit Zeit und Kurs, wenn die Aufnahme keinen enthält). Oder anderswo genommene Peilungen: eine Peildatei von UAV-RT oder uns, CSV mit lat, lon und bearing_deg, oder was ein KrakenSDR als CSV schrieb.",
   "recording.files": "Dateien",
   "recording.place": "Wo, wenn die Datei es nicht sagt",
   "recording.at": "Wann (UTC), wenn die Datei es nicht sagt",
@@ -359,6 +359,7 @@ export const de: Record<MessageKey, string> = {
   "antenna.listen": "Hören (höchstens 60 s)",
   "antenna.listening": "Hört: jetzt das Fahrzeug drehen …",
   "antenna.bad": "Eine Peilung wie 120 oder einen Ort wie 50.6123, 7.2046 angeben.",
+  "event.bearings_imported": "{name} eingelesen von {by}",
   "event.recording_imported": "{name} eingelesen von {by} ({count} Drehungen)",
   "sweep.plotEmpty": "Empfangsleistung über der Richtung: nichts gemessen",
 

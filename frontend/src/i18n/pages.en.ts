@@ -101,7 +101,7 @@ export const pagesEn = {
   "advice.state.old": "Asked {age} ago and not followed: ask again from where you are.",
   "recording.title": "Import a recording",
   "recording.explain":
-    "UAV-RT rotation file, CSV of heading_deg and power_db, or SigMF (meta and data file together, with a CSV of time and heading when it carries none).",
+    "UAV-RT rotation file, CSV of heading_deg and power_db, or SigMF (meta and data file together, with a CSV of time and heading when it carries none). Or bearings that were taken elsewhere: a bearing file of UAV-RT or ours, CSV of lat, lon and bearing_deg, or what a KrakenSDR wrote as CSV.",
   "recording.files": "Files",
   "recording.place": "Where, if the file does not tell",
   "recording.at": "When (UTC), if the file does not tell",

@@ -542,6 +542,10 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "{wanted?bearing=Name the columns lat, lon, bearing_deg and, if known, sigma_deg.|power=Name the columns heading_deg and power_db.|pulse=Check that it is the right file.}",
   },
+  one_tag_only: {
+    text: "{file} holds bearings of the tags {tags}.",
+    remedy: "Name one of them.",
+  },
   place_not_stated: {
     text: "The file {file} does not state where it was recorded.",
     remedy: "Add columns lat and lon, or name the place beside it.",
