@@ -142,7 +142,8 @@ class Lesson:
     """What one flight taught of the errors of its craft's bearings. bias_deg: clockwise. spread_deg: standard
     deviations that the bias may have from flight to flight; scale: of the stated sigmas; rate: of outliers. together:
     log evidence of every combination of these values, the rates running fastest; empty in older lessons. place_known:
-    somebody told where the emitter was, so that the bearings were judged by that."""
+    somebody told where the emitter was, so that the bearings were judged by that. taken_off_deg: what the mission took
+    off its bearings, clockwise; the bias is what was left."""
 
     mission_id: str
     bearings: int
@@ -153,6 +154,7 @@ class Lesson:
     rate: tuple[Said, ...]
     together: tuple[float, ...] = ()
     place_known: bool = False
+    taken_off_deg: float = 0.0
 
 
 class Lessons(Protocol):

@@ -194,6 +194,8 @@ class SensorSpec(Model):
     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
+    bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
+    beyond what its antenna's file says; it is taken off where they are made.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -210,6 +212,7 @@ class SensorSpec(Model):
     sector_turns: bool = False
     whole_turns: int = Field(default=1, ge=1, le=20)
     sweep_evidence: SweepEvidence = "peak"
+    bearing_offset_deg: float = Field(default=0.0, ge=-180, le=180, allow_inf_nan=False)
 
 
 class PlannerSpec(Model):

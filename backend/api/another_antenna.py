@@ -10,7 +10,7 @@ from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recor
 from backend.reasons import carried
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.request import SamplesNotStored
-from backend.search.antenna import antenna_flown
+from backend.search.antenna import antenna_flown, corrected, correction_flown
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.spec import MissionSpec
@@ -53,7 +53,8 @@ class AnotherAntenna:
 async def another_antenna(
     services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: Supposition
 ) -> AnotherAntenna | None:
-    """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew.
+    """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew, in the place of its
+    file's and the mission's correction together. Another pattern: with the mission's correction.
 
     Raises MissionInputError for a pattern that cannot be used.
     """
@@ -62,7 +63,8 @@ async def another_antenna(
     if wanted.pattern is None:
         pattern = antenna_flown(recorded) or services.pattern
     else:
-        pattern = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
+        in_file = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
+        pattern = corrected(in_file, correction_flown(recorded))
     if wanted.offset_to_nose_deg is not None:
         pattern = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
     heard = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]

@@ -9,7 +9,7 @@ import numpy as np
 
 from backend.events import BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
 from backend.reasons import carried
-from backend.search.antenna import antenna_flown
+from backend.search.antenna import antenna_flown, corrected, correction_flown
 from backend.search.counted import counted
 from backend.wire.resources import AntennaReview, PatternUpload
 from hardware.direction_finding.antenna import AntennaPattern
@@ -30,13 +30,14 @@ def antenna_review(recorded: Sequence[Recorded], emitter_id: str | None, ours: A
     if chosen is None:
         return None
     pattern = antenna_flown(recorded) or ours
+    in_file = corrected(pattern, -correction_flown(recorded))
     kept = [_kept(fact) for fact in _counted(recorded, chosen) if fact.source.kind != "person" and fact.binned_db]
     found = repeating(kept, pattern)
     doubt = None
     if found is not None and found.significant:
         doubt = NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps)
     place = _localized_at(recorded, chosen)
-    refined = None if place is None or doubt is None else refined_pattern(kept, place, pattern)
+    refined = None if place is None or doubt is None else refined_pattern(kept, place, in_file)
     return AntennaReview(
         sweeps=len(kept),
         repeats_db=None if found is None else found.repeats_db,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 
 from backend.api.crafts import CraftId
 from backend.api.dependencies import ServicesDep
@@ -19,19 +20,24 @@ from backend.wire.resources import CompassKnown
 router = APIRouter(prefix="/api/crafts", tags=["crafts"], responses=PROBLEM_RESPONSES)
 
 
+Offset = Annotated[float, Query(ge=-180, le=180, allow_inf_nan=False)]
+"""SensorSpec.bearing_offset_deg of the mission that is asked for."""
+
+
 @router.get("/{craft_id}/compass")
-async def compass(craft_id: CraftId, services: ServicesDep) -> CompassKnown:
-    """What the next mission of this craft starts from, with the antenna that it carries now."""
-    return await _known(services, _craft(services, craft_id))
+async def compass(craft_id: CraftId, services: ServicesDep, bearing_offset_deg: Offset = 0.0) -> CompassKnown:
+    """What the next mission of this craft starts from, with the antenna that it carries now, when this is taken off its
+    bearings."""
+    return await _known(services, _craft(services, craft_id), bearing_offset_deg)
 
 
 @router.delete("/{craft_id}/compass")
-async def forget_compass(craft_id: CraftId, services: ServicesDep) -> CompassKnown:
+async def forget_compass(craft_id: CraftId, services: ServicesDep, bearing_offset_deg: Offset = 0.0) -> CompassKnown:
     """Forget all of it: the compass was calibrated, the antenna mounted again. Missions that have started keep what
     they started from."""
     craft = _craft(services, craft_id)
     await services.missions.equipment.lessons.forget(craft.craft_id, craft.pattern.name)
-    return await _known(services, craft)
+    return await _known(services, craft, bearing_offset_deg)
 
 
 def _craft(services: Services, craft_id: str) -> CraftEquipment:
@@ -41,11 +47,11 @@ def _craft(services: Services, craft_id: str) -> CraftEquipment:
     return craft
 
 
-async def _known(services: Services, craft: CraftEquipment) -> CompassKnown:
+async def _known(services: Services, craft: CraftEquipment, offset_deg: float) -> CompassKnown:
     antenna = craft.pattern.name
     lessons = await services.missions.equipment.lessons.of(craft.craft_id, antenna)
-    prior = prior_in(errors_now(lessons, SensorSpec(), craft.craft_id, antenna))
-    found = mean_bias(lessons)
+    prior = prior_in(errors_now(lessons, SensorSpec(bearing_offset_deg=offset_deg), craft.craft_id, antenna))
+    found = mean_bias(lessons, offset_deg)
     return CompassKnown(
         craft_id=craft.craft_id,
         antenna=antenna,

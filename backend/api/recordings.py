@@ -1,4 +1,5 @@
-"""Recorded sweeps, uploaded into a mission: UAV-RT rotations, plain tables of heading and power, SigMF of a turn."""
+"""Recordings, uploaded into a mission: UAV-RT rotations, plain tables of heading and power, SigMF of a turn, and files
+of bearings (UAV-RT's, ours, KrakenSDR's)."""
 
 from __future__ import annotations
 
@@ -18,6 +19,7 @@ from pydantic import AfterValidator, Field, StringConstraints
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
+from backend.bearing_file import read_bearing_file
 from backend.events import BearingMeasured, Recorded, RecordingImported, SweepRejected
 from backend.reasons import carried
 from backend.reasons import request as reasons
@@ -57,7 +59,8 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
-    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), else the sweep's name. offset_deg:
+    wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), whose bearings in a file of those
+    (needed when it holds several), else the sweep's name. offset_deg:
     the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's.
     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ."""
 
@@ -81,7 +84,7 @@ async def import_recording(
     principal: PrincipalDep,
     response: Response,
 ) -> RecordingImport:
-    """Import recorded sweeps of an emitter into a mission, as if they had been flown there; in flight, too.
+    """Import recorded sweeps or bearings of an emitter into a mission, as if they had been flown there; in flight, too.
 
     One file, or for SigMF its meta and data file (which are kept) and, when the recording carries no headings, a CSV of
     time and heading. The same files again (with the same words beside them) change nothing: 200. All sweeps or none.
@@ -125,7 +128,7 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
     return Upload(
         recording_id,
         first,
-        Recording(recording.sweeps, tuple(renamed(remark, owners) for remark in recording.remarks)),
+        replace(recording, remarks=tuple(renamed(remark, owners) for remark in recording.remarks)),
         place,
         None if form.at_utc is None else form.at_utc.timestamp(),
         form.offset_deg,
@@ -170,7 +173,8 @@ def _parsed(
 ) -> Recording:
     recording = next(iter(names))
     headings = next((path for path in names if path.name == "headings.csv"), None)
-    read = read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
+    bearings = None if is_sigmf(recording) or headings is not None else read_bearing_file(recording, tag)
+    read = bearings or read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
     if is_sigmf(recording) or (frequency_hz is None and pulses is None):
         return read
     return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))

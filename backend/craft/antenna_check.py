@@ -21,7 +21,7 @@ from hardware.direction_finding.heading import ClockOffset, estimate_clock_offse
 from hardware.direction_finding.sweep import SweepError, assemble_sweep, turned_deg
 from hardware.frame import LocalFrame
 from hardware.readings import HeadingSample, Place, PowerSample, PreflightCheck
-from hardware.reasons.antenna import ReceiverClockOff
+from hardware.reasons.antenna import AntennaAskew, ReceiverClockOff
 from hardware.reasons.vehicle_news import ClockRateOdd
 
 WHOLE_TURN_DEG = 355.0
@@ -39,6 +39,7 @@ async def check_by_hand(
     emitter: its place, or its bearing in degrees clockwise from true north. Raises MissionInputError when the vehicle's
     own place is not known.
     """
+    equipment = equipment.flown_with(mission.sensor)
     here = equipment.vehicle.telemetry().position
     if here is None:
         raise MissionInputError(NoPosition(), "emitter")
@@ -101,6 +102,9 @@ def _judge(
     except SweepError as error:
         return PreflightCheck("antenna", False, error.reason)
     found = check_antenna(sweep, equipment.pattern, emitter)
+    if isinstance(found.reason, AntennaAskew):
+        in_file = math.remainder(found.reason.offset_deg + mission.sensor.bearing_offset_deg, 360.0)
+        return replace(found, reason=replace(found.reason, offset_deg=in_file))
     if found.ok and clock.identified and abs(clock.offset_s) > CLOCK_ALLOWED_S:
         return replace(found, ok=False, reason=ReceiverClockOff(clock.offset_s))
     return found

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from backend.ports import Publisher
+from backend.search.antenna import corrected
+from backend.spec import SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.ports import Clock, DirectionFinder, Receiver, Vehicle
 
@@ -23,3 +25,7 @@ class CraftEquipment:
     publisher: Publisher
     threads: int = 2
     watch_consoles: bool = True
+
+    def flown_with(self, sensor: SensorSpec) -> CraftEquipment:
+        """The same for one mission, its antenna turned by what the bearings are known to be off by."""
+        return replace(self, pattern=corrected(self.pattern, sensor.bearing_offset_deg))

@@ -92,6 +92,8 @@ def _start(step: CraftStep, given: CraftOrdered) -> None:
     search, facts = step.search, given.start
     if search.stage == "ended":
         raise Refused(refusals.MissionOver())
+    if search.deleted:
+        raise Refused(refusals.WasDeleted())
     if step.craft.engaged:
         raise Refused(refusals.AlreadyStarted())
     if facts is None:

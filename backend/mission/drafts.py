@@ -19,6 +19,7 @@ from backend.search.area import centre_of
 from backend.search.band import check_band
 from backend.search.errors import MissionConflict
 from backend.search.importing import Upload, import_facts, imported_before
+from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, Edited, PreflightDone
 from backend.search.task import search_task
 from backend.spec import MissionSpec, Place
@@ -97,7 +98,12 @@ class Drafts:
                 return before, True
             runner = self.flights.running(mission_id)
             search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
-            found = await asyncio.to_thread(import_facts, mission_id, search, upload, craft.finder, craft.pattern, by)
+            if upload.recording.bearings:
+                found = await asyncio.to_thread(bearing_facts, mission_id, search, upload, by)
+            else:
+                found = await asyncio.to_thread(
+                    import_facts, mission_id, search, upload, craft.finder, craft.pattern, by
+                )
             for kept in found.sweeps:
                 await equipment.journal.save_sweep(
                     mission_id, kept.sweep_id, None, kept.emitter_id, kept.place_number, 1, kept.sweep

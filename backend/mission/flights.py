@@ -34,7 +34,7 @@ from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
 from backend.reasons import Interrupted, Reason
-from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding
+from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
 from backend.reasons.terrain import GroundNotKept
 from backend.search.antenna import antenna_fact
@@ -216,10 +216,12 @@ class Flights:
                 objections = (AnotherMissionFlies(self.active.state.search.mission.name),)
             elif craft.vehicle.telemetry().in_air:
                 objections = (AlreadyInAir(),)
+            elif state.search.deleted:
+                objections = (WasDeleted(),)
             listening, grounds = self.listening(craft.craft_id), self.equipment.grounds
             checks, task = await checklist(known, craft, listening, state.search.antenna, grounds)
             home, home_amsl_m = (None, None) if task is None else (task.home, task.home_amsl_m)
-            software, antenna = self.equipment.software, antenna_fact(craft.pattern)
+            software, antenna = self.equipment.software, antenna_fact(craft.flown_with(known.sensor).pattern)
             ground, not_kept = await self._keep_ground(task)
             objections += not_kept
             learned = known.sensor.learned

@@ -92,11 +92,11 @@ class Review:
 
     async def delete(self, mission_id: str, by: str) -> None:
         """Out of the list, to be restored for some days. Raises MissionConflict while it is under way."""
-        state, _ = await self.records.load(mission_id)
-        running = self.flights.running(mission_id)
-        if running is not None or state.search.stage == "open":
-            raise MissionConflict(refusals.MissionFlies())
-        await self._record(mission_id, MissionDeleted(by=by))
+        async with self.records.lock(mission_id):  # no start comes in between
+            state, _ = await self.records.load(mission_id)
+            if self.flights.running(mission_id) is not None or state.search.stage == "open":
+                raise MissionConflict(refusals.StillUnderWay())
+            await self.records.give(mission_id, state, Reviewed(MissionDeleted(by=by)))
 
     async def restore(self, mission_id: str, by: str) -> None:
         """Into the list again."""

@@ -68,7 +68,7 @@ class MissionRunner:
 
     def join(self, craft: CraftEquipment) -> CraftRunner:
         """A craft flies for this mission from now on; its receiver listens at once."""
-        craft_id = craft.craft_id
+        craft_id, craft = craft.craft_id, craft.flown_with(self.task.mission.sensor)
         runner = self.crafts[craft_id] = CraftRunner(
             self.mission_id,
             craft,

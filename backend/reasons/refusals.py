@@ -194,6 +194,22 @@ class MissionFlies:
 
 
 @dataclass(frozen=True, slots=True)
+class StillUnderWay:
+    """What is in the air stays in the list."""
+
+    code: Literal["still_under_way"] = "still_under_way"
+    english: ClassVar[Words] = Words("The mission is under way.", "Delete it when it is over and its vehicle is down.")
+
+
+@dataclass(frozen=True, slots=True)
+class WasDeleted:
+    code: Literal["was_deleted"] = "was_deleted"
+    english: ClassVar[Words] = Words(
+        "The mission was deleted.", "Restore it first: it is among the deleted ones in the list of missions."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class TooManyVariants:
     most: int
     code: Literal["too_many_variants"] = "too_many_variants"
@@ -244,5 +260,7 @@ RefusalReason = (
     | MissionFlies
     | MissionDoesNotFly
     | ServerIsEnding
+    | StillUnderWay
+    | WasDeleted
     | TooManyVariants
 )

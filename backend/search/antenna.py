@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from backend.events import AntennaFact, MissionStarted, Recorded, RecordingImported
+from backend.events import AntennaFact, MissionDrafted, MissionEdited, MissionStarted, Recorded, RecordingImported
 from hardware.direction_finding.antenna import AntennaPattern
 
 
@@ -21,6 +23,24 @@ def antenna_fact(pattern: AntennaPattern) -> AntennaFact:
         pointing_sigma_deg=pattern.pointing_sigma_deg,
         borrowed=pattern.borrowed,
     )
+
+
+def corrected(pattern: AntennaPattern, offset_deg: float) -> AntennaPattern:
+    """Turned so that bearings come out smaller by what they are known to read too large by, clockwise.
+
+    Exactly the same pattern when that is nothing, so that journals fold to what they were.
+    """
+    if offset_deg == 0.0:
+        return pattern
+    return replace(pattern, offset_to_nose_deg=math.remainder(pattern.offset_to_nose_deg - offset_deg, 360.0))
+
+
+def correction_flown(recorded: Sequence[Recorded]) -> float:
+    """What `antenna_flown` takes off bearings beyond its file, clockwise: nothing when it came with a recording."""
+    specs = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
+    brought = [r.event for r in recorded if isinstance(r.event, MissionStarted | RecordingImported) and r.event.antenna]
+    flown = bool(specs) and not (brought and isinstance(brought[-1], RecordingImported))
+    return specs[-1].sensor.bearing_offset_deg if flown else 0.0
 
 
 def antenna_flown(recorded: Sequence[Recorded]) -> AntennaPattern | None:

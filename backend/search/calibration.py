@@ -1,6 +1,7 @@
 """How right bearings, fixes and forecasts were where the truth is known: pure, over the facts of many missions.
 
-A bearing's error is measured against the place that somebody told; the offset is what bearings have in common.
+A bearing's error is measured against the place that somebody told; the offset is what bearings have in common, together
+with what missions had already taken off them, so that it is the whole of it however often it is taken over.
 """
 
 from __future__ import annotations
@@ -8,14 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from itertools import pairwise
 
 import numpy as np
 from shapely.geometry import Point, shape
 
 from backend.events import (
+    AntennaFact,
     BeliefUpdated,
     CraftSource,
+    MissionDrafted,
+    MissionEdited,
     MissionStarted,
     PlaceReached,
     PlanChosen,
@@ -29,6 +34,8 @@ from planner.motion import fit_motion
 from planner.types import FloatArray, LinearConstantMotion, LinearMotion, PlannerError
 
 FACTS_NEEDED = (
+    "mission_drafted",
+    "mission_edited",
     "mission_started",
     "plan_chosen",
     "place_reached",
@@ -83,8 +90,31 @@ class CheckedError:
 
 
 @dataclass(frozen=True, slots=True)
+class _Flown:
+    """An antenna as one mission flew it. in_file_deg, mounted_deg: of its front to the nose, clockwise, before and
+    after what the mission takes off its bearings. antenna "": nobody kept which it was."""
+
+    antenna: str
+    at_utc: datetime
+    in_file_deg: float
+    mounted_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Error:
+    """error_deg: as flown, clockwise of the truth, in [-180, 180)."""
+
+    mission_id: str
+    place: Place
+    error_deg: float
+    sigma_deg: float
+    flown: _Flown
+
+
+@dataclass(frozen=True, slots=True)
 class Suggestion:
-    """offset_deg: what bearings have in common, clockwise. speed_m_s, constant_s: of the flight times."""
+    """offset_deg: what bearings have in common, clockwise, with the antenna mounted as its file said at the newest
+    flight and nothing taken off. speed_m_s, constant_s: of the flight times."""
 
     sigma_deg: float
     outlier_probability: float
@@ -128,7 +158,7 @@ def wilson(held: int, of: int, z: float = 1.96) -> Share:
 def calibrate(missions: Mapping[str, tuple[str, Sequence[Recorded]]], craft: str, antenna: str) -> Calibrated:
     """missions: by id, name and facts of FACTS_NEEDED, in order. craft, antenna: "" for any."""
     fixes: list[Fix] = []
-    raw: list[tuple[str, Place, float, float]] = []
+    raw: list[_Error] = []
     flights: list[tuple[float, float]] = []
     kept: list[bool] = []
     antennas, crafts, of, not_found = set[str](), set[str](), 0, 0
@@ -145,10 +175,10 @@ def calibrate(missions: Mapping[str, tuple[str, Sequence[Recorded]]], craft: str
         not_found += sum(place is None for place in truth.values())
         known = {emitter: place for emitter, place in truth.items() if place is not None}
         fixes += _fixes(mission_id, name, recorded, known)
-        raw += [(mission_id, *error) for error in _errors(recorded, known, craft)]
+        raw += _errors(mission_id, recorded, known, craft)
         flights += _flights(recorded, craft)
         kept += _forecasts(recorded)
-    errors, offset = _judged(raw)
+    errors, beside, offset = _judged(raw)
     inside = [abs(one.error_deg) / one.sigma_deg for one in errors]
     outliers = sum(one.outlier for one in errors)
     ratios = [one.error_m / one.stated_m for one in fixes if one.stated_m > 0]
@@ -167,7 +197,7 @@ def calibrate(missions: Mapping[str, tuple[str, Sequence[Recorded]]], craft: str
         antennas=sorted(antennas),
         crafts=sorted(crafts),
         needed=BEARINGS_NEEDED,
-        suggested=_suggested(errors, offset, flights),
+        suggested=_suggested(beside, len(raw), offset, flights),
     )
 
 
@@ -189,10 +219,25 @@ def _fixes(mission_id: str, name: str, recorded: Sequence[Recorded], known: Mapp
         yield Fix(mission_id, name, emitter_id, error_m, estimate.expected_rmse_m, inside, belief.localized)
 
 
-def _errors(
-    recorded: Sequence[Recorded], known: Mapping[str, Place], craft: str
-) -> Iterable[tuple[Place, float, float]]:
-    """Place, error and sigma (degrees) of the counted bearings that a craft took, of emitters whose place is known."""
+def _flown(recorded: Sequence[Recorded]) -> dict[str, _Flown]:
+    """By craft."""
+    specs = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
+    taken_off = specs[-1].sensor.bearing_offset_deg if specs else 0.0
+    found: dict[str, _Flown] = {}
+    for record in recorded:
+        match record.event:
+            case MissionStarted(craft_id=craft_id, antenna=None):
+                found[craft_id] = _Flown("", record.at_utc, 0.0, -taken_off)
+            case MissionStarted(craft_id=craft_id, antenna=AntennaFact(name=name, offset_to_nose_deg=mounted)):
+                found[craft_id] = _Flown(name, record.at_utc, mounted + taken_off, mounted)
+            case _:
+                pass
+    return found
+
+
+def _errors(mission_id: str, recorded: Sequence[Recorded], known: Mapping[str, Place], craft: str) -> Iterable[_Error]:
+    """Of the counted bearings that a craft took, of emitters whose place is known."""
+    flown = _flown(recorded)
     for fact in counted(record.event for record in recorded):
         if fact.emitter_id not in known:
             continue
@@ -200,19 +245,38 @@ def _errors(
             continue
         east, north = LocalFrame(fact.place).to_enu(known[fact.emitter_id])
         wanted = math.degrees(math.atan2(east, north))
-        yield fact.place, (fact.bearing_deg - wanted + 180.0) % 360.0 - 180.0, max(fact.sigma_deg, 0.1)
+        unsaid = _Flown("", recorded[0].at_utc, 0.0, 0.0)
+        yield _Error(
+            mission_id,
+            fact.place,
+            (fact.bearing_deg - wanted + 180.0) % 360.0 - 180.0,
+            max(fact.sigma_deg, 0.1),
+            flown.get(fact.source.craft_id, unsaid),
+        )
 
 
-def _judged(raw: Sequence[tuple[str, Place, float, float]]) -> tuple[list[CheckedError], float]:
-    """The errors with outliers told apart, and the offset in common (their median), degrees."""
+def _off(angle_deg: FloatArray) -> FloatArray:
+    """In [-180, 180)."""
+    return (angle_deg + 180.0) % 360.0 - 180.0
+
+
+def _judged(raw: Sequence[_Error]) -> tuple[list[CheckedError], list[float], float]:
+    """The errors with outliers told apart; how far those that are none are from the offset in common; that offset
+    (their median), degrees. It is of an antenna that nothing is taken off, mounted as its newest file says."""
     if not raw:
-        return [], 0.0
-    values = np.array([error for _, _, error, _ in raw])
-    offset = float(np.median(values))
-    spread = 1.4826 * float(np.median(np.abs(values - offset)))
+        return [], [], 0.0
+    newest = {one.flown.antenna: one.flown for one in sorted(raw, key=lambda one: one.flown.at_utc)}
+    whole = np.array([one.error_deg + newest[one.flown.antenna].in_file_deg - one.flown.mounted_deg for one in raw])
+    middle = math.degrees(np.angle(np.exp(1j * np.deg2rad(whole)).sum()))  # an antenna may look backwards
+    offset = middle + float(np.median(_off(whole - middle)))
+    beside = _off(whole - offset)
+    spread = 1.4826 * float(np.median(np.abs(beside)))
     limit = max(OUTLIER_SIGMAS * spread, LEAST_OUTLIER_DEG)
-    checked = [CheckedError(m, place, e, s, bool(abs(e - offset) > limit)) for m, place, e, s in raw]
-    return checked, offset
+    checked = [
+        CheckedError(one.mission_id, one.place, one.error_deg, one.sigma_deg, bool(abs(by) > limit))
+        for one, by in zip(raw, beside, strict=True)
+    ]
+    return checked, [float(by) for by in beside if abs(by) <= limit], math.remainder(offset, 360.0)
 
 
 def _flights(recorded: Sequence[Recorded], craft: str) -> Iterable[tuple[float, float]]:
@@ -235,16 +299,16 @@ def _forecasts(recorded: Sequence[Recorded]) -> Iterable[bool]:
 
 
 def _suggested(
-    errors: Sequence[CheckedError], offset: float, flights: Sequence[tuple[float, float]]
+    good: Sequence[float], of: int, offset: float, flights: Sequence[tuple[float, float]]
 ) -> Suggestion | None:
-    good = [one.error_deg - offset for one in errors if not one.outlier]
+    """good: degrees beside the offset, of those of all bearings that are no outliers."""
     if len(good) < BEARINGS_NEEDED:
         return None
     sigma = math.sqrt(sum(error * error for error in good) / (len(good) - 1))
     speed, constant = _motion(flights)
     return Suggestion(
         sigma_deg=min(60.0, max(0.1, round(sigma, 1))),
-        outlier_probability=round(min(0.5, sum(one.outlier for one in errors) / len(errors)), 2),
+        outlier_probability=round(min(0.5, 1.0 - len(good) / of), 2),
         offset_deg=round(offset, 1),
         # of a median: sqrt(pi / 2) sigma / sqrt(n)
         offset_std_error_deg=round(math.sqrt(math.pi / 2) * sigma / math.sqrt(len(good)), 1),

@@ -71,11 +71,11 @@ class Import:
 
 
 def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Recorded]:
-    """The import of the same recording and the facts of its sweeps; empty when there was none."""
+    """The import of the same recording and the facts of its sweeps or bearings; empty when there was none."""
     for record in recorded:
         if isinstance(record.event, RecordingImported) and record.event.recording_id == recording_id:
-            ours = set(record.event.sweep_ids)
-            return [record, *(r for r in recorded if getattr(r.event, "sweep_id", None) in ours)]
+            source = ImportSource(recording_id=recording_id)
+            return [record, *(r for r in recorded if getattr(r.event, "source", None) == source)]
     return []
 
 
@@ -86,7 +86,7 @@ def import_facts(
     mission, recording = state.mission, upload.recording
     if len(recording.sweeps) > MOST_SWEEPS:
         raise MissionInputError(reasons.RecordingTooLong(len(recording.sweeps), MOST_SWEEPS), "file")
-    emitter = _emitter(mission, upload.emitter_id)
+    emitter = emitter_of(mission, upload.emitter_id)
     remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
     first_s = float(recording.sweeps[0].sweep.at_s[0])
     began_s = upload.at_s if upload.at_s is not None else (first_s if first_s >= CLOCK_S else None)
@@ -124,7 +124,8 @@ def import_facts(
     return Import(tuple(facts), tuple(kept))
 
 
-def _emitter(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
+def emitter_of(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
+    """None: the first. Raises MissionInputError."""
     try:
         return mission.emitters[0] if emitter_id is None else mission.emitter(emitter_id)
     except KeyError as error:
@@ -149,7 +150,7 @@ def _prepared(
         place = sweep.position
     else:
         raise MissionInputError(PlaceNotStated(upload.filename), "lat")
-    _refuse_far(place, mission)
+    refuse_far(place, mission)
     if sweep.frequency_hz > 0 and abs(sweep.frequency_hz / emitter.frequency_hz - 1.0) > OTHER_FREQUENCY:
         remarks.append(reasons.OtherFrequency(upload.filename, sweep.frequency_hz, emitter.frequency_hz))
     altitude = sweep.altitude_amsl_m if math.isfinite(sweep.altitude_amsl_m) else 0.0
@@ -164,7 +165,8 @@ def _prepared(
     )
 
 
-def _refuse_far(place: Place, mission: MissionSpec) -> None:
+def refuse_far(place: Place, mission: MissionSpec) -> None:
+    """Raises MissionInputError for a place of another mission."""
     east, north = LocalFrame(centre_of(mission.area)).to_enu(place)
     away_m = math.hypot(east, north)
     if not away_m <= FAR_M:

@@ -34,6 +34,10 @@ LESSONS_KEPT = 100
 """The newest: what a compass was like a hundred flights ago says little of today's."""
 
 
+AS_FLOWN_DEG = 0.25
+"""What is taken off bearings may differ by this from flight to flight and its evidence stays what it is: half the least
+spread that is compared."""
+
 UNSAID_ACCURACY_M = 10.0
 """Of a place whose teller said nothing of it."""
 LEAST_ACCURACY_M = 1.0
@@ -59,8 +63,10 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
         return None
     emitter, localized = search.emitters[most], task.emitters[most]
     if (found := found_at(emitter)) is not None:
-        return _lesson_at(mission_id, localized, taken(most), source, found)
-    return _lesson(mission_id, localized.after(emitter.unheard), emitter.bearings, source)
+        said = _lesson_at(mission_id, localized, taken(most), source, found)
+    else:
+        said = _lesson(mission_id, localized.after(emitter.unheard), emitter.bearings, source)
+    return None if said is None else replace(said, taken_off_deg=task.mission.sensor.bearing_offset_deg)
 
 
 def found_at(emitter: EmitterState) -> TruthNoted | None:
@@ -123,7 +129,8 @@ def lesson_of_check(mission_id: str, checked: AntennaChecked, sensor: SensorSpec
     log = evidence_at([bearing], prior, (KNOWN_M, 0.0))
     of_spread = np.log(np.exp(log) @ prior.rate_weight @ prior.scale_weight)
     told = np.broadcast_to((of_spread - of_spread.max())[:, None, None], log.shape)
-    return _said_of(f"check of {mission_id}"[:64], 1, (off_deg, CHECK_SIGMA_DEG), prior, told)
+    said = _said_of(f"check of {mission_id}"[:64], 1, (off_deg, CHECK_SIGMA_DEG), prior, told)
+    return replace(said, taken_off_deg=sensor.bearing_offset_deg)
 
 
 def _said(values: FloatArray, log: FloatArray) -> tuple[Said, ...]:
@@ -135,8 +142,30 @@ def errors_now(lessons: Sequence[Lesson], sensor: SensorSpec, craft_id: str, ant
     """What a mission with this sensor starts from, after these flights (oldest first) of the craft and antenna."""
     unknown = unknown_errors(sensor.outlier_probability)
     newest = lessons[-LESSONS_KEPT:]
-    evidence = [_evidence_at(one, unknown) for one in newest]
+    evidence = [_evidence_for(one, sensor.bearing_offset_deg, unknown) for one in newest]
     return learned_errors(learned(evidence, unknown), len(newest), craft_id, antenna)
+
+
+def bias_left(one: Lesson, offset_deg: float) -> float:
+    """What the flight's bearings would have been off by together, had this been taken off them; degrees clockwise."""
+    return math.remainder(one.bias_deg + one.taken_off_deg - offset_deg, 360.0)
+
+
+def _evidence_for(one: Lesson, offset_deg: float, prior: ErrorPrior) -> FloatArray:
+    """(t, k, e) at the prior's values, for a flight whose bearings have this taken off them, degrees clockwise.
+
+    How far the bias strays is told about what was taken off. Where that was something else, the bias that was found is
+    held against the new one: N(bias; 0, spread^2 + its standard error^2), whatever scale and rate are. So an offset
+    that is taken over makes the flights which suggested it tell of a smaller spread, and one that is taken back of a
+    larger: neither counts twice.
+    """
+    log = _evidence_at(one, prior)
+    if abs(math.remainder(one.taken_off_deg - offset_deg, 360.0)) <= AS_FLOWN_DEG:
+        return log
+    variance = np.rad2deg(prior.spread) ** 2 + one.bias_std_error_deg**2
+    of_spread = -0.5 * (bias_left(one, offset_deg) ** 2 / variance + np.log(variance))
+    of_others = np.log(np.einsum("tke,t->ke", np.exp(log - log.max()), prior.spread_weight))
+    return of_spread[:, None, None] + of_others
 
 
 def _evidence_at(one: Lesson, prior: ErrorPrior) -> FloatArray:
@@ -164,15 +193,16 @@ def knowing(spec: MissionSpec, lessons: Sequence[Lesson], craft_id: str, antenna
     return spec if known == sensor.learned else spec.having_learned(known)
 
 
-def mean_bias(lessons: Sequence[Lesson]) -> tuple[float, float] | None:
-    """Of the flights, weighed by what each knew: degrees clockwise, with the standard deviation from flight to flight.
+def mean_bias(lessons: Sequence[Lesson], offset_deg: float = 0.0) -> tuple[float, float] | None:
+    """Of the flights, had this been taken off their bearings, weighed by what each knew: degrees clockwise, with the
+    standard deviation from flight to flight.
 
     None without a lesson.
     """
     if not lessons:
         return None
     weight = np.array([1.0 / max(one.bias_std_error_deg, 0.1) ** 2 for one in lessons])
-    bias = np.array([one.bias_deg for one in lessons])
+    bias = np.array([bias_left(one, offset_deg) for one in lessons])
     mean = float(weight @ bias / weight.sum())
     between = float(weight @ (bias - mean) ** 2 / weight.sum())
     return mean, math.sqrt(between + 1.0 / float(weight.sum()))

@@ -131,7 +131,7 @@ def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
     if isinstance(fact, TruthNoted) and fact.emitter_id not in step.state.emitters:
         raise Refused(refusals.NoSuchEmitter(fact.emitter_id))
     if isinstance(fact, MissionDeleted) and step.state.stage == "open":
-        raise Refused(refusals.MissionFlies())
+        raise Refused(refusals.StillUnderWay())
     step.record(fact)
 
 

@@ -19,9 +19,11 @@ from backend.events import (
     CheckFact,
     Event,
     GroundFact,
+    MissionDeleted,
     MissionDrafted,
     MissionEdited,
     MissionEnded,
+    MissionRestored,
     MissionStarted,
     Outcome,
     PlanChosen,
@@ -111,7 +113,8 @@ class SearchState:
 
     muted: sources whose bearings count for no emitter.
 
-    place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds.
+    place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds. deleted: out of the
+    list, to be restored for some days.
     """
 
     spec: MissionSpec | None = None
@@ -128,6 +131,7 @@ class SearchState:
     alerts_raised: int = 0
     outcome: Outcome | None = None
     outcome_reason: Reason | None = None
+    deleted: bool = False
 
     @property
     def stage(self) -> Stage:
@@ -255,6 +259,8 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
         case TruthNoted(emitter_id=name) if name in state.emitters:
             told = replace(state.emitters[name], truth=event)
             return replace(state, emitters={**state.emitters, name: told})
+        case MissionDeleted() | MissionRestored():
+            return replace(state, deleted=isinstance(event, MissionDeleted))
         case MissionEnded(outcome=outcome, reason=reason):
             return replace(state, outcome=outcome, outcome_reason=reason)
         case _:

@@ -93,6 +93,11 @@ def fold(before: MissionDigest | None, recorded: Sequence[Recorded]) -> MissionD
     return digest
 
 
+def _stored(name: str) -> str:
+    """PostgreSQL's text holds no NUL."""
+    return name.replace("\x00", "")
+
+
 def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
     event, at_us = record.event, to_us(record.at_utc)
     if digest is None:
@@ -100,7 +105,7 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             raise ValueError(f"mission {record.mission_id} has no draft: its first event is {event.kind}")
         return MissionDigest(
             mission_id=record.mission_id,
-            name=event.spec.name,
+            name=_stored(event.spec.name),
             phase="draft",
             outcome=None,
             crafts={},
@@ -117,9 +122,9 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
     digest = replace(digest, last_seq=record.seq)
     match event:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
-            return _in_phase(replace(digest, name=spec.name, emitters=len(spec.emitters)), passed=False)
+            return _in_phase(replace(digest, name=_stored(spec.name), emitters=len(spec.emitters)), passed=False)
         case MissionLabelled(name=name):
-            return replace(digest, name=name)
+            return replace(digest, name=_stored(name))
         case PreflightChecked(passed=passed):
             return _in_phase(digest, passed)
         case MissionStarted(craft_id=craft_id):

@@ -33,7 +33,8 @@ MOST_CORNERS, MOST_PLACES = 24, 40
 @dataclass(frozen=True, slots=True)
 class LibraryEntry:
     """Columns of the missions table. tags: one a line. sought, vehicles: what is searched in, lower case. west, south,
-    east, north: of the area, degrees; None before there is one. truths: emitters of which somebody told the truth.
+    east, north: of the area, degrees; None before there is one. truths: emitters of which somebody told
+    whether and where it was found.
 
     sketch: outline (rings of the area, thinned), places (of bearings), found and truth (by emitter id; truth None:
     looked for and not found).
@@ -69,7 +70,7 @@ def advance(entry: LibraryEntry, event: Event, at_us: int) -> LibraryEntry:
             return _drawn(entry, found={**known, emitter_id: _point(Place(lat=estimate.lat, lon=estimate.lon))})
         case TruthNoted(emitter_id=emitter_id, place=place):
             truth = {**entry.sketch.get("truth", {}), emitter_id: None if place is None else _point(place)}
-            return replace(_drawn(entry, truth=truth), truths=sum(at is not None for at in truth.values()))
+            return replace(_drawn(entry, truth=truth), truths=len(truth))
         case MissionLabelled(tags=tags, notes=notes):
             return replace(entry, tags="\n".join(tags), notes=notes.replace("\x00", ""))
         case MissionDeleted():

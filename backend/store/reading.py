@@ -32,7 +32,8 @@ class PlaceInList:
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """Which missions. named: a part of name, tags or notes; emitter: of an emitter's name, id or frequency (MHz); box:
-    west, south, east, north, degrees: the area meets it; since, until: drafted, UTC us, until excluded. deleted: those
+    west, south, east, north, degrees: the area meets it, and a box whose west lies east of its east reaches through the
+    antimeridian; since, until: drafted, UTC us, until excluded. deleted: those
     that wait to be gone, instead of all others. checked: somebody told where an emitter was. "" and None: any."""
 
     named: str = ""
@@ -67,13 +68,22 @@ def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
         yield columns.outcome == wanted.outcome
     if wanted.box is not None:
         west, south, east, north = wanted.box
-        yield (columns.west <= east) & (columns.east >= west) & (columns.south <= north) & (columns.north >= south)
+        yield (columns.south <= north) & (columns.north >= south)
+        if abs(east - west) < 360.0:
+            west, east = _on_the_globe(west), _on_the_globe(east)
+            begun, ends = columns.west <= east, columns.east >= west
+            yield begun & ends if west <= east else begun | ends  # through the antimeridian
     if wanted.since_us is not None:
         yield columns.drafted_at_us >= wanted.since_us
     if wanted.until_us is not None:
         yield columns.drafted_at_us < wanted.until_us
     if wanted.checked:
         yield columns.truths > 0
+
+
+def _on_the_globe(lon: float) -> float:
+    """In [-180, 180]; 180 stays where it is, on the eastern side."""
+    return lon if abs(lon) <= 180.0 else (lon + 180.0) % 360.0 - 180.0
 
 
 class StoredFacts:

@@ -4,10 +4,29 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, StringConstraints
+from pydantic import AfterValidator, Field, StringConstraints
 
 from backend.events.review import Tag, TruthWay
 from backend.spec import Id, Model, Place
+
+TURNS_WRITING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+
+def _seen(text: str) -> str:
+    """Refuses what a list shows as nothing, or as something else than what it is."""
+    if any(ord(letter) < 0x20 or letter in TURNS_WRITING for letter in text):
+        raise ValueError("write it in one line, without control characters")
+    if not any(letter.isprintable() and not letter.isspace() for letter in text):
+        raise ValueError("write at least one letter that can be seen")
+    return text
+
+
+def _each_once(tags: list[str]) -> list[str]:
+    """The page writes them in one line, with commas between."""
+    if any("," in tag for tag in tags):
+        raise ValueError("a tag has no comma")
+    return list(dict.fromkeys(tags))
+
 
 LonLatPair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
@@ -25,8 +44,8 @@ class Sketch(Model):
 class MissionLabels(Model):
     """The name in the list, and what people say about the mission."""
 
-    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120)]
-    tags: Annotated[list[Tag], Field(max_length=20)]
+    name: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120), AfterValidator(_seen)]
+    tags: Annotated[list[Annotated[Tag, AfterValidator(_seen)]], Field(max_length=20), AfterValidator(_each_once)]
     notes: Annotated[str, StringConstraints(max_length=4000)] = ""
 
 
@@ -82,7 +101,8 @@ class CheckedBearing(Model):
 
 
 class SuggestedSensor(Model):
-    """For the next flight, in the fields of the specification. offset_deg: the antenna's."""
+    """For the next flight, in the fields of the specification. offset_deg: for its bearing_offset_deg, the whole of it:
+    what missions had taken off their bearings already is in it."""
 
     sigma_deg: float
     outlier_probability: float

@@ -326,7 +326,8 @@ class CompassKnown(Model):
     """What the flights of a craft with an antenna taught of its bearings' errors, and what its next mission expects.
 
     flights, bearings: that were learned from; places_known: flights whose emitter was found. bias_deg: mean of the
-    flights, clockwise, and bias_spread_deg: its standard deviation from flight to flight; None without a flight.
+    flights, clockwise, of what is left after what the next mission takes off its bearings, and bias_spread_deg: its
+    standard deviation from flight to flight; None without a flight.
     expected_bias_deg: standard deviation of the next flight's bias. sigma_scale: factor on the stated sigmas.
     outlier_rate: share of bearings."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,10 +12,14 @@ from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable, Qu
 
 DEFAULT_SIGMA_DEG = 7.0
 """The field system's (spec section 8), for bearings whose file states none."""
+EARLIEST_S = 1e8
+"""Times from here on are UTC epoch seconds; smaller ones count from somewhere else."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 _LAT = ("lat", "lat_deg", "latitude", "latitude_deg")
 _LON = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
 _BEARING = ("bearing_deg", "bearing", "azimuth", "azimuth_deg")
+POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
+"""A table that names one of these holds headings with what was heard there."""
 _SIGMA = ("sigma_deg", "sigma", "std_deg")
 
 
@@ -22,7 +27,8 @@ _SIGMA = ("sigma_deg", "sigma", "std_deg")
 class RecordedBearing:
     """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file.
 
-    stated: whether the file gives its sigma.
+    stated: whether the file gives its sigma. at_s: UTC epoch seconds at which it was taken, frequency_hz: of what was
+    heard; None: the file does not tell.
     """
 
     line: int
@@ -31,6 +37,8 @@ class RecordedBearing:
     sigma_deg: float
     tag: str | None = None
     stated: bool = True
+    at_s: float | None = None
+    frequency_hz: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +56,20 @@ class _Columns:
     bearing: int
     sigma: int | None
     tag: int | None
+    at: int | None = None
+
+
+def holds_bearings(table: Table) -> bool:
+    """Rather than headings with power: its columns are named, or it has the ten of UAV-RT."""
+    first = table.rows[0]
+    if len(first.cells) == 10:
+        return all(first.number(column) is not None for column in (2, 4, 5))
+    heads = (first.cells, *(comment.cells for comment in table.comments))
+    return any(
+        column_of(cells, *POWER) is None
+        and all(column_of(cells, *names) is not None for names in (_LAT, _LON, _BEARING))
+        for cells in heads
+    )
 
 
 def read_bearings(path: Path | str, sigma_deg: float = DEFAULT_SIGMA_DEG) -> RecordedBearings:
@@ -86,7 +108,7 @@ def _columns(table: Table) -> tuple[_Columns, tuple[Row, ...]]:
         )
         return columns, table.rows[1:] if header is first else table.rows
     if len(first.cells) == 10:
-        return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0), table.rows
+        return _Columns(lat=4, lon=5, bearing=2, sigma=None, tag=0, at=9), table.rows
     if len(first.cells) in (3, 4):
         if first.number(0) is None:
             raise table.columns_unknown(first, *EXPECTED)
@@ -114,4 +136,6 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
             return table.cell_unusable(row, columns.sigma, "sigma")
         sigma, given = stated, True
     tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
-    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None, given)
+    at_s = None if columns.at is None else row.number(columns.at)
+    at_s = at_s if at_s is not None and EARLIEST_S < at_s < math.inf else None
+    return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None, given, at_s)

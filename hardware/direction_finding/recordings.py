@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.bearings_file import POWER, RecordedBearing
 from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, read_table
 from hardware.direction_finding.uavrt import is_uavrt, read_rotations
 from hardware.readings import Place, Sweep
@@ -16,7 +17,6 @@ from hardware.reasons.table import CellUnusable, FileUnusable, NothingUsable
 from hardware.reasons.union import RecordingReason
 
 _HEADING = ("heading_deg", "heading", "yaw_deg", "yaw", "azimuth", "azimuth_deg", "angle", "angle_deg")
-_POWER = ("power_db", "power_dbm", "power", "rssi", "rssi_dbm", "level_db", "snr_db")
 _UNKNOWN_PLACE = Place(0.0, 0.0)
 
 
@@ -34,10 +34,11 @@ class RecordedSweep:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """sweeps: in file order. remarks: what was left out or assumed."""
+    """sweeps, bearings (of a file that holds no sweeps): in file order. remarks: what was left out or assumed."""
 
     sweeps: tuple[RecordedSweep, ...]
     remarks: tuple[RecordingReason, ...]
+    bearings: tuple[RecordedBearing, ...] = ()
 
 
 def mounted(antenna: AntennaPattern, recorded: RecordedSweep, offset_deg: float | None) -> AntennaPattern:
@@ -61,7 +62,7 @@ def _plain(table: Table, tag: str | None) -> Recording:
     """Two columns (heading, power), or a header that names heading, power and, if known, time, lat, lon, frequency."""
     header, rows = _header(table)
     heading_at = 0 if header is None else column_of(header.cells, *_HEADING)
-    power_at = 1 if header is None else column_of(header.cells, *_POWER)
+    power_at = 1 if header is None else column_of(header.cells, *POWER)
     if heading_at is None or power_at is None:
         raise table.columns_unknown(header or rows[0], "heading_deg", "power_db")
     if not rows:

@@ -173,6 +173,17 @@ class NothingUsable:
 
 
 @dataclass(frozen=True, slots=True)
+class OneTagOnly:
+    """tags: those of which the file holds bearings."""
+
+    file: str
+    tags: tuple[str, ...]
+    code: Literal["one_tag_only"] = "one_tag_only"
+
+    english: ClassVar[Words] = Words("{file} holds bearings of the tags {tags}.", "Name one of them.")
+
+
+@dataclass(frozen=True, slots=True)
 class PlaceNotStated:
     file: str
     code: Literal["place_not_stated"] = "place_not_stated"
@@ -182,4 +193,4 @@ class PlaceNotStated:
     )
 
 
-TableReason = FileUnreadable | FileUnusable | ColumnsUnknown | TableRemark | NothingUsable | PlaceNotStated
+TableReason = FileUnreadable | FileUnusable | ColumnsUnknown | TableRemark | NothingUsable | OneTagOnly | PlaceNotStated

@@ -38,13 +38,13 @@ afterEach(() => {
 });
 
 const shown = async () => {
-  act(() => render(<CompassCard />, document.body));
+  act(() => render(<CompassCard offsetDeg={1.5} />, document.body));
   await vi.waitFor(() => expect(part("compass-bias")).not.toBeNull());
 };
 
 it("says what was learned, from how many flights, and what the next search expects", async () => {
   await shown();
-  expect(api.compass).toHaveBeenCalledWith("craft-1");
+  expect(api.compass).toHaveBeenCalledWith("craft-1", 1.5);
   expect(part("compass-bias")!.textContent).toMatch(/\+6° ± 2° with “yagi”; flights learned from: 7 \(bearings: 25\)/);
   expect(part("compass-places")!.textContent).toContain("found: 2");
   expect(part("compass")!.textContent).toContain("up to 10°, errors 0.7 × as stated and 3 % wrong bearings");
@@ -55,7 +55,7 @@ it("forgets only after a second tap", async () => {
   click("compass-forget");
   expect(api.forgetCompass).not.toHaveBeenCalled();
   click("compass-forget-yes");
-  expect(api.forgetCompass).toHaveBeenCalledWith("craft-1");
+  expect(api.forgetCompass).toHaveBeenCalledWith("craft-1", 1.5);
   await vi.waitFor(() => expect(part("compass-bias")).toBeNull());
   expect(part("compass")!.textContent).toContain("Nothing learned yet");
 });

@@ -8,9 +8,9 @@ import { formatNumber, signedDegrees } from "../units/quantities";
 import type { CompassKnown, Problem } from "../wire";
 
 /** Of the craft that a draft is planned for: the server's first. */
-async function firstCompass(): Promise<CompassKnown | null> {
+async function firstCompass(offsetDeg: number): Promise<CompassKnown | null> {
   const [first] = (await api.health()).vehicles;
-  return first ? api.compass(first.craft_id) : null;
+  return first ? api.compass(first.craft_id, offsetDeg) : null;
 }
 
 function Known({ known, forget }: { known: CompassKnown; forget: () => void }) {
@@ -60,18 +60,19 @@ function Known({ known, forget }: { known: CompassKnown; forget: () => void }) {
   );
 }
 
-export function CompassCard() {
+/** offsetDeg: what the draft takes off its bearings. */
+export function CompassCard({ offsetDeg }: { offsetDeg: number }) {
   const [known, setKnown] = useState<CompassKnown | null>(null);
   const [problem, setProblem] = useState<Problem | null>(null);
   const ask = (answer: Promise<CompassKnown | null>) => {
     setProblem(null);
     answer.then(setKnown, (error: unknown) => setProblem(asProblem(error)));
   };
-  useEffect(() => ask(firstCompass()), []);
+  useEffect(() => ask(firstCompass(offsetDeg)), [offsetDeg]);
   return (
     <details class="more" data-testid="compass">
       <summary>{t("compass.title")}</summary>
-      {known && <Known known={known} forget={() => ask(api.forgetCompass(known.craft_id))} />}
+      {known && <Known known={known} forget={() => ask(api.forgetCompass(known.craft_id, offsetDeg))} />}
       {problem && <ProblemBox problem={problem} testId="compass-problem" />}
     </details>
   );

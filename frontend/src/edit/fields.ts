@@ -77,6 +77,7 @@ export const sections: readonly Section[] = [
       number("sensor.sigma_deg", "edit.sigma", "°", { min: 0.1, max: 60 }),
       number("sensor.measurement_time_s", "edit.measurement", "s", { min: 1 }),
       number("sensor.outlier_probability", "edit.outlier", "%", { scale: 0.01, min: 0, max: 50, more: true }),
+      number("sensor.bearing_offset_deg", "edit.bearingOffset", "°", { min: -180, max: 180, step: 0.1, more: true }),
       number("sensor.turn_rate_deg_s", "edit.turnRate", "°/s", { min: 5, max: 90, more: true }),
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),

@@ -2,7 +2,7 @@
 import { expect, it } from "vitest";
 import { someSpec } from "../wire/examples";
 import { set } from "./path";
-import { profileOf, profiles, readProfiles, removeProfile, saveProfile, withProfile } from "./profiles";
+import { learned, learnInto, profileOf, profiles, readProfiles, removeProfile, saveProfile, takeBack, withProfile } from "./profiles";
 
 it("brings the equipment's values back and leaves the search alone", () => {
   const flown = set(set(someSpec(), "sensor.sigma_deg", 3), "flight.speed_m_s", 12);
@@ -25,4 +25,36 @@ it("keeps one profile a name, in the browser's storage", () => {
 
 it("bears a storage that holds something else", () => {
   for (const stored of [null, "{", "7", '[{"name":1}]']) expect(readProfiles(stored)).toEqual([]);
+});
+
+const suggested = {
+  sigma_deg: 4.2,
+  outlier_probability: 0.08,
+  offset_deg: -6.5,
+  offset_std_error_deg: 0.9,
+  speed_m_s: null,
+  constant_s: null,
+};
+
+it("takes all of a suggestion over, the offset once however often, and gives it back", () => {
+  saveProfile(profileOf(set(someSpec(), "sensor.bearing_offset_deg", 2), "quad"));
+  learnInto("quad", suggested);
+  learnInto("quad", suggested);
+  const [profile] = profiles.value;
+  expect(withProfile(someSpec(), profile!).sensor).toMatchObject({ sigma_deg: 4.2, outlier_probability: 0.08, bearing_offset_deg: -6.5 });
+  expect(profile!.history!.map((change) => change.sensor.bearing_offset_deg)).toEqual([-6.5, 2]);
+  expect(readProfiles(localStorage.getItem("crossfix.profiles"))).toEqual(profiles.value);
+  takeBack("quad");
+  takeBack("quad");
+  expect(profiles.value[0]!.sensor.bearing_offset_deg).toBe(2);
+  removeProfile("quad");
+});
+
+it("an older profile takes nothing off bearings, whichever was chosen before it", () => {
+  const { bearing_offset_deg: _unsaid, ...sensor } = someSpec().sensor;
+  const older = { ...profileOf(someSpec(), "older"), sensor, history: [{ at: "2026-11-01", sensor, motion: someSpec().planner.motion }] };
+  const [read] = readProfiles(JSON.stringify([older]));
+  const turned = set(someSpec(), "sensor.bearing_offset_deg", 6);
+  expect(withProfile(turned, read!).sensor.bearing_offset_deg).toBe(0);
+  expect(learned(read!, suggested, "2026-11-23").history!.map((change) => change.sensor.bearing_offset_deg)).toEqual([0, 0]);
 });

@@ -26,6 +26,15 @@ const MOST_KEPT = 20;
 
 const KEY = "crossfix.profiles";
 
+/** Of before 2026-11-23: nothing was taken off bearings, and that is what choosing it must mean. */
+const completed = (sensor: Profile["sensor"]): Profile["sensor"] => ({ ...sensor, bearing_offset_deg: sensor.bearing_offset_deg ?? 0 });
+
+const complete = (profile: Profile): Profile => ({
+  ...profile,
+  sensor: completed(profile.sensor),
+  history: (profile.history ?? []).map((change) => ({ ...change, sensor: completed(change.sensor) })),
+});
+
 const isProfile = (value: unknown): value is Profile => {
   const candidate = value as Partial<Profile> | null;
   return typeof candidate?.name === "string" && !!candidate.sensor && !!candidate.motion && !!candidate.flight;
@@ -34,7 +43,7 @@ const isProfile = (value: unknown): value is Profile => {
 export function readProfiles(stored: string | null): Profile[] {
   try {
     const parsed: unknown = JSON.parse(stored ?? "[]");
-    return Array.isArray(parsed) ? parsed.filter(isProfile) : [];
+    return Array.isArray(parsed) ? parsed.filter(isProfile).map(complete) : [];
   } catch {
     return [];
   }
@@ -64,13 +73,14 @@ export const withProfile = (spec: MissionSpec, { sensor, motion, flight }: Profi
   flight: { ...spec.flight, ...flight },
 });
 
-/** With what checked flights suggest. Pure: the profile after it, its values of before kept in its history. */
+/** With what checked flights suggest. Pure: the profile after it, its values of before kept in its history. The offset is
+ * the whole of it, so that taking it over twice is taking it over once. */
 export function learned(profile: Profile, suggested: Suggested, at: string): Profile {
   const { sensor, motion, history = [] } = profile;
-  const { sigma_deg, outlier_probability, speed_m_s: speed, constant_s: constant } = suggested;
+  const { sigma_deg, outlier_probability, offset_deg: bearing_offset_deg, speed_m_s: speed, constant_s: constant } = suggested;
   return {
     ...profile,
-    sensor: { ...sensor, sigma_deg, outlier_probability },
+    sensor: { ...sensor, sigma_deg, outlier_probability, bearing_offset_deg },
     motion: speed === null || constant === null ? motion : { kind: "linear_constant", speed_m_s: speed, constant_s: constant },
     history: [{ at, sensor, motion }, ...history].slice(0, MOST_KEPT),
   };

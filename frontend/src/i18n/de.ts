@@ -336,7 +336,7 @@ export const de: Record<MessageKey, string> = {
   "payload.samples": "{count} Messwerte",
   "recording.title": "Aufnahme einlesen",
   "recording.explain":
-    "UAV-RT-Drehung, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei zusammen, dazu eine CSV mit Zeit und Kurs, wenn die Aufnahme keinen enthält).",
+    "UAV-RT-Drehung, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei zusammen, dazu eine CSV mit Zeit und Kurs, wenn die Aufnahme keinen enthält). Oder anderswo genommene Peilungen: eine Peildatei von UAV-RT oder uns, CSV mit lat, lon und bearing_deg, oder was ein KrakenSDR als CSV schrieb.",
   "recording.files": "Dateien",
   "recording.place": "Wo, wenn die Datei es nicht sagt",
   "recording.at": "Wann (UTC), wenn die Datei es nicht sagt",
@@ -361,6 +361,7 @@ export const de: Record<MessageKey, string> = {
   "antenna.listen": "Hören (höchstens 60 s)",
   "antenna.listening": "Hört: jetzt das Fahrzeug drehen …",
   "antenna.bad": "Eine Peilung wie 120 oder einen Ort wie 50.6123, 7.2046 angeben.",
+  "event.bearings_imported": "{name} eingelesen von {by}",
   "event.recording_imported": "{name} eingelesen von {by} ({count} Drehungen)",
   "sweep.plotEmpty": "Empfangsleistung über der Richtung: nichts gemessen",
 
@@ -721,6 +722,7 @@ export const de: Record<MessageKey, string> = {
   "edit.automatic": "Jeden nächsten Ort ohne Nachfrage anfliegen",
   "edit.sigma": "Peilfehler (1 Sigma)",
   "edit.outlier": "Anteil falscher Peilungen",
+  "edit.bearingOffset": "Peilungen zeigen zu weit im Uhrzeigersinn um",
   "edit.measurement": "Eine Drehung dauert",
   "edit.turnRate": "Drehrate",
   "edit.quality": "Mindestgüte einer Drehung",
@@ -1045,7 +1047,7 @@ export const de: Record<MessageKey, string> = {
   "calibration.wanted": "richtig sind {percent} %",
   "calibration.suggested": "Für den nächsten Flug",
   "calibration.sigma": "Peilfehler ±{sigma}°, {outliers} % falsche Peilungen.",
-  "calibration.offset": "Alle Peilungen zeigen um {offset}° ± {error}° falsch: Drehe die Antenne um so viel.",
+  "calibration.offset": "Alle Peilungen zeigen um {offset}° ± {error}° zu weit im Uhrzeigersinn: Übernommen wird es von jeder abgezogen.",
   "calibration.motion": "Flugzeit: {speed} m/s und {constant} s je Strecke.",
   "calibration.takeOver": "In „{name}“ übernehmen",
   "calibration.taken": "In „{name}“ übernommen. Die Werte von vorher stehen unter Ausrüstung.",

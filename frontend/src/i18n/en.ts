@@ -238,6 +238,7 @@ export const en = {
   "antenna.listen": "Listen (60 s at most)",
   "antenna.listening": "Listening: turn the vehicle …",
   "antenna.bad": "Write a bearing like 120, or a place like 50.6123, 7.2046.",
+  "event.bearings_imported": "{name} imported by {by}",
   "event.recording_imported": "{name} imported by {by} ({count} sweeps)",
   "sweep.plotEmpty": "Received power against heading: nothing measured",
 

@@ -542,6 +542,10 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "{wanted?bearing=Name the columns lat, lon, bearing_deg and, if known, sigma_deg.|power=Name the columns heading_deg and power_db.|pulse=Check that it is the right file.}",
   },
+  one_tag_only: {
+    text: "{file} holds bearings of the tags {tags}.",
+    remedy: "Name one of them.",
+  },
   place_not_stated: {
     text: "The file {file} does not state where it was recorded.",
     remedy: "Add columns lat and lon, or name the place beside it.",
@@ -1323,6 +1327,14 @@ export const reasonsEn: ReasonTable = {
   server_is_ending: {
     text: "The server is being ended: it only holds, returns and lands.",
     remedy: "Start it again first.",
+  },
+  still_under_way: {
+    text: "The mission is under way.",
+    remedy: "Delete it when it is over and its vehicle is down.",
+  },
+  was_deleted: {
+    text: "The mission was deleted.",
+    remedy: "Restore it first: it is among the deleted ones in the list of missions.",
   },
   too_many_variants: {
     text: "This mission has {most} variants, the most it may.",

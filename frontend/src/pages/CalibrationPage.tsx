@@ -48,7 +48,10 @@ function Suggestion({ suggested }: { suggested: Suggested }) {
             sigma: formatNumber(suggested.sigma_deg, 1),
             outliers: Math.round(100 * suggested.outlier_probability),
           })}{" "}
-          {t("calibration.offset", { offset: signedDegrees(suggested.offset_deg), error: formatNumber(suggested.offset_std_error_deg, 1) })}
+          {t("calibration.offset", {
+            offset: signedDegrees(suggested.offset_deg, 1),
+            error: formatNumber(suggested.offset_std_error_deg, 1),
+          })}
           {suggested.speed_m_s !== null &&
             ` ${t("calibration.motion", { speed: formatNumber(suggested.speed_m_s, 1), constant: formatNumber(suggested.constant_s ?? 0, 1) })}`}
         </p>

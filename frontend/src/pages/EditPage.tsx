@@ -73,7 +73,7 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
       <KindField />
       <MovementField failed={failed} />
       <ProfileRow />
-      {draft.value?.spec.sensor.bearing_errors === "joint" && <CompassCard />}
+      {spec.sensor.bearing_errors === "joint" && <CompassCard offsetDeg={spec.sensor.bearing_offset_deg ?? 0} />}
     </fieldset>
   );
 }

@@ -70,7 +70,7 @@ function Found({ found }: { found: RecordingImport }) {
       {found.already && <p>{t("recording.already")}</p>}
       <ul class="remarks">
         {found.sweeps.map((sweep) => (
-          <li key={sweep.sweep_id}>
+          <li key={sweep.place_number}>
             <strong>{t("sweep.place", { number: sweep.place_number })}</strong>{" "}
             {sweep.bearing_deg !== null &&
               sweep.sigma_deg !== null &&

@@ -125,9 +125,9 @@ export function KeepVariant({ missionId, asked }: { missionId: string; asked: ()
         placeholder={t("whatIf.keepName")}
         maxLength={60}
         value={name}
-        onInput={(e) => setName(e.currentTarget.value)}
+        onInput={(e) => setName(e.currentTarget.value.replaceAll("/", "-"))} // its address has the name in it
       />
-      <button type="submit" data-testid="keep-variant" disabled={name.trim() === ""}>
+      <button type="submit" data-testid="keep-variant" disabled={/^\s*\.*\s*$/.test(name)}>
         {t("whatIf.keep")}
       </button>
       <a class="button" href={`#/compare/${encodeURIComponent(missionId)}`} data-testid="open-compare">

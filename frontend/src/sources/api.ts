@@ -93,10 +93,12 @@ export const health = () => json<Health>("/health");
 
 export const payloads = () => json<PayloadList>("/payloads");
 export const defaults = () => json<Defaults>("/defaults");
-const compassPath = (craftId: string) => `/crafts/${encodeURIComponent(craftId)}/compass`;
-/** What was learned of the compass of a craft with its antenna. */
-export const compass = (craftId: string) => json<CompassKnown>(compassPath(craftId));
-export const forgetCompass = (craftId: string) => json<CompassKnown>(compassPath(craftId), { method: "DELETE" });
+const compassPath = (craftId: string, offsetDeg: number) =>
+  `/crafts/${encodeURIComponent(craftId)}/compass?bearing_offset_deg=${offsetDeg}`;
+/** What was learned of the compass of a craft with its antenna, for a mission that takes this off its bearings. */
+export const compass = (craftId: string, offsetDeg: number) => json<CompassKnown>(compassPath(craftId, offsetDeg));
+export const forgetCompass = (craftId: string, offsetDeg: number) =>
+  json<CompassKnown>(compassPath(craftId, offsetDeg), { method: "DELETE" });
 /** A page of the list. after: `next` of the page before. */
 export const missions = (asked: Readonly<Record<string, string>>, after: string | null) =>
   json<MissionList>(`/missions?${new URLSearchParams(after === null ? asked : { ...asked, after })}`);

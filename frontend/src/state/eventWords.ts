@@ -119,7 +119,9 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
     case "antenna_checked":
       return t(event.check.ok ? "event.antenna_ok" : "event.antenna_wrong", { detail: reasonText(event.check.reason) });
     case "recording_imported":
-      return t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: byWords(event.by) });
+      return event.sweep_ids.length === 0
+        ? t("event.bearings_imported", { name: event.filename, by: byWords(event.by) })
+        : t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: byWords(event.by) });
     case "bearing_excluded":
       if (!event.heard) return t("event.silence_excluded", { by: byWords(event.by) });
       return event.reason

@@ -64,8 +64,9 @@ export const formatAge = (seconds: number): string => (seconds < 100 ? `${Math.r
 
 export const formatClock = (iso: string): string => new Date(iso).toISOString().slice(11, 19);
 
-/** An angle with its sign, whole degrees: 6.4 -> "+6", -0.2 -> "0". */
-export const signedDegrees = (degrees: number): string => {
-  const whole = Math.round(degrees);
-  return whole > 0 ? `+${whole}` : whole < 0 ? `−${-whole}` : "0";
+/** An angle with its sign, whole degrees unless digits are asked for: 6.4 -> "+6", -0.2 -> "0". */
+export const signedDegrees = (degrees: number, digits = 0): string => {
+  const rounded = Number(degrees.toFixed(digits));
+  const size = formatNumber(Math.abs(rounded), digits);
+  return rounded > 0 ? `+${size}` : rounded < 0 ? `−${size}` : size;
 };

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from uuid import uuid4
+
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
 FAR = {"type": "Polygon", "coordinates": [[[8.2, 51.6], [8.204, 51.6], [8.204, 51.602], [8.2, 51.602], [8.2, 51.6]]]}
 
@@ -33,6 +35,36 @@ async def test_missions_are_found_by_place_emitter_date_result_and_words(client)
         assert (await client.get("/api/missions", params=wrong)).status_code == 422, wrong
 
 
+def beside_the_antimeridian(west: float) -> dict:
+    east = west + 0.004
+    ring = [[west, 50.6], [east, 50.6], [east, 50.602], [west, 50.602], [west, 50.6]]
+    return {"type": "Polygon", "coordinates": [ring]}
+
+
+async def test_a_rectangle_reaches_through_the_antimeridian(client):
+    await draft(client, name="last of the east", area=beside_the_antimeridian(179.99))
+    await draft(client, name="first of the west", area=beside_the_antimeridian(-179.99))
+    await draft(client, name="at home")
+    both = {"last of the east", "first of the west"}
+    for box in ("179.5,50,-179.5,51", "179.5,50,180.5,51", "-180.5,50,-179.5,51"):
+        assert await names(client, box=box) == both, box
+    assert await names(client, box="179.5,50,180,51") == {"last of the east"}
+    assert await names(client, box="-180,50,-179.5,51") == {"first of the west"}
+    for box in ("-180,-90,180,90", "-270,-90,270,90", "-180,50,180,51"):
+        assert await names(client, box=box) == both | {"at home"}, box
+    assert await names(client, box="179.5,51,-179.5,52") == set()
+
+
+async def test_words_are_found_whatever_their_case_in_any_language(client):
+    mission_id = await draft(client)
+    labels = {"name": "Übung Größe", "tags": ["ÄSCHE"], "notes": "Čáp"}
+    assert (await client.put(f"/api/missions/{mission_id}/labels", json=labels)).status_code == 200
+    for words in ("übung", "ÜBUNG", "GRÖ", "äsche", "čáp", "ČÁP"):
+        assert await names(client, named=words) == {"Übung Größe"}, words
+    for words in ("%", "_", "ubung"):
+        assert await names(client, named=words) == set(), words
+
+
 async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client):
     mission_id = await draft(client)
     labels = {"name": "Owls", "tags": ["night", "season 3"], "notes": "by the river"}
@@ -42,8 +74,27 @@ async def test_labels_are_kept_and_searched_and_the_list_has_a_small_map(client)
     (listed,) = (await client.get("/api/missions")).json()["missions"]
     assert (listed["tags"], listed["notes"]) == (labels["tags"], labels["notes"])
     assert listed["sketch"]["outline"] == [AREA["coordinates"][0]]
-    for wrong in ({**labels, "name": " "}, {**labels, "tags": ["a\nb"]}, {**labels, "tags": ["x"] * 21}):
+    for wrong in (
+        {**labels, "name": " "},
+        {**labels, "name": "\u200b"},
+        {**labels, "name": "owls\u202egpj"},
+        {**labels, "name": "o\x00wls"},
+        {**labels, "tags": ["a\nb"]},
+        {**labels, "tags": ["a,b"]},
+        {**labels, "tags": ["x" * 41]},
+        {**labels, "tags": ["x"] * 21},
+    ):
         assert (await client.put(f"/api/missions/{mission_id}/labels", json=wrong)).status_code == 422
+
+
+async def test_odd_names_are_kept_as_they_were_written(client):
+    mission_id = await draft(client)
+    family = "\U0001f468\u200d\U0001f469\u200d\U0001f467"
+    for name in ("<img src=x onerror=alert(1)>", "%", "'; drop table missions; --", family, "x" * 120):
+        labels = {"name": name, "tags": ["owls", "owls", family], "notes": ""}
+        told = await client.put(f"/api/missions/{mission_id}/labels", json=labels)
+        assert (told.status_code, told.json()["name"], told.json()["tags"]) == (200, name, ["owls", family])
+        assert await names(client, named=name) == {name}
 
 
 async def test_a_deleted_mission_is_out_of_the_list_and_comes_back(client):
@@ -56,6 +107,16 @@ async def test_a_deleted_mission_is_out_of_the_list_and_comes_back(client):
     assert (await client.delete("/api/missions/unknown")).status_code == 404
 
 
+async def test_a_deleted_mission_is_started_from_no_tab_that_still_shows_it(client):
+    mission_id = await draft(client)
+    for _ in range(2):
+        assert (await client.delete(f"/api/missions/{mission_id}")).status_code == 204
+    order = {"command_id": str(uuid4()), "command": {"kind": "start"}}
+    reply = (await client.post(f"/api/missions/{mission_id}/commands", json=order)).json()
+    assert (reply["accepted"], reply["reason"]["code"]) == (False, "was_deleted")
+    assert await names(client, deleted=True) == {"Search"}
+
+
 async def test_the_truth_is_told_and_the_last_word_counts(client):
     mission_id = await draft(client)
     told = {"place": {"lat": 50.601, "lon": 7.202}, "accuracy_m": 4, "how": "phone"}
@@ -66,6 +127,7 @@ async def test_the_truth_is_told_and_the_last_word_counts(client):
     assert checked["c95"] == {"of": 0, "share": 0.0, "low": 0.0, "high": 1.0}
     not_found = {"place": None, "how": "map"}
     assert (await client.put(f"/api/missions/{mission_id}/truth", json=not_found)).status_code == 200
-    assert (await client.get("/api/calibration")).json()["missions"] == 0
+    checked = (await client.get("/api/calibration")).json()
+    assert (checked["missions"], checked["not_found"], checked["fixes"]) == (1, 1, [])
     wrong = {**told, "emitter_id": "nobody"}
     assert (await client.put(f"/api/missions/{mission_id}/truth", json=wrong)).status_code == 422

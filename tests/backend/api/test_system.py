@@ -113,6 +113,9 @@ async def test_what_was_learned_of_a_compass_is_shown_and_forgotten(client, serv
     assert (known["flights"], known["bearings"], known["antenna"]) == (2, 8, craft.pattern.name)
     assert known["bias_deg"] == 6.0
     assert known["expected_bias_deg"] < 2.0
+    right = (await client.get("/api/crafts/craft-1/compass?bearing_offset_deg=6")).json()
+    assert (right["bias_deg"], right["flights"]) == (0.0, 2)
+    assert (await client.get("/api/crafts/craft-1/compass?bearing_offset_deg=200")).status_code == 422
     joint = (await client.get("/api/defaults")).json()["spec"]
     drafted = (await client.post("/api/missions", json=joint)).json()["spec"]
     assert (joint["sensor"]["learned"], drafted["sensor"]["learned"]["flights"]) == (None, 2)

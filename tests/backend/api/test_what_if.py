@@ -24,7 +24,7 @@ from backend.events import (
 from backend.search.antenna import antenna_fact
 from backend.search.localization import localization
 from backend.spec import EmitterSpec, MissionSpec, Polygon
-from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
+from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern, pattern_json
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Sweep
 from hardware.reasons.sweep import NoDirection
@@ -223,6 +223,22 @@ async def test_the_mounting_is_that_of_the_antenna_that_flew_whatever_the_server
     told = await ask(client, "m1", bearings=1, offset_to_nose_deg=0.0)
     assert told["antenna"] == {"name": "flown", "offset_to_nose_deg": 0.0}
     assert turned_deg(told) == pytest.approx([0.0], abs=0.5)
+
+
+async def test_another_pattern_is_flown_with_what_the_mission_took_off_its_bearings(client, services):
+    sensor = SPEC.sensor.model_copy(update={"bearing_offset_deg": 20.0})
+    flown = replace(YAGI, name="flown", offset_to_nose_deg=YAGI.offset_to_nose_deg - 20.0)
+    events = [
+        MissionDrafted(spec=SPEC.model_copy(update={"sensor": sensor})),
+        started(antenna=antenna_fact(flown)),
+        BEARINGS[0],
+        TASK.belief_fact(BEARINGS[:1])[0],
+    ]
+    await services.journal.append("m1", events)
+    await services.journal.save_sweep("m1", BEARINGS[0].sweep_id, "craft-1", "emitter-1", 1, 1, sweep_of(BEARINGS[0]))
+    told = await ask(client, "m1", bearings=1, pattern={"filename": "yagi.json", "text": pattern_json(YAGI)})
+    assert told["antenna"]["offset_to_nose_deg"] == YAGI.offset_to_nose_deg - 20.0
+    assert turned_deg(told) == pytest.approx([-20.0], abs=0.5)
 
 
 async def test_through_an_antenna_that_it_does_not_look_like_a_sweep_tells_nothing(client, heard):

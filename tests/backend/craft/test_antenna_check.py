@@ -16,6 +16,7 @@ from backend.craft.antenna_check import check_by_hand
 from backend.events import CheckFact
 from backend.reasons.safety import NoPosition
 from backend.search.errors import MissionInputError
+from backend.spec import SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.readings import Channel, HeadingSample, PowerSample
@@ -55,11 +56,14 @@ class Hand:
                 yield PowerSample(heard_s + self.late_s, 868.3e6, -60.0 + gain + noise)
 
 
-async def checked(pattern: AntennaPattern, wait_s: float = 1.2, **hand: float) -> CheckFact:
+async def checked(
+    pattern: AntennaPattern, wait_s: float = 1.2, bearing_offset_deg: float = 0.0, **hand: float
+) -> CheckFact:
     """pattern: of the antenna that is really mounted; the server believes it is PATTERN."""
     stage = Stage(factor=50.0)
     stage.receiver = Hand(stage, pattern, **hand)  # type: ignore[assignment]
-    found = await check_by_hand(stage.craft(PATTERN), spec(), BEARING, wait_s, "ann")
+    mission = spec().model_copy(update={"sensor": SensorSpec(bearing_offset_deg=bearing_offset_deg)})
+    found = await check_by_hand(stage.craft(PATTERN), mission, BEARING, wait_s, "ann")
     assert found.by == "ann"
     return found.check
 
@@ -83,6 +87,17 @@ async def test_a_turned_antenna_refuses_the_start_and_names_the_offset() -> None
     assert isinstance(check.reason, AntennaAskew)
     assert check.reason.true_deg == pytest.approx(BEARING, abs=0.1)
     assert check.reason.offset_deg == pytest.approx(40.0, abs=2.0)
+
+
+async def test_what_the_mission_takes_off_counts_and_the_file_is_not_asked_for_it_again() -> None:
+    """Mounted 40 degrees clockwise of what the file says, its bearings read 40 too small."""
+    right = await checked(turned(40.0), bearing_offset_deg=-40.0)
+    assert right.ok
+    assert isinstance(right.reason, AntennaAgrees)
+    assert right.reason.measured_deg == pytest.approx(BEARING, abs=2.0)
+    half = (await checked(turned(40.0), bearing_offset_deg=-10.0)).reason
+    assert isinstance(half, AntennaAskew)
+    assert half.offset_deg == pytest.approx(30.0, abs=2.0), "with the 10 of the mission that is 40"
 
 
 async def test_a_dead_antenna_and_a_late_clock_are_noticed() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from equipment import HOME, PATTERN, spec
+from equipment import HOME, PATTERN, PointingFinder, spec
 from flights import order
 from stage import Stage
 
@@ -11,6 +11,8 @@ from backend.events import FIRST_CRAFT, MissionStarted
 from backend.mission.state import fold
 from backend.ports import Lesson
 from backend.spec import MissionSpec, SensorSpec
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.readings import BearingReading, Sweep
 
 
 class MemoryLessons:
@@ -33,6 +35,18 @@ class MemoryLessons:
 
     async def forget(self, craft_id: str, antenna: str) -> None:
         self.kept.clear()
+
+
+class HearingFinder(PointingFinder):
+    """Keeps how the antenna of each sweep was said to be mounted."""
+
+    def __init__(self) -> None:
+        super().__init__((120.0, 80.0))
+        self.mounted = set[float]()
+
+    def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        self.mounted.add(pattern.offset_to_nose_deg)
+        return super().estimate(sweep, pattern)
 
 
 def joint() -> MissionSpec:
@@ -68,6 +82,22 @@ async def test_a_flight_teaches_the_next_one_which_keeps_what_it_started_from() 
     assert [one.mission_id for one in lessons.kept] == early[:2]
     again = fold(await stage.journal.read(early[1]))
     assert again.search.mission.sensor.learned == second.learned
+
+
+async def test_what_is_taken_off_bearings_is_flown_and_stays_known_with_what_was_learned() -> None:
+    stage, lessons = Stage(), MemoryLessons()
+    stage.lessons = lessons
+    stage.finder = finder = HearingFinder()
+    stage.room = stage.new_room()
+    await stage.room.start_up()
+    offset = SensorSpec(bearing_errors="joint", bearing_offset_deg=6.5)
+    mission_id = await stage.room.drafts.create(spec().model_copy(update={"sensor": offset}), "anna")
+    started = await flown(stage, lessons, mission_id)
+    await stage.room.shut_down()
+    assert started.antenna is not None
+    assert started.antenna.offset_to_nose_deg == PATTERN.offset_to_nose_deg - 6.5
+    assert finder.mounted == {PATTERN.offset_to_nose_deg - 6.5}, "at every sweep, in flight"
+    assert [one.taken_off_deg for one in lessons.kept] == [6.5]
 
 
 async def test_where_the_emitter_was_found_teaches_in_the_place_of_what_the_bearings_alone_did() -> None:

@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 from ground import AREA, HOME
 
-from backend.events import FIRST_CRAFT, Event, MissionDrafted, MissionStarted, Recorded, RecordingImported
-from backend.search.antenna import antenna_fact, antenna_flown
-from backend.spec import FIRST_EMITTER, MissionSpec
+from backend.events import (
+    FIRST_CRAFT,
+    Event,
+    MissionDrafted,
+    MissionEdited,
+    MissionStarted,
+    Recorded,
+    RecordingImported,
+)
+from backend.search.antenna import antenna_fact, antenna_flown, corrected, correction_flown
+from backend.spec import FIRST_EMITTER, MissionSpec, SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 
 ANGLE_DEG, GAIN_DB = np.array([0.0, 90.0, 180.0, 270.0]), np.array([0.0, -6.0, -12.0, -6.0])
@@ -64,3 +72,22 @@ def test_it_is_the_last_one_flown_or_imported_with() -> None:
 
 def test_of_a_mission_that_kept_none_there_is_none() -> None:
     assert antenna_flown(recorded(DRAFTED, started(None))) is None
+
+
+def test_what_is_taken_off_bearings_turns_the_antenna_the_other_way_and_nothing_turns_nothing() -> None:
+    assert corrected(YAGI, 0.0) is YAGI
+    assert corrected(YAGI, 5.0).offset_to_nose_deg == 7.0
+    assert corrected(YAGI, -170.0).offset_to_nose_deg == -178.0
+    assert corrected(corrected(YAGI, 33.3), -33.3).offset_to_nose_deg == pytest.approx(12.0)
+
+
+def test_a_recordings_antenna_has_no_correction_in_it_and_a_flown_one_the_last_that_was_specified() -> None:
+    def with_offset(deg: float) -> MissionSpec:
+        return DRAFTED.spec.model_copy(update={"sensor": SensorSpec(bearing_offset_deg=deg)})
+
+    specified = (MissionDrafted(spec=with_offset(3.0)), MissionEdited(spec=with_offset(4.0)))
+    assert correction_flown(recorded(*specified)) == 4.0
+    assert correction_flown(recorded(*specified, imported(LOOP), started(YAGI))) == 4.0
+    assert correction_flown(recorded(*specified, started(None))) == 4.0
+    assert correction_flown(recorded(*specified, started(YAGI), imported(LOOP))) == 0.0
+    assert correction_flown([]) == 0.0

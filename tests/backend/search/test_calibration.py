@@ -7,10 +7,13 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
-from ground import FRAME, bearing
+from ground import AREA, FRAME, bearing
 
-from backend.events import Event, PlaceReached, Recorded, TruthNoted
+from backend.events import Event, MissionDrafted, MissionStarted, PlaceReached, Recorded, TruthNoted
+from backend.search.antenna import antenna_fact
 from backend.search.calibration import calibrate, wilson
+from backend.spec import MissionSpec, SensorSpec
+from hardware.direction_finding.antenna import AntennaPattern
 
 TARGET = (200.0, 80.0)
 
@@ -79,3 +82,45 @@ def test_an_interval_is_wilsons() -> None:
     found = wilson(8, 10)  # 0.49 to 0.94: Wilson 1927, as statsmodels' proportion_confint
     assert (found.share, found.low, found.high) == pytest.approx((0.8, 0.4902, 0.9433), abs=1e-3)
     assert (wilson(0, 0).low, wilson(0, 0).high) == (0.0, 1.0)
+
+
+def flown(file_deg: float, taken_off_deg: float, true_deg: float, days: int, name: str = "yagi") -> list[Recorded]:
+    """A checked mission of an antenna whose front is `true_deg` clockwise of the nose, and of what its file and its
+    mission believed of that. Own errors of +-2 degrees."""
+    mounted = file_deg - taken_off_deg
+    spec = MissionSpec(name="m", area=AREA, sensor=SensorSpec(bearing_offset_deg=taken_off_deg))
+    pattern = AntennaPattern(name, np.array([0.0, 180.0]), np.array([0.0, -9.0]), mounted)
+    start = MissionStarted(
+        craft_id="craft-1", by="a", home=FRAME.origin, home_amsl_m=0.0, software="test", antenna=antenna_fact(pattern)
+    )
+    errors = [seen_from(10.0 * n, 0.0, mounted - true_deg + 2.0 * (-1.0) ** n) for n in range(10)]
+    facts = recorded(MissionDrafted(spec=spec), start, *errors, told())
+    return [record.model_copy(update={"at_utc": record.at_utc + timedelta(days=days)}) for record in facts]
+
+
+@pytest.mark.parametrize(
+    ("flights", "offset_deg"),
+    [
+        ([flown(0.0, 0.0, -6.0, 0)], 6.0),
+        ([flown(0.0, 0.0, -6.0, 0), flown(0.0, 6.0, -6.0, 1)], 6.0),  # taken over
+        ([flown(0.0, 6.0, -6.0, 0)], 6.0),
+        ([flown(0.0, 6.0, 0.0, 0)], 0.0),  # it was wrong to
+        ([flown(-6.0, 0.0, -6.0, 2), flown(0.0, 0.0, -6.0, 0), flown(0.0, 6.0, -6.0, 1)], 0.0),  # put right in the file
+        ([flown(0.0, 6.0, -6.0, 0), flown(30.0, 0.0, 24.0, 1, "loop")], 6.0),
+        ([flown(180.0, 0.0, 0.0, 0)], 180.0),
+    ],
+)
+def test_the_suggested_offset_is_the_whole_of_it_whatever_was_taken_off_before(
+    flights: list[list[Recorded]], offset_deg: float
+) -> None:
+    found = calibrate({f"m{n}": ("m", facts) for n, facts in enumerate(flights)}, "", "")
+    assert found.suggested is not None
+    assert math.remainder(found.suggested.offset_deg - offset_deg, 360.0) == pytest.approx(0.0, abs=0.2)
+    assert found.suggested.sigma_deg == pytest.approx(2.0, abs=0.2), "what was taken off is no error"
+    assert found.outliers.share == 0.0
+
+
+def test_errors_are_shown_as_they_were_flown() -> None:
+    found = calibrate({"m": ("m", flown(0.0, 6.0, -6.0, 0))}, "", "")
+    assert [one.error_deg for one in found.bearings] == pytest.approx([2.0, -2.0] * 5, abs=0.01)
+    assert found.within_1_sigma.share == 1.0

@@ -234,6 +234,76 @@ def test_the_mean_of_the_flights_weighs_what_each_knew_and_says_how_they_differ(
     assert apart[0] == pytest.approx(0.0, abs=1.5)
 
 
+def taking_off(offset_deg: float) -> SensorSpec:
+    return JOINT.model_copy(update={"bearing_offset_deg": offset_deg})
+
+
+@cache
+def corrected(bias: float, offset_deg: float) -> Lesson:
+    """Of a flight with a compass that reads `bias` too large, which took `offset_deg` off its bearings."""
+    spec = knowing(mission(taking_off(offset_deg)), [], FIRST_CRAFT, ANTENNA)
+    found = taught("m2", bearings(bias - offset_deg), spec)
+    assert found is not None
+    return found
+
+
+def sd_deg(known: list[Lesson], offset_deg: float) -> float:
+    return math.degrees(prior_in(now(known, taking_off(offset_deg))).bias_sd)
+
+
+def test_an_offset_is_the_profiles_and_only_how_far_the_bias_strays_from_it_is_learned() -> None:
+    askew = lessons(7.0, 15)
+    assert corrected(7.0, 7.0).taken_off_deg == 7.0
+    assert corrected(7.0, 7.0).bias_deg == pytest.approx(0.0, abs=1.5)
+    unknown = sd_deg([], 0.0)
+    assert sd_deg(askew, 0.0) > unknown, "such a compass may be as wrong again"
+    assert sd_deg(askew, 7.0) < 0.7 * unknown, "the same flights, once that is taken off"
+    assert sd_deg(askew, 7.0) == pytest.approx(sd_deg([corrected(7.0, 7.0)] * 15, 7.0), rel=0.4)
+    assert sd_deg(askew, 7.1) == pytest.approx(sd_deg(askew, 7.0), rel=0.1)
+
+
+def test_an_offset_that_is_taken_back_is_not_made_up_for_by_what_was_learned_with_it() -> None:
+    well = [corrected(7.0, 7.0)] * 15
+    assert sd_deg(well, 7.0) < 2.0
+    assert sd_deg(well, 0.0) > 5.0, "a compass that is right with 7 degrees off it is 7 degrees wrong without"
+    assert sd_deg(well, 7.2) == sd_deg(well, 7.0)
+    for offset_deg in (0.0, 7.0):
+        left = mean_bias([*well, *lessons(7.0, 15)], offset_deg)
+        assert left is not None
+        assert left[0] == pytest.approx(7.0 - offset_deg, abs=1.5)
+
+
+def test_scale_and_outliers_are_known_whatever_is_taken_off() -> None:
+    for offset_deg in (0.0, 6.0, -90.0):
+        prior = prior_in(now(lessons(0.0, 30), taking_off(offset_deg)))
+        assert prior.scale_weight[0] > 0.5
+        assert math.isfinite(prior.bias_sd)
+
+
+def test_a_belief_with_the_offset_taken_off_does_not_look_for_it_again() -> None:
+    """The bearings of such a mission are right; nothing that was learned may turn them back."""
+    for known in (lessons(7.0, 15), [corrected(7.0, 7.0)] * 15):
+        spec = knowing(mission(taking_off(7.0)), known, FIRST_CRAFT, ANTENNA)
+        fact, _ = localization(spec, HOME).belief_fact(bearings(0.0, 4))
+        (source,) = fact.sources
+        assert source.bias_deg == pytest.approx(0.0, abs=1.0)
+
+
+def test_a_check_says_what_its_mission_took_off() -> None:
+    one = lesson_of_check("m1", check(358.0), taking_off(5.0))
+    assert one is not None
+    assert (one.bias_deg, one.taken_off_deg) == (pytest.approx(-4.0), 5.0)
+
+
+def test_a_mission_of_before_takes_nothing_off_and_folds_to_what_it_was() -> None:
+    spec = knowing(mission(), lessons(3.0, 5), FIRST_CRAFT, ANTENNA)
+    before = spec.model_dump()
+    del before["sensor"]["bearing_offset_deg"]
+    again = MissionSpec.model_validate(before)
+    assert again == spec
+    assert again.sensor.bearing_offset_deg == 0.0
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

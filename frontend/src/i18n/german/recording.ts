@@ -36,6 +36,7 @@ export const recording = {
     text: "Die Kennung {tag} war in der Drehung ab Zeile {line} von {file} nicht zu hören.",
     remedy: "Eine ihrer Kennungen wählen: {heard}.",
   },
+  one_tag_only: { text: "{file} enthält Peilungen der Kennungen {tags}.", remedy: "Eine davon nennen." },
   other_tags_left_out: {
     text: "Aus der Drehung ab Zeile {line} von {file} wird die Kennung {tag} verwendet, ohne {pulses|Puls|Pulse} anderer Kennungen ({others}).",
     remedy: "Um eine andere Kennung zu verwenden, sie nennen.",

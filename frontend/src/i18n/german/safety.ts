@@ -112,6 +112,14 @@ export const safety = {
     remedy: "Während sie hält, ihr Suchgebiet ändern, oder eine neue Mission entwerfen.",
   },
   mission_flies: { text: "Eine Mission fliegt.", remedy: "Die Antenne prüfen, wenn das Fluggerät am Boden ist." },
+  still_under_way: {
+    text: "Die Mission ist noch im Gang.",
+    remedy: "Sie löschen, wenn sie vorbei ist und das Fluggerät am Boden steht.",
+  },
+  was_deleted: {
+    text: "Die Mission wurde gelöscht.",
+    remedy: "Sie zuerst wiederherstellen: In der Liste der Missionen steht sie unter den gelöschten.",
+  },
   server_is_ending: {
     text: "Der Server wird beendet: Er hält nur noch, kehrt zurück und landet.",
     remedy: "Ihn zuerst wieder starten.",

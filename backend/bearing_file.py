@@ -1,0 +1,58 @@
+"""Files of bearings that others took: UAV-RT's and ours, plain CSV, and what a KrakenSDR's page held, line by line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from backend.kraken import FEWEST_COLUMNS, KrakenRefused, read_kraken
+from backend.search.reported import ReportedBearing
+from hardware.direction_finding.bearings_file import EARLIEST_S, RecordedBearing, holds_bearings, read_bearings
+from hardware.direction_finding.recordings import Recording
+from hardware.direction_finding.table_file import RecordingError, Row, Table, read_table
+from hardware.direction_finding.uavrt import is_uavrt
+from hardware.reasons.table import CellUnusable, NothingUsable, OneTagOnly
+
+EPOCH_MS = 1e3 * EARLIEST_S
+
+
+def read_bearing_file(path: Path, tag: str | None) -> Recording | None:
+    """None for a file of something else. tag: whose bearings, in a file of several. Raises RecordingError."""
+    table = read_table(path)
+    if is_uavrt(table):
+        return None
+    if _is_kraken(table.rows[0]):
+        return _kraken(table)
+    if not holds_bearings(table):
+        return None
+    found = read_bearings(path)
+    tags = tuple(sorted({one.tag for one in found.bearings if one.tag is not None}))
+    if (tag is not None and tags and tag not in tags) or (tag is None and len(tags) > 1):
+        raise RecordingError(OneTagOnly(str(path), tags))
+    chosen = tuple(one for one in found.bearings if tag is None or not tags or one.tag == tag)
+    return Recording((), found.remarks, chosen)
+
+
+def _is_kraken(row: Row) -> bool:
+    return len(row.cells) >= FEWEST_COLUMNS and (row.number(0) or 0.0) > EPOCH_MS
+
+
+def _kraken(table: Table) -> Recording:
+    """Of the bearings that a station took standing still, one a minute, as of those that it sends itself."""
+    kept: dict[str, RecordedBearing] = {}
+    remarks: list[CellUnusable] = []
+    for row in table.rows:
+        try:
+            told = read_kraken(",".join(row.cells).encode(), 0.0)
+        except KrakenRefused:
+            remarks.append(table.cell_unusable(row, 1, "bearing"))
+        else:
+            kept.setdefault(told.bearing_id, _recorded(row, told))
+    if not kept:
+        raise RecordingError(NothingUsable(str(table.path), "bearing", remarks[0]))
+    return Recording((), tuple(remarks), tuple(kept.values()))
+
+
+def _recorded(row: Row, told: ReportedBearing) -> RecordedBearing:
+    return RecordedBearing(
+        row.line, told.place, told.bearing_deg, told.sigma_deg, told.by, False, told.taken_at_s, told.frequency_hz
+    )

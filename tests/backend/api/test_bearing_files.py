@@ -1,0 +1,87 @@
+"""Files of bearings brought into a mission: all or none, once, as one source with errors of its own."""
+
+from __future__ import annotations
+
+import math
+
+AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
+TARGET = (7.202, 50.601)
+PLACES = ((7.2, 50.6), (7.204, 50.6), (7.204, 50.602), (7.199, 50.603))
+
+
+def bearing_deg(lon: float, lat: float) -> float:
+    east = (TARGET[0] - lon) * math.cos(math.radians(lat))
+    return math.degrees(math.atan2(east, TARGET[1] - lat)) % 360.0
+
+
+def kraken(frequency_hz: float = 868_300_000.0) -> str:
+    """A front that points to 350."""
+    return "\n".join(
+        f"{1700000000000 + 300_000 * n}, {(bearing_deg(lon, lat) + 10.0) % 360.0:.2f}, 80, -31, {frequency_hz:.0f},"
+        f" UCA, 412, roof, {lat}, {lon}, 350.0, 10.0, GPS, R"
+        for n, (lon, lat) in enumerate(PLACES)
+    )
+
+
+async def draft(client, **changes) -> str:
+    return (await client.post("/api/missions", json={"name": "m", "area": AREA, **changes})).json()["mission_id"]
+
+
+async def bring(client, mission_id: str, text: str, **said):
+    files = {"files": ("station.csv", text, "text/csv")}
+    return await client.post(f"/api/missions/{mission_id}/recordings", files=files, data=said)
+
+
+async def facts(services, mission_id: str, kind: str) -> list:
+    return [r.event for r in await services.journal.read(mission_id) if r.event.kind == kind]
+
+
+async def test_a_krakens_file_localizes_and_counts_once(client, services):
+    mission_id = await draft(client)
+    reply = await bring(client, mission_id, kraken())
+    assert reply.status_code == 201, reply.text
+    told = reply.json()
+    assert [round(one["bearing_deg"]) for one in told["sweeps"]] == [round(bearing_deg(*place)) for place in PLACES]
+    bearings = await facts(services, mission_id, "bearing_measured")
+    assert {(b.source.kind, b.source.recording_id) for b in bearings} == {("import", told["recording_id"])}
+    assert [b.taken_at_s for b in bearings] == [1700000000.0 + 300.0 * n for n in range(4)]
+    (belief,) = await facts(services, mission_id, "belief_updated")
+    assert belief.bearings == 4
+    assert abs(belief.estimate.lon - TARGET[0]) < 5e-4
+    again = await bring(client, mission_id, kraken())
+    assert (again.status_code, again.json()["already"], len(again.json()["sweeps"])) == (200, True, 4)
+    assert len(await facts(services, mission_id, "bearing_measured")) == 4
+
+
+async def test_our_own_bearing_file_comes_back_as_it_went(client, services):
+    first, second = await draft(client), await draft(client)
+    assert (await bring(client, first, kraken())).status_code == 201
+    text = (await client.get(f"/api/missions/{first}/export/csv")).text
+    reply = await bring(client, second, text)
+    assert reply.status_code == 201, reply.text
+    ours, theirs = [await facts(services, one, "bearing_measured") for one in (first, second)]
+    assert [round(b.bearing_deg, 4) for b in ours] == [round(b.bearing_deg, 4) for b in theirs]
+    assert [b.place.lat for b in ours] == [b.place.lat for b in theirs]
+
+
+async def test_what_does_not_belong_to_the_search_is_refused_whole(client, services):
+    mission_id = await draft(client)
+    far = f"lat,lon,bearing_deg\n50.6,7.2,{bearing_deg(7.2, 50.6)}\n10.0,10.0,5\n"
+    many = "lat,lon,bearing_deg\n" + "50.6,7.2,45\n" * 201
+    for text, code in (
+        (kraken(100_000_000.0), "heard_elsewhere"),
+        (far, "recording_too_far"),
+        (many, "recording_too_long"),
+        ("lat,lon,bearing_deg\nnorth,7.2,45\n", "nothing_usable"),
+    ):
+        reply = await bring(client, mission_id, text)
+        assert (reply.status_code, reply.json()["reason"]["code"]) == (422, code)
+    assert await facts(services, mission_id, "bearing_measured") == []
+
+
+async def test_bearings_of_another_frequency_are_left_out_and_named(client, services):
+    mission_id = await draft(client)
+    mixed = kraken() + "\n" + kraken(100_000_000.0)
+    told = (await bring(client, mission_id, mixed)).json()
+    assert len(told["sweeps"]) == 4
+    assert [remark["code"] for remark in told["remarks"]] == ["other_frequency"]

@@ -1,0 +1,209 @@
+"""After the flight: what a season of checked missions suggests is taken over, missions are found by a rectangle, an
+emitter is not found, and bearings are brought in from a file."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Locator, expect
+from screen import OpenScreen, Screen
+from served import REPOSITORY, Server
+
+from backend.events import BearingMeasured, BeliefUpdated, Event, Recorded, TruthNoted
+from backend.spec import Place
+from backend.store.brought import raw_files
+from backend.store.entries import EventRow, to_records
+from backend.store.upgrade import FIRST_FORM
+from backend.wire.bundle import bundle
+from hardware.frame import LocalFrame
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
+
+STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
+ROWS = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in STORED["rows"]]
+FLOWN = to_records(STORED["mission_id"], ROWS)
+PROFILE = "[data-testid=profile]"
+
+
+def checked(mission_id: str, off_deg: float) -> list[Recorded]:
+    """The stored flight under another id: its emitter found where the estimate was, its bearings off by this."""
+    estimate = [r.event for r in FLOWN if isinstance(r.event, BeliefUpdated)][-1].estimate
+    assert estimate is not None
+    found = Place(lat=estimate.lat, lon=estimate.lon)
+
+    def off(measured: BearingMeasured, own_deg: float) -> BearingMeasured:
+        east, north = LocalFrame(measured.place).to_enu(found)
+        true_deg = math.degrees(math.atan2(east, north))
+        return measured.model_copy(update={"bearing_deg": (true_deg + off_deg + own_deg) % 360.0})
+
+    own_deg = iter((-2.0, 0.0, 2.0))
+    flown = [off(r.event, next(own_deg)) if isinstance(r.event, BearingMeasured) else r.event for r in FLOWN]
+    told = TruthNoted(emitter_id="emitter-1", place=found, accuracy_m=3.0, how="map", by="anna")
+    events: list[Event] = [*flown, told]
+    times = [record.at_utc for record in FLOWN]
+    return [
+        Recorded(seq=seq, mission_id=mission_id, at_utc=at_utc, event=event)
+        for seq, (event, at_utc) in enumerate(zip(events, [*times, times[-1]], strict=True), start=1)
+    ]
+
+
+def bring_in(server: Server, recorded: list[Recorded]) -> str:
+    mission_id = recorded[0].mission_id
+    content = bundle(recorded, {}, raw_files(mission_id, (), {}))
+    address = server.url.rstrip("/") + "/api/bundles"
+    answer = httpx.post(address, content=content, headers={"content-type": "application/zip"}, timeout=60)
+    answer.raise_for_status()
+    return mission_id
+
+
+def row(screen: Screen, mission_id: str) -> Locator:
+    return screen.page.locator(f"[data-testid=mission-row][data-mission='{mission_id}']")
+
+
+def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next_mission(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    for number in range(3):
+        bring_in(server, checked(f"season-{number}", 6.0))
+    screen = open_screen(server, "#/new")
+    part = screen.part
+    expect(part("area-size")).to_have_attribute("data-suggested", "true")
+    screen.page.get_by_text("Keep this equipment for later").click()
+    part("profile-name").fill("quad with yagi")
+    part("profile-save").click()
+    expect(screen.page.locator(f"{PROFILE} option")).to_have_count(2)
+
+    screen.go("#/calibration")
+    suggestion = part("suggestion")
+    expect(suggestion).to_contain_text("read +6.0° ± ")
+    for _ in range(2):
+        part("take-over").click()
+    expect(suggestion.get_by_role("status")).to_contain_text("quad with yagi")
+
+    screen.go("#/new")
+    offset = part("field-sensor-bearing_offset_deg")
+    expect(offset).to_have_value("0")
+    part("profile").select_option("quad with yagi")
+    expect(offset).to_have_value("6")
+    part("save").click()
+    expect(part("preflight")).to_be_visible()
+    sensor = server.get(f"/api/missions/{screen.mission_id}")["spec"]["sensor"]
+    assert sensor["bearing_offset_deg"] == 6.0, "once, however often it was taken over"
+
+    screen.go("#/new")
+    part("profile").select_option("quad with yagi")
+    screen.page.get_by_text("Keep this equipment for later").click()
+    for _ in range(2):
+        part("profile-back").click()
+    expect(part("profile-back")).to_have_count(0)
+    part("profile").select_option("quad with yagi")
+    expect(offset).to_have_value("0")
+
+
+def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen: OpenScreen) -> None:
+    here = server.draft()
+    spec = server.get(f"/api/missions/{here}")["spec"]
+    ring = spec["area"]["coordinates"][0]
+    spec["name"] = "further east"
+    spec["area"]["coordinates"][0] = [[lon + 0.05, lat] for lon, lat in ring]
+    there = httpx.post(server.url.rstrip("/") + "/api/missions", json=spec, timeout=20).json()["mission_id"]
+    screen = open_screen(server)
+    page, part = screen.page, screen.part
+    expect(row(screen, there)).to_be_visible()
+    part("library-filter").locator("summary").click()
+    field = part("filter-place")
+    field.scroll_into_view_if_needed()
+
+    def drag(one: Locator) -> None:
+        area, frame = one.bounding_box(), field.bounding_box()
+        assert area is not None
+        assert frame is not None
+        page.mouse.move(area["x"] - 4, max(area["y"] - 4, frame["y"] + 1))
+        page.mouse.down()
+        page.mouse.move(area["x"] + area["width"] + 4, area["y"] + area["height"] + 4, steps=5)
+        page.mouse.up()
+
+    area_there = field.locator("path").filter(has_text="further east")
+    drag(area_there)
+    expect(row(screen, here)).to_have_count(0)
+    expect(row(screen, there)).to_be_visible()
+    expect(page.locator(".place-box")).to_have_count(1)
+    part("filter-clear").click()
+    expect(row(screen, here)).to_be_visible()
+    expect(page.locator(".place-box")).to_have_count(0)
+
+
+def test_an_emitter_that_was_not_found_counts_and_a_found_place_replaces_it(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    facts = [record for record in checked("in-vain", 0.0) if not isinstance(record.event, TruthNoted)]
+    mission_id = bring_in(server, facts)
+    screen = open_screen(server, f"#/mission/{mission_id}")
+    part = screen.part
+    part("truth").locator("summary").first.click()
+    part("truth-not-found").click()
+    expect(part("truth-told")).to_contain_text("not found")
+    expect(part("truth-error")).to_have_count(0)
+    told = [e for e in server.events(mission_id) if e["kind"] == "truth_noted"]
+    assert [(one["place"], one["emitter_id"]) for one in told] == [(None, "emitter-1")]
+    known = server.get("/api/calibration")
+    assert known["not_found"] >= 1
+    assert all(fix["mission_id"] != mission_id for fix in known["fixes"]), "no error is made up for it"
+
+    screen.page.reload()
+    expect(part("truth-told")).to_contain_text("not found")
+    part("truth-write").click()
+    part("truth-place").fill("50.62400, 7.20400")
+    part("truth-set").click()
+    expect(part("truth-error")).to_be_visible()
+    assert server.get("/api/calibration")["not_found"] == known["not_found"] - 1
+
+
+def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    """What a KrakenSDR wrote, and a bearing file as UAV-RT writes them: two sources, each muted on its own."""
+    mission_id = server.draft()
+    ring = server.get(f"/api/missions/{mission_id}")["spec"]["area"]["coordinates"][0]
+    lon, lat = (sum(corner[i] for corner in ring[:4]) / 4 for i in (0, 1))
+
+    def towards(place: list[float]) -> float:
+        east = (lon - place[0]) * math.cos(math.radians(lat))
+        return math.degrees(math.atan2(east, lat - place[1])) % 360.0
+
+    kraken = tmp_path / "kraken.csv"
+    kraken.write_text(
+        "\n".join(
+            f"{1700000000000 + 90_000 * n}, {towards(place):.1f}, 80, -31, 868300000, UCA, 412, roof,"
+            f" {place[1]}, {place[0]}, 0.0, 0.0, GPS, R"
+            for n, place in enumerate(ring[:3])
+        )
+    )
+    uavrt = tmp_path / "uavrt.csv"
+    rows = [(3, "rot.csv", f"{towards(place):.3f}", 0.9, place[1], place[0], 30, 130, 0, 30) for place in ring[1:3]]
+    uavrt.write_text("\n".join(",".join(map(str, row)) for row in [*rows, (3, "rot.csv", "north", *rows[0][3:])]))
+
+    screen = open_screen(server, f"#/mission/{mission_id}")
+    part = screen.part
+    part("recording").locator("summary").first.click()
+    for path, bearings in ((kraken, 3), (uavrt, 2)):
+        part("recording-files").set_input_files(path)
+        part("recording-send").click()
+        expect(part("recording-found").locator("ul").first.locator("li")).to_have_count(bearings)
+    expect(part("recording-remarks")).to_contain_text("Line 3 of uavrt.csv")
+    measured = [e for e in server.events(mission_id) if e["kind"] == "bearing_measured"]
+    assert [round(e["bearing_deg"], 1) for e in measured] == [
+        round(towards(place), 1) for place in (*ring[:3], *ring[1:3])
+    ]
+    assert len({e["source"]["recording_id"] for e in measured}) == 2
+    screen.expect_belief(5)
+    expect(screen.row("bearing_measured")).to_have_count(5)
+    part("recording-files").set_input_files(kraken)
+    part("recording-send").click()
+    expect(part("recording-found")).to_contain_text("imported before")
+    assert len([e for e in server.events(mission_id) if e["kind"] == "bearing_measured"]) == 5
