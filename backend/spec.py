@@ -191,7 +191,9 @@ class SensorSpec(Model):
     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
-    what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+    what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions. shared_errors: of
+    joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
+    stored specification that does not say so means that each is judged by itself.
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
@@ -213,6 +215,7 @@ class SensorSpec(Model):
     whole_turns: int = Field(default=1, ge=1, le=20)
     sweep_evidence: SweepEvidence = "peak"
     bearing_offset_deg: float = Field(default=0.0, ge=-180, le=180, allow_inf_nan=False)
+    shared_errors: bool = False
 
 
 class PlannerSpec(Model):
@@ -326,6 +329,15 @@ class MissionSpec(Model):
             if emitter.emitter_id == emitter_id:
                 return emitter
         raise KeyError(emitter_id)
+
+    @property
+    def sharing(self) -> tuple[str, ...]:
+        """The emitters, by id, about which one belief tells the others what their source is wrong by: those that stand
+        still, when errors are joint and shared and there are two. One that moves is followed by itself."""
+        if not self.sensor.shared_errors or self.sensor.bearing_errors != "joint":
+            return ()
+        still = tuple(one.emitter_id for one in self.emitters if one.movement.kind == "still")
+        return still if len(still) > 1 else ()
 
     def having_learned(self, learned: LearnedErrors | None) -> MissionSpec:
         """The same mission with another knowledge of its bearings' errors."""

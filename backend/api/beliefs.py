@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from backend.events import BeliefUpdated, Recorded
 from backend.search.area import corner_of
-from backend.search.localization import localization
 from backend.search.state import SearchState, evolve
+from backend.search.together import together
 from backend.wire.belief_frame import encode_belief
 
 FOLDED_KINDS = (
@@ -37,9 +37,14 @@ def belief_frame(
     state, seq = _last_belief(recorded, emitter_id)
     if state.spec is None or (emitter_id is not None and emitter_id not in state.emitters):
         return None
-    task = localization(state.mission, state.home or corner_of(state.mission.area), emitter_id)
-    emitter = state.emitters[task.emitter_id]
-    fact, belief = task.after(emitter.unheard).belief_fact(emitter.bearings) if seq else task.belief_fact(())
+    name = emitter_id or state.mission.emitters[0].emitter_id
+    tasks = together(state.mission, state.home or corner_of(state.mission.area), name)
+    if seq:
+        task = tasks.about(state, name)
+        fact, belief = task.belief_fact(state.emitters[name].bearings)
+    else:
+        task = tasks.emitters[name]
+        fact, belief = task.belief_fact(())
     corners = task.corners_lon_lat(belief)
     return encode_belief(mission_id, task.emitter_id, seq, fact.bearings, belief.density, corners, lite=lite)
 

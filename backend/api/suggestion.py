@@ -31,14 +31,19 @@ def suggested_mission(home: Place) -> MissionSpec:
     corners = [(-east, 0.0), (east, 0.0), (east, HEIGHT_M), (-east, HEIGHT_M), (-east, 0.0)]
     ring = [(point.lon, point.lat) for point in (frame.to_geo(x, y) for x, y in corners)]
     area = Polygon(coordinates=[[(round(x, 7), round(y, 7)) for x, y in ring]])
-    return MissionSpec(name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint"), planner=PLANNER)
+    return MissionSpec(
+        name=NAME, area=area, sensor=SensorSpec(bearing_errors="joint", shared_errors=True), planner=PLANNER
+    )
+
+
+ESTIMATED = {"bearing_errors": "joint", "shared_errors": True}
+"""How new missions take the errors of bearings: estimated with the places, by the bearings of all emitters."""
 
 
 def with_errors_estimated(asked: MissionSpec) -> MissionSpec:
-    """A request that does not say how the errors of bearings hang together has them estimated with the place.
+    """A request that does not say how the errors of bearings hang together has them estimated with the places.
 
     A stored specification that does not say it is from before they were, and means independent ones.
     """
-    if "bearing_errors" in asked.sensor.model_fields_set:
-        return asked
-    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update={"bearing_errors": "joint"})})
+    unsaid = {name: value for name, value in ESTIMATED.items() if name not in asked.sensor.model_fields_set}
+    return asked.model_copy(update={"sensor": asked.sensor.model_copy(update=unsaid)}) if unsaid else asked

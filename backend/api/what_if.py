@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from backend.api.another_antenna import AnotherAntenna
 from backend.api.beliefs import FOLDED_KINDS
 from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, Supposition, SweepRejected
 from backend.reasons import Reason, carried
 from backend.search.area import corner_of
-from backend.search.localization import Localization, localization
+from backend.search.localization import Localization
 from backend.search.planning import next_place
 from backend.search.state import SearchState, evolve
+from backend.search.together import together
 from backend.spec import MissionSpec
 from backend.wire.belief_frame import encode_belief
 from backend.wire.resources import SweepFact, WhatIf, WhatIfRequest, WhatIfStep
@@ -75,20 +76,24 @@ def suppose(
     recorded: Sequence[Recorded], wanted: Supposition, bearings: int | None, antenna: AnotherAntenna | None
 ) -> Supposed | None:
     """The beliefs of a supposition. bearings None: all that count. None: the mission had fewer."""
-    state, flown = _flown(recorded, wanted.emitter_id, bearings)
+    state, flown, then = _flown(recorded, wanted.emitter_id, bearings)
     if state is None:
         return None
     home = state.home or corner_of(state.mission.area)
     mission = changed(state.mission, wanted)
-    task = localization(mission, home, wanted.emitter_id)
+    about = wanted.emitter_id or mission.emitters[0].emitter_id
+    tasks = together(mission, home, about)
+    task = tasks.emitters[about]
     counted = state.emitters[task.emitter_id].bearings
     supposed: list[SweepFact] = []
     said, bare = [task.belief_fact([])], task
     unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
-    for sweeps in _sweeps_of_each(recorded, counted):
+    for number, sweeps in enumerate(_sweeps_of_each(recorded, counted), start=1):
         supposed += _taken(sweeps, supposed, mission, wanted, antenna)
         silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
-        task = bare.after(silent)
+        told = tasks.about(_others_supposed(then.get(number, state), wanted), about).beside
+        # through another antenna the other emitters' bearings would be others, too: none of them counts
+        task = replace(bare.after(silent), beside=told if antenna is None else None)
         said.append(task.belief_fact(_bearings(supposed)))
     return Supposed(task, home, counted, flown, supposed, said)
 
@@ -107,21 +112,38 @@ def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:
 
 def _flown(
     recorded: Sequence[Recorded], emitter_id: str | None, bearings: int | None
-) -> tuple[SearchState | None, dict[int, BeliefUpdated]]:
-    """The last state with this number of counted bearings, and what was said in flight after each number of them.
+) -> tuple[SearchState | None, dict[int, BeliefUpdated], dict[int, SearchState]]:
+    """The last state with this number of counted bearings, and what was said in flight after each number of them, with
+    the state in which it was.
 
     emitter_id None: of the first emitter. bearings None: the last state of all.
     """
     state, found = SearchState(), None
     said: dict[int, BeliefUpdated] = {}
+    then: dict[int, SearchState] = {}
     for record in recorded:
         state = evolve(state, record.event, record.at_utc.timestamp())
         wanted = emitter_id or next(iter(state.emitters), "")
         if isinstance(record.event, BeliefUpdated) and record.event.emitter_id == wanted:
             said[record.event.bearings] = record.event
+            then[record.event.bearings] = state
         if wanted in state.emitters and bearings in (None, len(state.emitters[wanted].bearings)):
             found = state
-    return found, said
+    return found, said, then
+
+
+def _others_supposed(search: SearchState, wanted: Supposition) -> SearchState:
+    """The search with what is wanted otherwise of the bearings of all its emitters."""
+    sigma = {} if wanted.sigma_deg is None else {"sigma_deg": wanted.sigma_deg, "likelihood": None}
+    emitters = {
+        name: replace(
+            emitter,
+            measured=tuple(fact.model_copy(update=sigma) for fact in emitter.measured),
+            excluded=emitter.excluded.union(wanted.without),
+        )
+        for name, emitter in search.emitters.items()
+    }
+    return replace(search, emitters=emitters)
 
 
 def _sweeps_of_each(recorded: Sequence[Recorded], counted: Sequence[BearingMeasured]) -> Iterator[list[SweepFact]]:

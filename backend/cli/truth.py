@@ -34,8 +34,8 @@ def truth(
             help="independent, scattered, bias5, bias10, bias5_outliers8, bias5_outliers20, bias10_outliers8, right, "
             "walls, walls_bias5, squinted, uneven, foreign, creeping, jumping or two_sources: how the bearings are "
             "wrong (degrees of compass bias, percent of outliers); tags_4 or tags_8: four or eight tags in the field "
-            "scenario, each a claim; moving_0.1, moving_0.2 or moving_0.4: an emitter that walks or drifts at that "
-            "speed, in m/s."
+            "scenario, each a claim (tags_4_bias5, tags_8_bias5: with a wrong compass, one for all tags); moving_0.1, "
+            "moving_0.2 or moving_0.4: an emitter that walks or drifts at that speed, in m/s."
         ),
     ],
     missions_: Annotated[int, typer.Option("--missions", help="Simulated missions.")] = 1000,
@@ -56,6 +56,10 @@ def truth(
         str,
         typer.Option(help="Who chooses the places: fisher (information alone) or crossfix (the suggested mission's)."),
     ] = "fisher",
+    shared: Annotated[
+        bool,
+        typer.Option("--shared-errors", help="tags: what one tag's bearings tell of the compass counts for all."),
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the first mission; mission k has the same world for all.")] = 1,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -64,7 +68,7 @@ def truth(
     Example: crossfix study truth --row bias5 --missions 200 --json
     """
     try:
-        found = study_row(row, missions_, model, seed, flights, told, planner)
+        found = study_row(row, missions_, model, seed, flights, told, planner, shared)
     except StudyError as error:
         if json_:
             print_json({"error": str(error)})
@@ -83,9 +87,10 @@ def study_row(
     flights: int = 0,
     told: bool = False,
     planner: str = "fisher",
+    shared: bool = False,
 ) -> Truth:
     """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before. told:
-    the joint model knows the row's true errors."""
+    the joint model knows the row's true errors. shared: all tags' bearings tell it of the compass."""
     known = _model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
@@ -94,8 +99,10 @@ def study_row(
     places = truth_planner(planner)
     if places != "fisher" and (row in TAGS or row in SPEEDS):
         raise StudyError(f"--planner goes with one emitter that stays where it is, not with {row}")
+    if shared and (row not in TAGS or known != "joint"):
+        raise StudyError("--shared-errors goes with the joint model of several tags")
     if row in TAGS:
-        return _tags_row(row, count, known, first_seed)
+        return _tags_row(row, count, known, first_seed, shared)
     wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
@@ -123,14 +130,15 @@ def study_row(
     return replace(truth_of(row, known, claims, knows), planner=places)
 
 
-def _tags_row(row: str, count: int, model: Model, first_seed: int) -> Truth:
+def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool) -> Truth:
     """Each tag is a claim; missions: how many were flown."""
     claims: list[Claim] = []
-    for number, found in enumerate(tags_missions(row, range(first_seed, first_seed + count), model), start=1):
+    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared)
+    for number, found in enumerate(flown, start=1):
         claims.extend(found)
         if number % REMARK_EVERY == 0 and number < count:
             remark(f"{row}: {number} of {count} missions")
-    return replace(truth_of(row, model, claims), missions=count)
+    return replace(truth_of(row, model, claims), missions=count, shared=shared)
 
 
 def _model(name: str) -> Model:
@@ -145,6 +153,7 @@ def sentence(found: Truth) -> str:
     if not found.claimed:
         return f"{found.row}: none of {found.missions} missions said localized"
     known = "" if found.prior == UNKNOWN else f", {found.prior} known before"
+    known += ", shared by all tags" if found.shared else ""
     known += "" if found.planner == "fisher" else f", planned by {found.planner}"
     return (
         f"{found.row}, {found.model} errors{known}: {found.missions} missions, "

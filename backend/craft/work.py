@@ -172,10 +172,10 @@ class Work:
         number, threads, craft_id = effect.place_number, self.equipment.threads, self.equipment.craft_id
         sought = search.sought
         if len(sought) > 1 and self.task.mission.planner.method == "rollout":
-            wanted = [(self.task.emitters[e.emitter_id].without(closed).after(e.unheard), e.bearings) for e in sought]
+            wanted = [(self.task.together.about(search, e.emitter_id).without(closed), e.bearings) for e in sought]
             return next_place_together(wanted, platform, number, effect.avoid, threads, craft_id)
         emitter = next(iter(sought))
-        task = self.task.emitters[emitter.emitter_id].without(closed).after(emitter.unheard)
+        task = self.task.together.about(search, emitter.emitter_id).without(closed)
         belief = task.planning_belief(task.planner_bearings(emitter.bearings))
         return next_place(task, belief, emitter.bearings, platform, number, effect.avoid, threads, craft_id)
 

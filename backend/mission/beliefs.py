@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from backend.events import BeliefUpdated
 from backend.search.inputs import BeliefReady
-from backend.search.state import EmitterState
+from backend.search.state import SearchState
 from backend.search.task import SearchTask
 from planner.belief.grid import GridBelief
 from planner.types import PlannerError
@@ -30,24 +30,24 @@ class Beliefs:
         self._task = task
         self._newest.clear()
 
-    def update(self, emitter: EmitterState) -> None:
-        """Begins to fold the emitter's bearings; an older request about it is dropped. Returns at once."""
-        running = self._running.pop(emitter.emitter_id, None)
+    def update(self, search: SearchState, emitter_id: str) -> None:
+        """Begins to fold an emitter's bearings; an older request about it is dropped. Returns at once."""
+        running = self._running.pop(emitter_id, None)
         if running is not None:
             running.cancel()
-        self._running[emitter.emitter_id] = asyncio.create_task(self._fold(emitter))
+        self._running[emitter_id] = asyncio.create_task(self._fold(search, emitter_id))
 
-    async def _fold(self, emitter: EmitterState) -> None:
+    async def _fold(self, search: SearchState, emitter_id: str) -> None:
         try:
-            fact, belief = await asyncio.to_thread(self._folded, emitter)
+            fact, belief = await asyncio.to_thread(self._folded, search, emitter_id)
         except PlannerError as error:
-            log.error("the belief about %s cannot be computed: %s", emitter.emitter_id, error)
+            log.error("the belief about %s cannot be computed: %s", emitter_id, error)
             return
-        self._newest[emitter.emitter_id] = belief
-        self._give(BeliefReady(emitter.bearing_ids, fact))
+        self._newest[emitter_id] = belief
+        self._give(BeliefReady(search.behind(emitter_id), fact))
 
-    def _folded(self, emitter: EmitterState) -> tuple[BeliefUpdated, GridBelief]:
-        return self._task.emitters[emitter.emitter_id].after(emitter.unheard).belief_fact(emitter.bearings)
+    def _folded(self, search: SearchState, emitter_id: str) -> tuple[BeliefUpdated, GridBelief]:
+        return self._task.together.about(search, emitter_id).belief_fact(search.emitters[emitter_id].bearings)
 
     def newest(self, emitter_id: str) -> tuple[GridBelief, list[tuple[float, float]]] | None:
         """The last belief computed, and its corners (lon, lat): SW, SE, NE, NW."""

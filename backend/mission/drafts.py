@@ -110,6 +110,7 @@ class Drafts:
                 )
             if runner is None:
                 await self.records.append(mission_id, found.facts)
+                await self.records.settle_beliefs(mission_id)
             else:
                 bearings = tuple(fact for fact in found.facts if not isinstance(fact, BeliefUpdated))
                 await self.flights.give(mission_id, BearingsArrived(bearings))

@@ -19,11 +19,11 @@ from backend.search.advice import FARTHEST_M, Advice, advise, from_area_m
 from backend.search.area import centre_of, corner_of
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.forecast import Comparison, Forecast, Preview, compare, forecast, preview
-from backend.search.localization import localization
 from backend.search.other_area import Outlook, outlook, task_in
 from backend.search.planning import needs_program
 from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
+from backend.search.together import together
 from backend.spec import MissionSpec, Place, SearchArea
 
 
@@ -62,7 +62,7 @@ class Questions:
             return standing_vetoes(limits_of(task), where, task.altitude_at(where))
 
         emitters = search.wanted or search.sought[:1]
-        wanted = [(task.emitters[one.emitter_id].after(one.unheard), one.bearings) for one in emitters]
+        wanted = [(task.together.about(search, one.emitter_id), one.bearings) for one in emitters]
         found = await asyncio.to_thread(forecast, *wanted[0], start, place, vetoes)
         if runner is not None and found.mean_s is not None:
             runner.told.keep(search, place, Foretold(found.mean_s, found.p90_s, found.rollouts))
@@ -87,13 +87,14 @@ class Questions:
         if emitter.localized and not search.follows:
             return emitter.emitter_id, len(emitter.bearings), None
         home = search.home or corner_of(search.mission.area)
-        task = await asyncio.to_thread(localization, search.mission, home, emitter.emitter_id)
+        tasks = await asyncio.to_thread(together, search.mission, home, emitter.emitter_id)
+        task = tasks.about(search, emitter.emitter_id)
         if (off_m := from_area_m(task, here)) > FARTHEST_M:
             raise MissionInputError(AskedFromTooFar(off_m), "place")
         return (
             emitter.emitter_id,
             len(emitter.bearings),
-            await asyncio.to_thread(advise, task.after(emitter.unheard), emitter.bearings, here, speed_m_s, hops),
+            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s, hops),
         )
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:

@@ -15,7 +15,7 @@ from backend.ports import Journal, Publisher
 from backend.search.area import corner_of
 from backend.search.effects import Record
 from backend.search.errors import MissionInputError, MissionNotFound
-from backend.search.localization import localization
+from backend.search.together import together
 from hardware.ports import Clock
 from planner.types import PlannerError
 
@@ -62,14 +62,16 @@ class Records:
 
     async def settle_beliefs(self, mission_id: str) -> None:
         """On the ground nobody folds the beliefs when bearings come or go, or the area under them changes."""
-        search = (await self.load(mission_id))[0].search
+        search, tasks = (await self.load(mission_id))[0].search, None
         for emitter in search.emitters.values():
             if emitter.belief_current or not emitter.measured:
                 continue
             home = search.home or corner_of(search.mission.area)
             try:
-                task = await asyncio.to_thread(localization, search.mission, home, emitter.emitter_id)
-                belief, _ = await asyncio.to_thread(task.after(emitter.unheard).belief_fact, emitter.bearings)
+                if tasks is None or emitter.emitter_id not in tasks.emitters:
+                    tasks = await asyncio.to_thread(together, search.mission, home, emitter.emitter_id)
+                task = tasks.about(search, emitter.emitter_id)
+                belief, _ = await asyncio.to_thread(task.belief_fact, emitter.bearings)
             except (MissionInputError, PlannerError) as error:
                 log.warning("mission %s: no belief can be made of its bearings: %s", mission_id, error)
                 continue

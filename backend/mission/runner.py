@@ -109,7 +109,7 @@ class MissionRunner:
                         with about(self.mission_id, craft_id):
                             self.crafts[craft_id].carry_out(wanted)
                 case UpdateBelief(emitter_id=emitter_id):
-                    self._beliefs.update(self._state.search.emitters[emitter_id])
+                    self._beliefs.update(self._state.search, emitter_id)
                 case SearchElsewhere():
                     self._adopt()
                 case Reply():

@@ -105,8 +105,9 @@ class Composer:
 
     async def _belief(self, story: Story) -> GridBelief | None:
         """None when the specification makes no sense (a draft far from any home)."""
-        emitter, spec = story.emitter, story.state.search.mission
-        key = (story.mission_id, emitter.emitter_id, hash(spec.model_dump_json()), emitter.bearing_ids)
+        emitter, search = story.emitter, story.state.search
+        spec = search.mission
+        key = (story.mission_id, emitter.emitter_id, hash(spec.model_dump_json()), search.behind(emitter.emitter_id))
         if key not in self._beliefs:
             self._beliefs[key] = await asyncio.to_thread(_belief_or_none, story)
             while len(self._beliefs) > BELIEFS_KEPT:

@@ -15,7 +15,7 @@ from backend.scene.findings import findings
 from backend.scene.flight import flight
 from backend.scene.items import Item, Scene
 from backend.scene.surroundings import surroundings
-from backend.search.localization import localization
+from backend.search.together import together
 from backend.wire.scene import SceneLayer
 from planner.belief.grid import GridBelief
 
@@ -48,8 +48,9 @@ def story_belief(story: Story) -> GridBelief:
     Before any bearing it is the prior. Raises MissionInputError when the specification makes no sense. Heavy: call it
     off the event loop.
     """
-    task = localization(story.state.search.mission, story.frame.origin, story.emitter.emitter_id)
-    return task.after(story.emitter.unheard).planning_belief(task.planner_bearings(story.emitter.bearings))
+    search, name = story.state.search, story.emitter.emitter_id
+    task = together(search.mission, story.frame.origin, name).about(search, name)
+    return task.planning_belief(task.planner_bearings(story.emitter.bearings))
 
 
 def middle_and_extent(shown: Content) -> tuple[tuple[float, float], float]:

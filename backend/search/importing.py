@@ -18,9 +18,9 @@ from backend.reasons.refusals import NoSuchEmitter
 from backend.search.antenna import antenna_fact
 from backend.search.area import centre_of, corner_of
 from backend.search.errors import MissionInputError
-from backend.search.localization import localization
 from backend.search.state import SearchState, evolve
 from backend.search.sweep_facts import Taken, sweep_fact
+from backend.search.together import together
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.recordings import RecordedSweep, Recording, mounted
@@ -105,7 +105,7 @@ def import_facts(
             antenna=antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg)),
         )
     ]
-    task = localization(mission, state.home or corner_of(mission.area), emitter.emitter_id)
+    tasks = together(mission, state.home or corner_of(mission.area), emitter.emitter_id)
     source = ImportSource(recording_id=upload.recording_id)
     kept: list[KeptSweep] = []
     number = max([state.place_number, *(b.place_number for b in state.measured)])
@@ -118,8 +118,8 @@ def import_facts(
         facts.append(fact)
         state = evolve(state, fact, began_s or 0.0)
         if isinstance(fact, BearingMeasured):
-            known = state.emitters[emitter.emitter_id]
-            belief, _ = task.after(known.unheard).belief_fact(known.bearings)
+            task = tasks.about(state, emitter.emitter_id)
+            belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
             facts.append(belief)
     return Import(tuple(facts), tuple(kept))
 

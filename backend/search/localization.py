@@ -6,7 +6,7 @@ The belief is the fold of the counted bearings in the order they were taken, so 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -76,7 +76,11 @@ KEEP_OFF_M = 1.1 * EDGE_TOLERANCE_M
 
 @dataclass(frozen=True, slots=True)
 class Localization:
-    """The task of localizing one emitter, in the planner's words. The frame's origin is the home at the start."""
+    """The task of localizing one emitter, in the planner's words. The frame's origin is the home at the start.
+
+    beside: adds to a belief by this emitter's own bearings what others tell of their source's errors
+    (backend.search.together); None: nothing.
+    """
 
     mission: MissionSpec
     emitter_id: str
@@ -84,6 +88,7 @@ class Localization:
     problem: Problem
     prior: GridBelief
     rule: LocalizationRule
+    beside: Callable[[GridBelief], GridBelief] | None = None
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
@@ -118,10 +123,10 @@ class Localization:
             return self
         found = self._after.get(told)
         if found is None:
-            found = replace(self, prior=silent_prior(self.prior, told), _folds={}, _after={})
+            found = replace(self, prior=silent_prior(self.prior, told), beside=None, _folds={}, _after={})
             self._after.clear()
             self._after[told] = found
-        return replace(found, problem=self.problem)
+        return replace(found, problem=self.problem, beside=self.beside)
 
     def _silence(self, fact: SweepRejected) -> Silence:
         """Sectors and pattern turn the other way round in the planner's frame."""
@@ -161,9 +166,10 @@ class Localization:
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
         """None when the bearings have no common point and none may be an outlier."""
         try:
-            return self._folded(tuple(bearings))
+            found = self._folded(tuple(bearings))
         except InconsistentBearings:
             return None
+        return found if self.beside is None else self.beside(found)
 
     def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
         """Bearing by bearing, in order: what was folded for one bearing less is gone on from."""

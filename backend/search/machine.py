@@ -137,7 +137,7 @@ def _reviewed(step: SearchStep, fact: ReviewFact) -> None:
 
 def _belief(step: SearchStep, given: BeliefReady) -> None:
     emitter = step.state.emitters.get(given.fact.emitter_id)
-    if emitter is None or given.bearing_ids != emitter.bearing_ids or emitter.belief_current:
+    if emitter is None or given.bearing_ids != step.state.behind(emitter.emitter_id) or emitter.belief_current:
         return
     step.record(given.fact)
     doubt_headings(step, given.fact)

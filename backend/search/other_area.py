@@ -48,7 +48,7 @@ def task_or_reason(state: SearchState, area: SearchArea, terrain: Terrain | None
 def outlook(state: SearchState, task: SearchTask, platform: Place, threads: int) -> Outlook:
     """Of the first emitter that is not localized, else the first."""
     emitter = (*state.wanted, *state.emitters.values())[0]
-    localization = task.emitters[emitter.emitter_id].after(emitter.unheard)
+    localization = task.together.about(state, emitter.emitter_id)
     belief, grid = localization.belief_fact(emitter.bearings)
     if belief.localized:
         return Outlook(belief, None, Localized())

@@ -59,7 +59,8 @@ class EmitterState:
 
     muted: sources whose bearings do not count, as those in `excluded` do not.
 
-    belief_current: no bearing came or went since `belief` was computed, and the area is the same. localized_at_s: UTC
+    belief_current: no bearing came or went since `belief` was computed, of this emitter or of one that tells of its
+    source's errors, and the area is the same. localized_at_s: UTC
     epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
     really was; no belief about it depends on that. silences: turns that heard nothing of it and tell something by that.
     """
@@ -204,6 +205,12 @@ class SearchState:
         """The bearings of all emitters."""
         return tuple(bearing for emitter in self.emitters.values() for bearing in emitter.measured)
 
+    def behind(self, emitter_id: str) -> tuple[str, ...]:
+        """The ids of all that the belief about an emitter stands on; its own first."""
+        own, sharing = self.emitters[emitter_id], self.mission.sharing
+        others = [self.emitters[name] for name in sharing if name != emitter_id] if emitter_id in sharing else []
+        return (*own.bearing_ids, *(one for other in others if other.bearings for one in other.bearing_ids))
+
     def silent(self, sweep_id: str) -> tuple[EmitterState, SweepRejected] | None:
         """A turn that heard nothing of an emitter, also one that was excluded; None for an unknown id."""
         for emitter in self.emitters.values():
@@ -248,7 +255,11 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return _evolve_emitter(state, event, at_s)
         case SourceMuteChanged(source=source, muted=muted):
             sources = state.muted.union((source,)) if muted else state.muted.difference((source,))
-            return _each(replace(state, muted=sources), lambda emitter: _muting(emitter, source, sources))
+            counted = _each(replace(state, muted=sources), lambda emitter: _muting(emitter, source, sources))
+            for emitter in state.emitters.values():
+                if _tells(emitter, source):
+                    counted = _told(counted, emitter.emitter_id, _recounted)
+            return counted
         case AlertRaised(alert_id=alert_id, topic=topic, reason=reason, craft_id=None):
             alerts = (*state.open_alerts, OpenAlert(alert_id, topic, reason))
             return replace(state, open_alerts=alerts, alerts_raised=state.alerts_raised + 1)
@@ -289,14 +300,38 @@ def _evolve_emitter(
             emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
             if localized:
                 emitter = replace(emitter, claim=event, claimed_at_s=at_s)
-    return replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
+    evolved = replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
+    match event:
+        case BeliefUpdated():
+            return evolved
+        case BearingExcluded() | BearingIncluded():
+            return _told(evolved, emitter.emitter_id, _recounted)
+        case BearingMeasured() | SweepRejected():
+            return _told(evolved, emitter.emitter_id, _outrun)
+
+
+def _told(state: SearchState, emitter_id: str, change: Callable[[EmitterState], EmitterState]) -> SearchState:
+    """Changes the emitters whose beliefs stand on this one's bearings, too, since they share a source's errors."""
+    sharing = () if state.spec is None else state.spec.sharing
+    if emitter_id not in sharing:
+        return state
+    told = {name: state.emitters[name] for name in sharing if name != emitter_id and state.emitters[name].measured}
+    return replace(state, emitters={**state.emitters, **{name: change(one) for name, one in told.items()}})
+
+
+def _outrun(emitter: EmitterState) -> EmitterState:
+    return replace(emitter, belief_current=False)
 
 
 def _muting(emitter: EmitterState, source: BearingSource, muted: frozenset[BearingSource]) -> EmitterState:
     """An emitter that the source told nothing of keeps its belief."""
     emitter = replace(emitter, muted=muted)
-    concerned = any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
-    return _recounted(emitter) if concerned else emitter
+    return _recounted(emitter) if _tells(emitter, source) else emitter
+
+
+def _tells(emitter: EmitterState, source: BearingSource) -> bool:
+    """Whether the source took a bearing of it that was not left out by itself."""
+    return any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
 
 
 def _recounted(emitter: EmitterState) -> EmitterState:

@@ -12,6 +12,7 @@ from backend.search.altitude import altitude_at, level_altitude
 from backend.search.closed_by_ground import closed_by_ground
 from backend.search.ground import Ground, Way
 from backend.search.localization import Localization, localization
+from backend.search.together import Together
 from backend.spec import MissionSpec, Place
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
@@ -27,6 +28,7 @@ class SearchTask:
     fence: BaseGeometry
     no_fly: tuple[BaseGeometry, ...]
     emitters: Mapping[str, Localization]
+    together: Together
 
     @property
     def home(self) -> Place:
@@ -69,4 +71,4 @@ def search_task(mission: MissionSpec, home: Place, home_amsl_m: float, terrain: 
     emitters = {
         emitter.emitter_id: localization(mission, home, emitter.emitter_id, closed) for emitter in mission.emitters
     }
-    return SearchTask(mission, frame, ground, fence, area.no_fly(mission, frame), emitters)
+    return SearchTask(mission, frame, ground, fence, area.no_fly(mission, frame), emitters, Together(emitters))

@@ -27,10 +27,7 @@ FAR_SIGMAS = 9.0
 
 def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evidence:
     """See evidence.evidence."""
-    cells, directions = len(x), seen.profile.shape[1]
-    profiles = np.empty((len(seen.profile), len(nodes.scale), directions))
-    for i, profile in enumerate(seen.profile):
-        profiles[i] = sweep_likelihood.scaled(profile, nodes.scale)
+    cells = len(x)
     out = Evidence(
         np.empty(cells),
         np.empty((cells, len(nodes.bias))),
@@ -41,17 +38,41 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
         np.ascontiguousarray(x, dtype=float),
         np.ascontiguousarray(y, dtype=float),
         seen,
-        profiles,
+        _profiles(seen, nodes),
         nodes.bias,
         nodes.spacing,
-        nodes.bias_weight,
         nodes.scale,
-        nodes.scale_weight,
         nodes.rate,
-        nodes.rate_weight,
+        np.ascontiguousarray(nodes.weight.reshape(-1, len(nodes.bias))),
         out,
     )
     return out
+
+
+def node_evidence(x: FloatArray, y: FloatArray, log: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+    """See evidence.node_evidence."""
+    found = np.empty((len(nodes.scale) * len(nodes.rate), len(nodes.bias)))
+    top = _node_evidence(
+        np.ascontiguousarray(x, dtype=float),
+        np.ascontiguousarray(y, dtype=float),
+        np.ascontiguousarray(log, dtype=float),
+        seen,
+        _profiles(seen, nodes),
+        nodes.bias,
+        nodes.spacing,
+        nodes.scale,
+        nodes.rate,
+        found,
+    )
+    return (top + np.log(np.maximum(found, np.finfo(float).tiny))).reshape(nodes.weight.shape)
+
+
+def _profiles(seen: Sightings, nodes: Nodes) -> FloatArray:
+    """(q, k, m) the whole sweeps' densities at each scale."""
+    profiles = np.empty((len(seen.profile), len(nodes.scale), seen.profile.shape[1]))
+    for i, profile in enumerate(seen.profile):
+        profiles[i] = sweep_likelihood.scaled(profile, nodes.scale)
+    return profiles
 
 
 @allocating
@@ -186,9 +207,9 @@ def _sums(table, rates, bias, scale, rate):
     return whole
 
 
-@entry
-def _evidence(x, y, seen, profiles, bias, spacing, bias_weight, scale, scale_weight, rate, rate_weight, out):
-    _ = SOURCES
+@allocating
+def _prepared(seen, profiles, bias, spacing, scale, rate):
+    """reach and odds as `_of_cell` has them, its tables and shares, the outliers' logarithm, the most peaks."""
     scales, rates, count, bearings = len(scale), len(rate), len(bias), len(seen.x)
     everywhere = int(np.ceil((np.pi + max(abs(bias[0]), abs(bias[count - 1]))) / spacing)) + 1 + count
     reach, odds = np.empty((bearings, scales), dtype=np.int64), np.empty((bearings, scales, rates))
@@ -213,15 +234,52 @@ def _evidence(x, y, seen, profiles, bias, spacing, bias_weight, scale, scale_wei
                 _tabulate_profile(table_of, spacing, profiles[seen.whole[i], k], seen.angle[seen.first[i]], unit)
             else:
                 _tabulate(table_of, spacing, scale[k] * seen.sigma[i])
-    prior = np.empty((scales * rates, count))
-    for r in range(scales * rates):
-        prior[r] = scale_weight[r // rates] * rate_weight[r % rates] * bias_weight
     shares = np.empty((2, rates))
     for e in range(rates):
         shares[0, e] = (rate[e] / rate.max()) ** RESCALED_EVERY
         shares[1, e] = (rate[e] / rate.max()) ** (bearings % RESCALED_EVERY)
-    table, density, past = np.empty_like(prior), np.empty(count), np.empty(most_peaks)
+    return reach, odds, tables, shares, outliers, most_peaks
+
+
+@entry
+def _evidence(x, y, seen, profiles, bias, spacing, scale, rate, prior, out):
+    _ = SOURCES
+    reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
+    table, density, past = np.empty_like(prior), np.empty(len(bias)), np.empty(most_peaks)
     for c in range(len(x)):
         table[:] = prior
         log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
-        out.log[c] = outliers + log + np.log(_sums(table, rates, out.bias[c], out.scale[c], out.rate[c]))
+        out.log[c] = outliers + log + np.log(_sums(table, len(rate), out.bias[c], out.scale[c], out.rate[c]))
+
+
+@jit
+def _added(found, table, weight):
+    for r in range(found.shape[0]):
+        for b in range(found.shape[1]):
+            found[r, b] += weight * table[r, b]
+
+
+@jit
+def _scaled(found, factor):
+    for r in range(found.shape[0]):
+        for b in range(found.shape[1]):
+            found[r, b] *= factor
+
+
+@entry
+def _node_evidence(x, y, before, seen, profiles, bias, spacing, scale, rate, found):
+    """found (k e, b): the sum over the cells, without a factor whose logarithm is returned."""
+    _ = SOURCES
+    reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
+    table, density, past = np.empty_like(found), np.empty(len(bias)), np.empty(most_peaks)
+    found[:] = 0.0
+    top = before[0]
+    for c in range(len(x)):
+        table[:] = 1.0
+        log = before[c]
+        log += _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+        if log > top:
+            _scaled(found, np.exp(top - log))
+            top = log
+        _added(found, table, np.exp(log - top))
+    return outliers + top

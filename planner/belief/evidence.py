@@ -80,8 +80,27 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
     each bearing's density in units of that at the peak of N(0, sigma_i^2). Of a sweep's profile p_i instead of the sum
     over peaks (1 - e) p_i,s(dir_i(x) + b), its scale as in planner.sweep_likelihood.
     """
-    prior = nodes.scale_weight[:, None, None] * nodes.rate_weight[:, None] * nodes.bias_weight
-    log = np.broadcast_to(np.log(prior), (len(x), *prior.shape)).copy()
+    log = _by_node(x, y, seen, nodes) + np.log(nodes.weight)
+    top = log.max(axis=(1, 2, 3), keepdims=True)
+    mass = np.exp(log - top)
+    whole = mass.sum(axis=(1, 2, 3))
+    mass /= whole[:, None, None, None]
+    return Evidence(
+        np.log(whole) + top[:, 0, 0, 0], mass.sum(axis=(1, 2)), mass.sum(axis=(2, 3)), mass.sum(axis=(1, 3))
+    )
+
+
+def node_evidence(x: FloatArray, y: FloatArray, log: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+    """(k, e, b) logarithm of sum_x p(x) p(z | x, s, e, b), p(x) given by its logarithm (c,): what the bearings of an
+    emitter tell of their source's errors. The nodes' weights do not count; in the units of `evidence`."""
+    by_place = _by_node(x, y, seen, nodes) + log[:, None, None, None]
+    top = by_place.max(axis=0)
+    return np.log(np.exp(by_place - top).sum(axis=0)) + top
+
+
+def _by_node(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+    """(c, k, e, b) logarithm of p(z | x, s, e, b)."""
+    log = np.zeros((len(x), len(nodes.scale), len(nodes.rate), len(nodes.bias)))
     for i in range(len(seen.x)):
         direction = expected_bearing(seen.x[i], seen.y[i], x, y)
         sigma = nodes.scale * seen.sigma[i]
@@ -96,10 +115,4 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
                 density += seen.weight[j] * np.exp(-0.5 * (error[:, None, :] / sigma[:, None]) ** 2)
         honest = (1.0 - nodes.rate[:, None]) * density[:, :, None, :] / nodes.scale[:, None, None]
         log += np.log(honest + nodes.rate[:, None] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
-    top = log.max(axis=(1, 2, 3), keepdims=True)
-    mass = np.exp(log - top)
-    whole = mass.sum(axis=(1, 2, 3))
-    mass /= whole[:, None, None, None]
-    return Evidence(
-        np.log(whole) + top[:, 0, 0, 0], mass.sum(axis=(1, 2)), mass.sum(axis=(2, 3)), mass.sum(axis=(1, 3))
-    )
+    return log

@@ -51,7 +51,8 @@ class JointBelief(GridBelief):
     """prior: (ny, nx) mass of the cells before any bearing. folded: all bearings so far. priors: what was known of a
     source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
     now of the errors of each source that took a bearing. silences: turns in which the emitter was not heard, and by
-    what model of detection they count.
+    what model of detection they count. narrowed: the errors of sources of which bearings of other emitters tell, too,
+    on the grid on which they do (planner.belief.shared_source).
     """
 
     prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -61,10 +62,15 @@ class JointBelief(GridBelief):
     errors: tuple[SourceErrors, ...] = ()
     silences: tuple[Silence, ...] = ()
     detection: DetectionModel = UNKNOWN_EMITTER
+    narrowed: Mapping[str, Nodes] = field(default_factory=dict[str, Nodes])
 
     def errors_of(self, source: str) -> SourceErrors | None:
         """None for a source that took no bearing."""
         return next((one for one in self.errors if one.source == source), None)
+
+    def prior_of(self, source: str) -> ErrorPrior:
+        """What was known of a source's errors before the flight."""
+        return self.priors.get(source, self.otherwise)
 
 
 def joint_prior(
@@ -100,8 +106,12 @@ def update_joint(belief: JointBelief, bearing: Bearing, weighing: Weighing = com
     """Bayes' rule for one bearing more (3.26-3.28), then crop to what holds mass and refine where that is coarse."""
     validate_bearing(bearing)
     folded = (*belief.folded, bearing)
-    belief = _weighed(replace(belief, folded=folded, bearings=len(folded), copies=1), weighing)
-    belief = _cropped(belief)
+    return settled(replace(belief, folded=folded, bearings=len(folded), copies=1), weighing)
+
+
+def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.evidence) -> JointBelief:
+    """All that is known weighed again on the belief's cells, cropped and refined."""
+    belief = _cropped(_weighed(belief, weighing))
     for _ in range(DEEPEST_REFINEMENT):
         if not _coarse(belief):
             break
@@ -117,6 +127,20 @@ def by_source(bearings: Sequence[Bearing]) -> dict[str, list[Bearing]]:
     return found
 
 
+def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, y (c,) of the cells, m ENU, and the logarithm of their probability by all that is known but this source's
+    bearings."""
+    rows, columns = np.nonzero(belief.prior)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    log = log_prior(belief, rows, columns, x, y)
+    for other, taken in by_source(belief.folded).items():
+        if other != source:
+            seen = sightings(taken)
+            grid = nodes(belief.prior_of(other), float(seen.sigma.min()), len(taken))
+            log = log + compiled_evidence.evidence(x, y, seen, grid).log
+    return x, y, log
+
+
 def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     """All bearings on the cells of the grid: mass of each cell, and of the errors of each source."""
     rows, columns = np.nonzero(belief.prior)
@@ -124,8 +148,8 @@ def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     log = log_prior(belief, rows, columns, x, y)
     found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
     for source, taken in by_source(belief.folded).items():
-        seen, prior = sightings(taken), belief.priors.get(source, belief.otherwise)
-        grid = nodes(prior, float(seen.sigma.min()), len(taken))
+        seen, prior = sightings(taken), belief.prior_of(source)
+        grid = belief.narrowed.get(source) or nodes(prior, float(seen.sigma.min()), len(taken))
         weighed = weighing(x, y, seen, grid)
         log = log + weighed.log
         found.append((source, len(taken), prior, grid, weighed))

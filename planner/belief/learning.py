@@ -19,7 +19,7 @@ import numpy as np
 
 from planner.belief import compiled_evidence
 from planner.belief.evidence import Sightings, sightings
-from planner.belief.joint import JointBelief, by_source, log_prior
+from planner.belief.joint import JointBelief, by_source, places_besides
 from planner.belief.source_errors import ErrorPrior, Nodes, bias_weights, nodes
 from planner.types import Bearing, FloatArray
 
@@ -35,14 +35,8 @@ def flight_evidence(belief: JointBelief, source: str) -> FloatArray:
     belief: with all bearings of the flight; those of other sources tell of the place. The values are those of the
     prior that the belief has of the source.
     """
-    rows, columns = np.nonzero(belief.prior)
-    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    log = log_prior(belief, rows, columns, x, y)
-    taken = by_source(belief.folded)
-    for other in (name for name in taken if name != source):
-        prior, seen = belief.priors.get(other, belief.otherwise), sightings(taken[other])
-        log = log + compiled_evidence.evidence(x, y, seen, _nodes(prior, seen)).log
-    return _evidence(belief.priors.get(source, belief.otherwise), taken[source], x, y, log)
+    x, y, log = places_besides(belief, source)
+    return _evidence(belief.prior_of(source), by_source(belief.folded)[source], x, y, log)
 
 
 def evidence_at(

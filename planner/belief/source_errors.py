@@ -11,7 +11,7 @@ compass that reads too large has a negative b.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import erf, sqrt
 
 import numpy as np
@@ -59,7 +59,8 @@ class ErrorPrior:
 class Nodes:
     """The grid on which a source's errors are marginalized: values and weights of bias (b,), scale (k,), rate (e,).
 
-    The bias' values are equally spaced; spacing: rad, of one that stands alone, too.
+    The bias' values are equally spaced; spacing: rad, of one that stands alone, too. together: (k, e, b) weights of
+    which the three are the sums where the errors hang together, None where they do not.
     """
 
     bias: FloatArray
@@ -69,6 +70,32 @@ class Nodes:
     rate: FloatArray
     rate_weight: FloatArray
     spacing: float
+    together: FloatArray | None = None
+
+    @property
+    def weight(self) -> FloatArray:
+        """(k, e, b) of each combination."""
+        if self.together is not None:
+            return self.together
+        return self.scale_weight[:, None, None] * self.rate_weight[:, None] * self.bias_weight
+
+    def knowing(self, log_evidence: FloatArray) -> Nodes:
+        """Weighed with further evidence (k, e, b) of the errors; values of the bias that it leaves no mass at the ends
+        of the range are left out."""
+        log = np.log(np.maximum(self.weight, np.finfo(float).tiny)) + log_evidence
+        weight = np.exp(log - log.max())
+        weight /= weight.sum()
+        kept = np.flatnonzero(weight.sum(axis=(0, 1)) > NEGLIGIBLE_WEIGHT)
+        where = slice(int(kept[0]), int(kept[-1]) + 1)
+        weight = np.ascontiguousarray(weight[:, :, where] / weight[:, :, where].sum())
+        return replace(
+            self,
+            bias=self.bias[where],
+            bias_weight=weight.sum(axis=(0, 1)),
+            scale_weight=weight.sum(axis=(1, 2)),
+            rate_weight=weight.sum(axis=(0, 2)),
+            together=weight,
+        )
 
 
 def nodes(prior: ErrorPrior, sigma: float, bearings: int) -> Nodes:

@@ -14,6 +14,7 @@ import numpy as np
 from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
+from planner.belief.shared_source import with_shared_errors
 from planner.belief.verdict import verdict
 from planner.geometry import distance_to_convex
 from planner.motion import flight_time
@@ -26,8 +27,10 @@ from planner.study.scenarios import Scenario, scenario
 from planner.study.truth import Claim, Model, bearing_of, folded, prior_of
 from planner.types import Bearing, FloatArray, LocalizationRule
 
-TAGS = {"tags_4": 4, "tags_8": 8}
+TAGS = {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8}
 """Rows by name: how many tags."""
+BIAS_SD = {"tags_4_bias5": float(np.deg2rad(5.3)), "tags_8_bias5": float(np.deg2rad(5.3))}
+"""Of the compass, by row: one angle for all bearings of all tags in a mission. In the other rows it is right."""
 MOST_BEARINGS = 40
 OPTIONS = replace(FIELD, budget=250)
 """A quarter of a flight's work a decision; eight tags make it eight rollouts a path."""
@@ -36,7 +39,10 @@ TAGS_SEED = 15
 
 @dataclass(slots=True)
 class _Tag:
+    """alone: the belief by its own bearings. belief: with what the others' tell of the compass, where that counts."""
+
     sensor: Sensor
+    alone: GridBelief
     belief: GridBelief
     bearings: list[Bearing]
     localized: bool = False
@@ -44,24 +50,35 @@ class _Tag:
 
 
 def tags_missions(
-    row: str, seeds: Sequence[int], model: Model, options: PlannerOptions = OPTIONS
+    row: str, seeds: Sequence[int], model: Model, options: PlannerOptions = OPTIONS, *, shared: bool = False
 ) -> Iterator[list[Claim]]:
-    """Mission by mission: a claim a tag, those that were never claimed too, all with the mission's time."""
+    """Mission by mission: a claim a tag, those that were never claimed too, all with the mission's time. shared: what
+    one tag's bearings tell of the compass counts for all, of the joint model."""
     if row not in TAGS:
         raise StudyError(f"there is no row {row!r}: choose one of {', '.join(TAGS)}")
     for seed in seeds:
-        yield fly_tags(scenario("field"), TAGS[row], seed, model, options)
+        yield fly_tags(scenario("field"), TAGS[row], seed, model, options, shared=shared, bias_sd=BIAS_SD.get(row, 0.0))
 
 
-def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: PlannerOptions = OPTIONS) -> list[Claim]:
-    """One mission from the scenario's place, its first bearing taken there."""
+def fly_tags(
+    world: Scenario,
+    count: int,
+    seed: int,
+    model: Model,
+    options: PlannerOptions = OPTIONS,
+    *,
+    shared: bool = False,
+    bias_sd: float = 0.0,
+) -> list[Claim]:
+    """One mission from the scenario's place, its first bearing taken there. bias_sd: rad, of the compass, which hears
+    all tags."""
     problem, rng = world.problem, np.random.default_rng([seed, TAGS_SEED])
     rule = LocalizationRule(threshold=problem.threshold)
-    row = Row("tags", own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
+    row = Row("tags", bias_sd=bias_sd, own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
     one = row.sensor(world.target(seed, rng), rng)
     sensors = [one, *(replace(one, target=world.target(seed, rng)) for _ in range(count - 1))]
     unknown = prior_of(problem, model, None)
-    tags = [_Tag(sensor, unknown, []) for sensor in sensors]
+    tags = [_Tag(sensor, unknown, unknown, []) for sensor in sensors]
     here, time, place = np.array(world.platform), 0.0, np.array(world.platform)
     for number in range(MOST_BEARINGS):
         leg = float(np.hypot(*(place - here)))
@@ -70,7 +87,10 @@ def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: Plan
         for tag in tags:
             angle, sigma = tag.sensor.bearing(here, number)
             tag.bearings.append(bearing_of(model, here, angle, sigma, row.heading_sigma, "craft"))
-            tag.belief = folded(unknown, tag.belief, tag.bearings[-1])
+            tag.alone = tag.belief = folded(unknown, tag.alone, tag.bearings[-1])
+        if shared:
+            _share(tags)
+        for tag in tags:
             tag.localized = verdict(problem, rule, tag.bearings, tag.belief).localized
             if tag.localized and tag.claim is None:
                 tag.claim = _claim(tag, world, claimed=True)
@@ -79,6 +99,13 @@ def fly_tags(world: Scenario, count: int, seed: int, model: Model, options: Plan
         place = _next_place(world, [tag for tag in tags if not tag.localized], here, options)
     claims = [tag.claim or _claim(tag, world, claimed=False) for tag in tags]
     return [replace(claim, time_s=time) for claim in claims]
+
+
+def _share(tags: Sequence[_Tag]) -> None:
+    joint = [tag.alone for tag in tags if isinstance(tag.alone, JointBelief)]
+    if len(joint) == len(tags):
+        for tag, belief in zip(tags, with_shared_errors(joint), strict=True):
+            tag.belief = belief
 
 
 def _next_place(world: Scenario, wanted: Sequence[_Tag], here: FloatArray, options: PlannerOptions) -> FloatArray:

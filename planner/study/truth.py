@@ -63,7 +63,7 @@ class Truth:
 
     in_c95_low, in_c95_high: Wilson's 95 % interval. mean_s: s until the claim or the last bearing. bias_inside: share
     in which the bias was within two of its stated standard deviations. prior: what was known of the sensor before.
-    planner: who chose the places.
+    planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
     """
 
     row: str
@@ -81,6 +81,7 @@ class Truth:
     bias_inside: float
     prior: str = UNKNOWN
     planner: TruthPlanner = "fisher"
+    shared: bool = False
 
     def as_json(self) -> dict[str, Any]:
         """Shares and times rounded to what the missions can tell; None: no mission told."""

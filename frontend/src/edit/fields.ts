@@ -93,6 +93,7 @@ export const sections: readonly Section[] = [
         ],
         more: true,
       },
+      { kind: "switch", path: "sensor.shared_errors", label: "edit.sharedErrors", more: true },
       {
         kind: "choice",
         path: "sensor.sweep_evidence",

@@ -732,6 +732,7 @@ export const de: Record<MessageKey, string> = {
   "edit.bearingErrors": "Fehler der Peilungen",
   "edit.bearingErrors.joint": "gemeinsame Verdrehung wird geschätzt",
   "edit.bearingErrors.independent": "jede hat ihren eigenen",
+  "edit.sharedErrors": "alle Sender sagen etwas über den Kompass (gemeinsame Verdrehung)",
   "edit.sweepEvidence": "von einer Drehung (gemeinsame Verdrehung)",
   "edit.sweepEvidence.peak": "zählen Peilung und Sigma",
   "edit.sweepEvidence.whole": "zählen alle Richtungen",

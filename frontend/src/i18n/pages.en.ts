@@ -331,6 +331,7 @@ export const pagesEn = {
   "edit.bearingErrors": "errors of bearings",
   "edit.bearingErrors.joint": "a common bias is estimated",
   "edit.bearingErrors.independent": "each has its own",
+  "edit.sharedErrors": "all emitters tell of the compass (common bias)",
   "edit.sweepEvidence": "of a sweep (common bias)",
   "edit.sweepEvidence.peak": "its bearing and sigma count",
   "edit.sweepEvidence.whole": "all directions count",

@@ -7230,7 +7230,9 @@ export interface components {
          *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
-         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions. shared_errors: of
+         *     joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
+         *     stored specification that does not say so means that each is judged by itself.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
          *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
@@ -7268,6 +7270,8 @@ export interface components {
             sweep_evidence: "peak" | "whole";
             /** @default 0 */
             bearing_offset_deg: number;
+            /** @default false */
+            shared_errors: boolean;
         };
         /**
          * @description The bearing sensor as the planner and the localizer assume it.
@@ -7275,7 +7279,9 @@ export interface components {
          *     bearing_errors: a stored specification that does not name them means independent ones; a request that does not,
          *     and every suggested mission, joint ones. learned: of joint errors, what the flights of this craft and antenna
          *     taught; the server writes it down when a mission is drafted, edited and started. sweep_evidence: of joint errors,
-         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions.
+         *     what the belief takes of a sweep, its main peak and sigma or its likelihood over all directions. shared_errors: of
+         *     joint errors of several emitters, whether what the bearings of one tell of their source counts for the others; a
+         *     stored specification that does not say so means that each is judged by itself.
          *     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
          *     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
          *     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
@@ -7313,6 +7319,8 @@ export interface components {
             sweep_evidence: "peak" | "whole";
             /** @default 0 */
             bearing_offset_deg: number;
+            /** @default false */
+            shared_errors: boolean;
         };
         /** @description incident: the same id is in the server's log. */
         ServerBroke: {

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from backend.api.suggestion import suggested_mission
+from backend.api.suggestion import suggested_mission, with_errors_estimated
 from backend.search.forecast import preview
 from backend.search.localization import localization
 from backend.search.planning import next_place_together
+from backend.spec import SensorSpec
 from hardware.readings import Place
 from planner.options import CROSSFIX, FIELD
 from planner.policy.value_table import SHIPPED_KEY, key_of, program_for, shipped
@@ -51,3 +52,13 @@ def test_several_emitters_are_planned_for_with_it():
     chosen = next_place_together([(task, ()) for task in tasks], (0.0, 0.0), 1, (), threads=1)
     assert chosen.expected_time_s is not None
     assert chosen.expected_time_s > 2 * spec.sensor.measurement_time_s
+
+
+def test_what_a_request_says_of_errors_stands_and_what_it_does_not_is_estimated_by_all_emitters():
+    assert suggested_mission(HOME).sensor.shared_errors
+    spec = suggested_mission(HOME)
+    for said in ({}, {"bearing_errors": "independent"}, {"shared_errors": False}):
+        asked = spec.model_copy(update={"sensor": SensorSpec.model_validate(said)})
+        found = with_errors_estimated(asked).sensor
+        assert found.bearing_errors == said.get("bearing_errors", "joint")
+        assert found.shared_errors == said.get("shared_errors", True)

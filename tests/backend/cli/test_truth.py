@@ -66,6 +66,8 @@ def test_the_flown_planner_chooses_other_places_in_the_same_world() -> None:
         (("--row", "bias5", "--model", "some"), "there is no model 'some'"),
         (("--row", "bias5", "--planner", "mine"), "there is no planner 'mine'"),
         (("--row", "tags_4", "--planner", "crossfix"), "not with tags_4"),
+        (("--row", "bias5", "--shared-errors"), "--shared-errors goes with the joint model of several tags"),
+        (("--row", "tags_4", "--model", "independent", "--shared-errors"), "--shared-errors goes with the joint model"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_one_line(arguments: tuple[str, ...], says: str) -> None:

@@ -1,5 +1,6 @@
 """Missions with several tags: seeded, each tag a claim, one time for all."""
 
+import numpy as np
 import pytest
 
 from planner.options import PlannerOptions
@@ -11,7 +12,7 @@ QUICK = PlannerOptions(budget=60)
 
 
 def test_the_rows_that_are_asked_for_exist_and_no_other():
-    assert TAGS == {"tags_4": 4, "tags_8": 8}
+    assert TAGS == {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8}
     with pytest.raises(StudyError, match="tags_8"):
         next(tags_missions("tags_5", [1], "independent"))
 
@@ -25,3 +26,18 @@ def test_a_mission_depends_on_its_seed_and_finds_every_tag_sooner_than_one_after
     alone = [fly_tags(world, 1, seed, "independent", QUICK)[0] for seed in (5, 6, 7)]
     assert claims[0].time_s < sum(claim.time_s for claim in alone)
     assert all(2 <= claim.bearings <= max(c.bearings for c in claims) for claim in claims)
+
+
+def test_a_wrong_compass_is_one_compass_for_all_tags_and_shared_it_is_known_better():
+    world, bias_sd = scenario("field"), np.deg2rad(12.0)
+    shared, alone = (fly_tags(world, 3, 4, "joint", QUICK, shared=some, bias_sd=bias_sd) for some in (True, False))
+    assert all(claim.claimed for claim in shared)
+    assert np.mean([claim.bias_sd_deg for claim in shared]) < np.mean([claim.bias_sd_deg for claim in alone])
+    assert all(abs(claim.bias_off_deg) <= 3.0 * claim.bias_sd_deg for claim in shared)
+
+
+def test_the_independent_model_has_no_errors_to_share():
+    world = scenario("field")
+    assert repr(fly_tags(world, 2, 5, "independent", QUICK)) == repr(
+        fly_tags(world, 2, 5, "independent", QUICK, shared=True)
+    )

@@ -1,0 +1,79 @@
+"""One source, several emitters: what the bearings of each tell of the source's errors counts for the others, too.
+
+A craft's compass turns its bearings of all emitters alike. Given its errors n = (bias b, scale s, outlier rate e) the
+emitters are independent, so that exactly
+
+    P(x_1 .. x_m, n) = p(n) prod_i p(x_i) L_i(x_i, n),    P(x_i, n) = p(x_i) L_i(x_i, n) p(n) prod_{j != i} Z_j(n),
+    Z_j(n) = sum_x p(x) L_j(x, n).
+
+Each emitter's own evidence is left out of what it is told, so nothing counts twice. Only one source is shared. Two that
+heard the same two emitters would hang together through both places: then prod_j Z_j needs the grid of both errors at
+once, and taken one by one what either tells would come back to it by way of the other. The errors of all other sources
+are estimated for each emitter by itself, within Z_j too, and no less is known of them than before.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from planner.belief import compiled_evidence
+from planner.belief.evidence import sightings
+from planner.belief.joint import JointBelief, by_source, places_besides, settled
+from planner.belief.source_errors import Nodes, nodes
+from planner.types import Bearing, FloatArray
+
+
+def with_shared_errors(beliefs: Sequence[JointBelief]) -> tuple[JointBelief, ...]:
+    """The beliefs about each emitter, in their order, with what the others tell of the source that heard most of them.
+
+    beliefs: each with its own bearings alone, the same known before of a source's errors. One that the source did not
+    hear stays as it is, and so do all when it heard one of them only.
+    """
+    source = common_source(beliefs)
+    if source is None:
+        return tuple(beliefs)
+    heard = [i for i, belief in enumerate(beliefs) if any(b.source == source for b in belief.folded)]
+    grid = common_nodes([beliefs[i] for i in heard], source)
+    told = told_by_others([node_evidence(beliefs[i], source, grid) for i in heard])
+    found = list(beliefs)
+    for i, evidence in zip(heard, told, strict=True):
+        found[i] = settled(replace(beliefs[i], narrowed={source: grid.knowing(evidence)}))
+    return tuple(found)
+
+
+def common_source(beliefs: Sequence[JointBelief]) -> str | None:
+    """Whose bearings are of most emitters; of equal ones who has more of them, then the first by name. None: nobody's
+    are of two."""
+    emitters, taken = Counter[str](), Counter[str]()
+    for belief in beliefs:
+        emitters.update({bearing.source for bearing in belief.folded})
+        taken.update(bearing.source for bearing in belief.folded)
+    found = min(emitters, key=lambda name: (-emitters[name], -taken[name], name), default=None)
+    return found if found is not None and emitters[found] > 1 else None
+
+
+def common_nodes(beliefs: Sequence[JointBelief], source: str) -> Nodes:
+    """The errors' grid, as fine as all the source's bearings together ask for."""
+    taken = [bearing for belief in beliefs for bearing in _of(belief, source)]
+    return nodes(beliefs[0].prior_of(source), float(sightings(taken).sigma.min()), len(taken))
+
+
+def node_evidence(belief: JointBelief, source: str, grid: Nodes) -> FloatArray:
+    """(k, e, b) log Z(n), up to a constant: what this emitter's bearings tell of the source's errors. belief: with its
+    own bearings alone."""
+    x, y, log = places_besides(belief, source)
+    return compiled_evidence.node_evidence(x, y, log, sightings(_of(belief, source)), grid)
+
+
+def told_by_others(evidence: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    """For each emitter the sum of the others' log evidence (k, e, b)."""
+    stacked = np.stack(evidence)
+    return tuple(np.delete(stacked, i, axis=0).sum(axis=0) for i in range(len(stacked)))
+
+
+def _of(belief: JointBelief, source: str) -> list[Bearing]:
+    return by_source(belief.folded)[source]

@@ -1,0 +1,200 @@
+"""Several emitters that share a source's errors: what is believed, when it is stale, and that the facts retell it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from search_walk import SearchWalk
+
+from backend.api.beliefs import belief_frame
+from backend.api.what_if import what_if
+from backend.events import BearingExcluded, BearingMeasured, BeliefUpdated, CraftSource, MissionDrafted, Recorded
+from backend.search.area import corner_of
+from backend.search.inputs import BearingsArrived, BeliefReady
+from backend.search.localization import localization
+from backend.search.state import SearchState, evolve
+from backend.search.task import search_task
+from backend.search.together import together
+from backend.spec import EmitterSpec, MissionSpec, MovementSpec, Polygon, SensorSpec
+from backend.wire.resources import WhatIfRequest
+from hardware.frame import LocalFrame
+from hardware.readings import Place
+from planner.belief.joint import JointBelief
+
+HOME = Place(lat=50.6, lon=7.2)
+FRAME = LocalFrame(HOME)
+TARGETS = {"a": (30.0, 120.0), "b": (-80.0, 60.0), "c": (90.0, 170.0)}
+PLACES = ((0.0, -40.0), (150.0, 40.0), (-140.0, 190.0), (20.0, 230.0))
+BIAS_DEG = 7.0
+
+
+def corner(x: float, y: float) -> tuple[float, float]:
+    point = FRAME.to_geo(x, y)
+    return point.lon, point.lat
+
+
+RING = [corner(-150, 0), corner(150, 0), corner(150, 200), corner(-150, 200), corner(-150, 0)]
+EMITTERS = [EmitterSpec(emitter_id=name, frequency_hz=150e6 + 1e5 * k) for k, name in enumerate(TARGETS)]
+SENSOR = SensorSpec(bearing_errors="joint", shared_errors=True)
+SPEC = MissionSpec(name="meadow", area=Polygon(coordinates=[RING]), emitters=EMITTERS, sensor=SENSOR)
+ALONE = SPEC.model_copy(update={"sensor": SENSOR.model_copy(update={"shared_errors": False})})
+
+
+def bearing(name: str, number: int) -> BearingMeasured:
+    """All of them turned by one compass."""
+    (x, y), (east, north) = PLACES[number - 1], TARGETS[name]
+    own = float(np.random.default_rng([number, *name.encode()]).normal(0.0, 2.0))
+    return BearingMeasured(
+        emitter_id=name,
+        source=CraftSource(craft_id="craft-1"),
+        bearing_id=f"{name}{number}",
+        sweep_id=f"s-{name}{number}",
+        place_number=number,
+        place=FRAME.to_geo(x, y),
+        altitude_amsl_m=0.0,
+        bearing_deg=(math.degrees(math.atan2(east - x, north - y)) + BIAS_DEG + own) % 360.0,
+        sigma_deg=math.hypot(3.0, 4.0),
+        quality=0.95,
+        peaks=[],
+        snr_db=30.0,
+        drift_m=0.0,
+        binned_db=[],
+        fitted_db=[],
+        heading_sigma_deg=4.0,
+        measurement_time_s=16.0,
+    )
+
+
+def flown(spec: MissionSpec, turns: int) -> tuple[SearchState, list[Recorded]]:
+    """Turn by turn: the bearings of all, then the beliefs as a mission records them."""
+    state, records = SearchState(), list[Recorded]()
+
+    def record(event: MissionDrafted | BearingMeasured | BeliefUpdated) -> None:
+        nonlocal state
+        at = datetime(2026, 11, 23, tzinfo=UTC) + timedelta(seconds=len(records))
+        state = evolve(state, event, at.timestamp())
+        records.append(Recorded(seq=len(records) + 1, mission_id="m", at_utc=at, event=event))
+
+    record(MissionDrafted(spec=spec))
+    task = search_task(spec, corner_of(SPEC.area), 0.0)
+    for number in range(1, turns + 1):
+        for name in TARGETS:
+            record(bearing(name, number))
+        for name in TARGETS:
+            record(task.together.about(state, name).belief_fact(state.emitters[name].bearings)[0])
+    return state, records
+
+
+def digests(records: list[Recorded], name: str) -> list[str]:
+    return [r.event.digest for r in records if isinstance(r.event, BeliefUpdated) and r.event.emitter_id == name]
+
+
+def test_a_specification_that_does_not_say_so_shares_nothing() -> None:
+    assert not MissionSpec.model_validate({"name": "m", "area": SPEC.area}).sensor.shared_errors
+    assert ALONE.sharing == ()
+    assert SPEC.sharing == ("a", "b", "c")
+    assert SPEC.model_copy(update={"emitters": EMITTERS[:1]}).sharing == ()
+    independent = SENSOR.model_copy(update={"bearing_errors": "independent"})
+    assert SPEC.model_copy(update={"sensor": independent}).sharing == ()
+    walking = EMITTERS[0].model_copy(update={"movement": MovementSpec(kind="animal", speed_m_s=0.2)})
+    assert SPEC.model_copy(update={"emitters": [walking, *EMITTERS[1:]]}).sharing == ("b", "c")
+
+
+def test_one_compass_is_known_better_from_all_of_them_and_said_alike() -> None:
+    (_, alone), (_, shared) = flown(ALONE, 3), flown(SPEC, 3)
+    last_alone, last = ([r.event for r in records[-3:]] for records in (alone, shared))
+    for before, after in zip(last_alone, last, strict=True):
+        assert isinstance(before, BeliefUpdated)
+        assert isinstance(after, BeliefUpdated)
+        (own,), (told,) = before.sources, after.sources
+        assert told.bias_std_error_deg < 0.8 * own.bias_std_error_deg
+        assert abs(told.bias_deg - BIAS_DEG) < 3.0 * told.bias_std_error_deg
+        assert told.bearings == 3
+    assert len({round(event.sources[0].bias_deg, 2) for event in last if isinstance(event, BeliefUpdated)}) == 1
+
+
+def test_one_emitter_is_believed_bit_for_bit_what_it_was() -> None:
+    for spec in (SPEC, ALONE):
+        one = spec.model_copy(update={"emitters": EMITTERS[:1]})
+        state = SearchState()
+        for event in (MissionDrafted(spec=one), *(bearing("a", number) for number in (1, 2, 3))):
+            state = evolve(state, event, 0.0)
+        told = together(one, HOME, "a").about(state, "a").belief_fact(state.emitters["a"].bearings)[0]
+        assert told == localization(one, HOME, "a").belief_fact([bearing("a", number) for number in (1, 2, 3)])[0]
+
+
+def test_the_facts_retell_each_belief_as_it_was_flown() -> None:
+    state, records = flown(SPEC, 3)
+    again = together(SPEC, corner_of(SPEC.area), "b").about(state, "b")
+    fact, _ = again.belief_fact(state.emitters["b"].bearings)
+    assert fact.digest == digests(records, "b")[-1] != digests(flown(ALONE, 3)[1], "b")[-1]
+    asked = WhatIfRequest(bearings=3, emitter_id="b")
+    told = what_if("m", records, asked)
+    assert told is not None
+    assert told.belief.digest == digests(records, "b")[-1]
+    assert [step.expected_rmse_m for step in told.steps[1:]] == [step.flown_expected_rmse_m for step in told.steps[1:]]
+    # left out of what the others were told, too
+    without = what_if("m", records, WhatIfRequest(bearings=3, emitter_id="b", without=["a1", "a2", "a3"]))
+    assert without is not None
+    assert without.belief.digest not in (told.belief.digest, digests(flown(ALONE, 3)[1], "b")[-1])
+    assert belief_frame("m", records, True, "b") != belief_frame("m", records[: 1 + 2 * 6], True, "b")
+
+
+def test_a_bearing_of_one_outruns_what_is_believed_of_all() -> None:
+    state, _ = flown(SPEC, 2)
+    assert state.beliefs_current
+    for event in (
+        bearing("a", 3),
+        BearingExcluded(emitter_id="a", bearing_id="a1", by="anna", reason="", heard=True),
+    ):
+        later = evolve(state, event, 0.0)
+        assert not any(emitter.belief_current for emitter in later.emitters.values())
+        assert later.behind("b") != state.behind("b")
+        assert later.behind("b")[:2] == ("b1", "b2")
+    alone, _ = flown(ALONE, 2)
+    later = evolve(alone, bearing("a", 3), 0.0)
+    assert [name for name, emitter in later.emitters.items() if emitter.belief_current] == ["b", "c"]
+    assert later.behind("b") == ("b1", "b2")
+
+
+def test_a_belief_that_another_emitters_bearing_outran_is_no_belief() -> None:
+    walk = SearchWalk(SPEC)
+    walk.give(BearingsArrived((bearing("a", 1), bearing("b", 1))))
+    task = localization(SPEC, HOME, "a")
+    fact, _ = task.belief_fact([bearing("a", 1)])
+    before = walk.state.behind("a")
+    walk.give(BearingsArrived((bearing("b", 2),)))
+    walk.give(BeliefReady(before, fact))
+    assert not walk.state.emitters["a"].belief_current
+    walk.give(BeliefReady(walk.state.behind("a"), fact))
+    assert walk.state.emitters["a"].belief_current
+
+
+def test_who_was_not_heard_yet_is_told_nothing_and_waits_for_nobody() -> None:
+    state = SearchState()
+    for event in (MissionDrafted(spec=SPEC), bearing("a", 1)):
+        state = evolve(state, event, 0.0)
+    assert state.behind("a") == ("a1",)
+    about = together(SPEC, HOME, "a")
+    belief = about.about(state, "c").belief(())
+    assert isinstance(belief, JointBelief)
+    assert belief.density == pytest.approx(about.emitters["c"].prior.density)
+    first, _ = about.about(state, "a").belief_fact(state.emitters["a"].bearings)
+    assert first.digest == localization(SPEC, HOME, "a").belief_fact(state.emitters["a"].bearings)[0].digest
+
+
+def test_a_task_that_was_told_of_others_does_not_teach_those_that_ask_later() -> None:
+    state, _ = flown(SPEC, 2)
+    tasks = together(SPEC, HOME, "a")
+    told = tasks.about(state, "a")
+    assert told.beside is not None
+    assert tasks.emitters["a"].beside is None
+    assert tasks.emitters["a"].after(()).beside is None
+    assert (
+        replace(told, beside=None).belief_fact([bearing("a", 1)])[0]
+        == (localization(SPEC, HOME, "a").belief_fact([bearing("a", 1)])[0])
+    )
