@@ -30,8 +30,9 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
     remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
-    elsewhere = {one.frequency_hz for one in recording.bearings if not _of(emitter, one)}
-    remarks += [reasons.OtherFrequency(upload.filename, hz or 0.0, emitter.frequency_hz) for hz in sorted(elsewhere)]
+    others = (one.frequency_hz for one in recording.bearings if not _of(emitter, one))
+    elsewhere = sorted({hz for hz in others if hz is not None})
+    remarks += [reasons.OtherFrequency(upload.filename, hz, emitter.frequency_hz) for hz in elsewhere]
     times = [upload.at_s if upload.at_s is not None else one.at_s for one in heard]
     first_s = min((at_s for at_s in times if at_s is not None), default=None)
     facts: list[Event] = [
