@@ -161,7 +161,7 @@ COMPOSE ?= docker compose
 HTTPS_PORT ?= 443
 HTTP_PORT ?= 80
 containers: setup-dev ## walk through docs/install-for-a-team.md: image, mission, killed containers, restore; REMARK= into the record with OUT=
-	COMPOSE_PROFILES=simulated ADDRESS=localhost SPEEDUP=5 HTTPS_PORT=$(HTTPS_PORT) HTTP_PORT=$(HTTP_PORT) \
+	COMPOSE_PROFILES=simulated ADDRESS=localhost SPEEDUP=1 HTTPS_PORT=$(HTTPS_PORT) HTTP_PORT=$(HTTP_PORT) \
 	  $(BIN)/python -m tests.containers.fly --compose "$(COMPOSE)" \
 	  --url https://localhost:$(HTTPS_PORT) --plain http://localhost:$(HTTP_PORT) $(if $(OUT),--out $(OUT) --remark "$(REMARK)")
 
