@@ -161,11 +161,11 @@ architecture: setup-dev ## the picture of docs/architecture.md, from the imports
 
 COMPOSE ?= docker compose
 HTTPS_PORT ?= 443
-containers: setup-dev ## build the image, fly one mission in the containers of docker-compose.yml, take them down again
-	SPEEDUP=5 HTTPS_PORT=$(HTTPS_PORT) $(COMPOSE) --profile simulated up --build --detach
-	for second in $$(seq 1 5 600); do \
-	  code=$$($(COMPOSE) logs server 2>/dev/null | grep -oE '[0-9A-Z]{4}(-[0-9A-Z]{4}){3}' | tail -1); [ -n "$$code" ] && break; sleep 5; done; \
-	$(BIN)/python -m tests.containers.fly https://localhost:$(HTTPS_PORT) "$$code"; flown=$$?; $(COMPOSE) --profile simulated down; exit $$flown
+HTTP_PORT ?= 80
+containers: setup-dev ## walk through docs/install-for-a-team.md: image, mission, killed containers, restore; REMARK= into the record with OUT=
+	COMPOSE_PROFILES=simulated ADDRESS=localhost SPEEDUP=1 HTTPS_PORT=$(HTTPS_PORT) HTTP_PORT=$(HTTP_PORT) \
+	  $(BIN)/python -m tests.containers.fly --compose "$(COMPOSE)" \
+	  --url https://localhost:$(HTTPS_PORT) --plain http://localhost:$(HTTP_PORT) $(if $(OUT),--out $(OUT) --remark "$(REMARK)")
 
 wheel: setup-dev build ## dist/crossfix-VERSION.whl with the page inside: pipx install it, then crossfix serve
 	$(BIN)/pip wheel --quiet --no-deps --no-build-isolation -w dist .

@@ -59,10 +59,11 @@ class EmitterState:
 
     muted: sources whose bearings do not count, as those in `excluded` do not.
 
-    belief_current: no bearing came or went since `belief` was computed, of this emitter or of one that tells of its
-    source's errors, and the area is the same. localized_at_s: UTC
-    epoch seconds at which the belief was first good enough, None when it is not. truth: what was told last of where it
-    really was; no belief about it depends on that. silences: turns that heard nothing of it and tell something by that.
+    belief_current: this server computed `belief`; no bearing came or went since, of this emitter or of one that tells
+    of its source's errors, and the area is the same. folded_again: a server before a restart did, and the same bearings
+    are being folded again. localized_at_s: UTC epoch seconds at which the belief was first good enough, None when it is
+    not. truth: what was told last of where it really was; no belief about it depends on that. silences: turns that
+    heard nothing of it and tell something by that.
     """
 
     emitter_id: str
@@ -71,6 +72,7 @@ class EmitterState:
     muted: frozenset[BearingSource] = frozenset()
     belief: BeliefUpdated | None = None
     belief_current: bool = False
+    folded_again: bool = False
     localized_at_s: float | None = None
     claim: BeliefUpdated | None = None
     claimed_at_s: float | None = None
@@ -100,6 +102,11 @@ class EmitterState:
     def localized(self) -> bool:
         """Never by a belief that bearings or the area have outrun."""
         return self.belief_current and self.belief is not None and self.belief.localized
+
+    @property
+    def found(self) -> bool:
+        """Localized; a restart of the server takes nothing from what its bearings say."""
+        return (self.belief_current or self.folded_again) and self.belief is not None and self.belief.localized
 
     @property
     def not_yet(self) -> tuple[Reason, ...]:
@@ -168,8 +175,9 @@ class SearchState:
     @property
     def found(self) -> bool:
         """What the search ends with: localized now; of one that follows, localized at one time or other."""
-        claimed = bool(self.emitters) and all(emitter.claim is not None for emitter in self.emitters.values())
-        return self.localized or (claimed and self.follows)
+        emitters = self.emitters.values()
+        claimed = self.follows and all(emitter.claim is not None for emitter in emitters)
+        return bool(emitters) and (claimed or all(emitter.found for emitter in emitters))
 
     @property
     def sought(self) -> tuple[EmitterState, ...]:
@@ -244,7 +252,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             if state.home is not None:
                 return state
             # bearings from before the start (imported) are folded again in the frame of the home
-            begun = _each(state, lambda e: replace(e, belief_current=e.belief_current and not e.measured))
+            begun = _each(state, lambda e: _outrun(e) if e.measured else e)
             spec = state.spec if learned is None else state.mission.having_learned(learned)
             return replace(begun, spec=spec, home=home, home_amsl_m=home_amsl_m, ground=ground, started_at_s=at_s)
         case PlanChosen(place_number=number):
@@ -266,7 +274,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
         case AlertCleared(alert_id=alert_id):
             return replace(state, open_alerts=tuple(a for a in state.open_alerts if a.alert_id != alert_id))
         case ServerRestarted():
-            return _each(state, lambda emitter: replace(emitter, belief_current=False))
+            return _each(state, _folded_again)
         case TruthNoted(emitter_id=name) if name in state.emitters:
             told = replace(state.emitters[name], truth=event)
             return replace(state, emitters={**state.emitters, name: told})
@@ -287,17 +295,17 @@ def _evolve_emitter(
     number = state.place_number
     match event:
         case BearingMeasured():
-            emitter = replace(emitter, measured=(*emitter.measured, event), belief_current=False)
+            emitter = _outrun(replace(emitter, measured=(*emitter.measured, event)))
             number = max(number, event.place_number)
         case SweepRejected():
-            emitter = replace(emitter, silences=(*emitter.silences, event), belief_current=False)
+            emitter = _outrun(replace(emitter, silences=(*emitter.silences, event)))
         case BearingExcluded(bearing_id=bearing_id):
             emitter = _recounted(replace(emitter, excluded=emitter.excluded | {bearing_id}))
         case BearingIncluded(bearing_id=bearing_id):
             emitter = _recounted(replace(emitter, excluded=emitter.excluded - {bearing_id}))
         case BeliefUpdated(localized=localized):
             since = (emitter.localized_at_s or at_s) if localized else None
-            emitter = replace(emitter, belief=event, belief_current=True, localized_at_s=since)
+            emitter = replace(emitter, belief=event, belief_current=True, folded_again=False, localized_at_s=since)
             if localized:
                 emitter = replace(emitter, claim=event, claimed_at_s=at_s)
     evolved = replace(state, emitters={**state.emitters, emitter.emitter_id: emitter}, place_number=number)
@@ -319,10 +327,6 @@ def _told(state: SearchState, emitter_id: str, change: Callable[[EmitterState], 
     return replace(state, emitters={**state.emitters, **{name: change(one) for name, one in told.items()}})
 
 
-def _outrun(emitter: EmitterState) -> EmitterState:
-    return replace(emitter, belief_current=False)
-
-
 def _muting(emitter: EmitterState, source: BearingSource, muted: frozenset[BearingSource]) -> EmitterState:
     """An emitter that the source told nothing of keeps its belief."""
     emitter = replace(emitter, muted=muted)
@@ -336,14 +340,23 @@ def _tells(emitter: EmitterState, source: BearingSource) -> bool:
 
 def _recounted(emitter: EmitterState) -> EmitterState:
     """What was claimed was claimed of other bearings."""
-    return replace(emitter, belief_current=False, claim=None, claimed_at_s=None)
+    return replace(_outrun(emitter), claim=None, claimed_at_s=None)
+
+
+def _folded_again(emitter: EmitterState) -> EmitterState:
+    return replace(emitter, belief_current=False, folded_again=emitter.belief_current or emitter.folded_again)
+
+
+def _outrun(emitter: EmitterState) -> EmitterState:
+    """What is believed is not of these bearings in this area."""
+    return replace(emitter, belief_current=False, folded_again=False)
 
 
 def _with_spec(state: SearchState, spec: MissionSpec) -> SearchState:
     """An emitter that is no longer looked for takes its bearings with it."""
     ids = [emitter.emitter_id for emitter in spec.emitters]
     unknown = {name: EmitterState(name, muted=state.muted) for name in ids}
-    emitters = {name: replace(state.emitters.get(name, unknown[name]), belief_current=False) for name in ids}
+    emitters = {name: _outrun(state.emitters.get(name, unknown[name])) for name in ids}
     return replace(state, spec=spec, emitters=emitters)
 
 

@@ -1,148 +1,163 @@
-"""Fly one mission on a new server that is running: `python -m tests.containers.fly https://localhost CODE`.
+"""docs/install-for-a-team.md, walked through: up from nothing, a mission flown, boxes killed in its flight, a restore.
 
-CODE is what the server printed for its first admin. Prints what the server says of itself, the phases with their times,
-and the outcome. Fails unless PostgreSQL keeps the journal and the emitter is localized.
+    python -m tests.containers.fly --out docs/measurements
+
+The containers have a project of their own, whose volumes are taken away at the end (`--keep`: everything stays), but
+the ports and settings of `.env`. While the mission flies, a backup is made and server, database and proxy are killed,
+one after the other; afterwards the backup is restored into empty volumes. Fails unless the mission comes back in hold
+and goes on to localize its emitter, and its people and facts are there again after the restore. Wants SPEEDUP=1: any
+faster, and the vehicle's own failsafe has landed it before the server is back.
 """
 
 from __future__ import annotations
 
+import argparse
 import asyncio
-import os
+import json
 import secrets
-import sys
-import tempfile
+import shlex
 import time
-import uuid
-from collections.abc import Callable
-from contextlib import suppress
-from typing import Any
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
 
 import httpx
 
-READY_S = 240.0
-"""The first start waits for the database, and compiles the planner."""
-FLIGHT_S = 900.0
-FIRST_FENCE = 1
-"""Of the control lease of a new search, once somebody has taken it."""
+from tests.benchmarks.figures.circumstances import Begun, begin
+from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import add_out, plain, write
+from tests.containers.boxes import Boxes
+from tests.containers.flight import Fact, Flight, answered, count, phase, trust, until_healthy, vehicle_ready
+
+NAME = "ada"
+SERVER_USER = "8600"
 
 
-async def until_healthy(client: httpx.AsyncClient) -> None:
-    """It answers, whoever asks. Raises TimeoutError."""
-    async with asyncio.timeout(READY_S):
-        while True:
-            with suppress(httpx.HTTPError):
-                if (await client.get("/health")).status_code == 200:
-                    return
-            await asyncio.sleep(1.0)
+@dataclass
+class Watch:
+    """What took how long, said and kept."""
+
+    figures: list[Figure] = field(default_factory=list)
+    begun: float = field(default_factory=time.monotonic)
+
+    def say(self, text: object) -> None:
+        print(f"{time.monotonic() - self.begun:6.1f} s  {text}", flush=True)
+
+    @asynccontextmanager
+    async def timed(self, what: str, note: str = "") -> AsyncIterator[None]:
+        """A figure, unless the block fails."""
+        began = time.monotonic()
+        yield
+        self.figures.append(plain(what, round(time.monotonic() - began, 1), "s", note=note))
+        self.say(what)
 
 
-async def vehicle_ready(client: httpx.AsyncClient) -> dict[str, Any]:
-    """What the server says about itself once its vehicle is there. Raises TimeoutError."""
-    async with asyncio.timeout(READY_S):
-        while True:
-            health = answered(await client.get("/api/health"))
-            if all(vehicle["connected"] for vehicle in health["vehicles"]):
-                return health
-            await asyncio.sleep(1.0)
+async def sealed(boxes: Boxes) -> None:
+    """What the page says of the image. Raises RuntimeError where it is not so."""
+    if (user := (await boxes.inside("id", "-u")).strip()) != SERVER_USER:
+        raise RuntimeError(f"the server runs as user {user}")
+    for place in ("/written", "/opt/crossfix/written", "/var/lib/written"):
+        if "written" in await boxes.inside("sh", "-c", f"touch {place} 2>/dev/null && echo written || true"):
+            raise RuntimeError(f"{place} can be written")
+    for bill in ("server.cdx.json", "page.cdx.json"):
+        if not json.loads(await boxes.inside("cat", f"/opt/crossfix/bill/{bill}"))["components"]:
+            raise RuntimeError(f"{bill} names nothing")
 
 
-def answered(reply: httpx.Response) -> Any:
-    """Its JSON. Raises RuntimeError for a refusal, with what it says."""
-    if reply.is_error:
-        raise RuntimeError(f"{reply.request.method} {reply.request.url.path}: {reply.status_code} {reply.text[:500]}")
-    return reply.json()
+async def back(boxes: Boxes, service: str, client: httpx.AsyncClient) -> None:
+    """Killed and started again; the server is ready for its orders."""
+    await boxes("kill", service)
+    await boxes("up", "--detach")
+    await until_healthy(client)
+    await vehicle_ready(client)
 
 
-class Flight:
-    """One mission, ordered by whoever is signed in."""
-
-    def __init__(self, client: httpx.AsyncClient, mission_id: str) -> None:
-        self._client = client
-        self.path = f"/api/missions/{mission_id}"
-
-    async def order(self, kind: str, fence: int | None = None) -> None:
-        """Raises RuntimeError when it is refused."""
-        asked = {"command_id": str(uuid.uuid4()), "command": {"kind": kind}, "fence": fence}
-        reply = answered(await self._client.post(f"{self.path}/commands", json=asked))
-        if not reply["accepted"]:
-            raise RuntimeError(f"{kind}: {reply}")
-
-    async def preflight(self) -> None:
-        """Waits until all checks pass. Raises TimeoutError."""
-        async with asyncio.timeout(READY_S):
-            while True:
-                if answered(await self._client.post(f"{self.path}/preflight"))["passed"]:
-                    return
-                await asyncio.sleep(1.0)
-
-    async def facts(self) -> list[dict[str, Any]]:
-        """All so far."""
-        found: list[dict[str, Any]] = []
-        while True:
-            after = found[-1]["seq"] if found else 0
-            page = answered(await self._client.get(f"{self.path}/events", params={"after": after}))
-            found += page["events"]
-            if not page["more"]:
-                return found
+async def fly(boxes: Boxes, client: httpx.AsyncClient, watch: Watch) -> tuple[Flight, str, list[Fact]]:
+    """The mission, ended; the backup that was made in it; what must be in that at least. Raises RuntimeError when it is
+    not localized."""
+    spec = answered(await client.get("/api/defaults"))["spec"]
+    flight = Flight(client, answered(await client.post("/api/missions", json=spec))["mission_id"])
+    await flight.preflight()
+    await flight.order("take_control")
+    await flight.order("start")
+    await flight.until(lambda facts: count(facts, "bearing_measured") >= 1)
+    watch.say("a first bearing")
+    saved = await flight.facts()
+    async with watch.timed("backup in flight"):
+        archive = json.loads(await boxes.inside("crossfix", "backup", "/backups", "--json"))["archive"]
+    async with watch.timed("server killed in flight: the mission is back in hold"):
+        await back(boxes, "server", client)
+        facts = await flight.until(lambda facts: count(facts, "server_restarted") > 0 and phase(facts) == "hold")
+    if facts[: len(saved)] != saved:
+        raise RuntimeError("facts are lost")
+    await flight.order("resume")
+    for service in ("database", "proxy"):
+        async with watch.timed(f"{service} killed in flight: all answers again"):
+            await back(boxes, service, client)
+    facts = await flight.until(lambda facts: count(facts, "mission_ended") > 0)
+    outcome = next(fact["outcome"] for fact in facts if fact["kind"] == "mission_ended")
+    watch.say(f"outcome: {outcome}, bearings: {count(facts, 'bearing_measured')}")
+    if outcome != "localized":
+        raise RuntimeError(f"the mission ended {outcome}")
+    return flight, archive, saved
 
 
-async def trust(url: str, plain: str) -> None:
-    """From now on this process trusts the proxy's own authority, as a phone does that has taken its certificate."""
-    async with httpx.AsyncClient(timeout=5.0) as client, asyncio.timeout(READY_S):
-        while True:
-            with suppress(httpx.HTTPError):
-                reply = await client.get(f"{plain}/authority.crt")
-                if reply.status_code == 200:
-                    break
-            with suppress(httpx.HTTPError):  # the authority is made when somebody comes
-                async with httpx.AsyncClient(verify=False, timeout=5.0) as anyone:
-                    await anyone.get(url)
-            await asyncio.sleep(1.0)
-    with tempfile.NamedTemporaryFile(prefix="authority-", suffix=".crt", delete=False) as file:
-        file.write(reply.content)
-    os.environ["SSL_CERT_FILE"] = file.name
-
-
-async def main(url: str, code: str, plain: str) -> int:
-    begun = time.monotonic()
-
-    def say(text: object) -> None:
-        print(f"{time.monotonic() - begun:6.1f} s  {text}", flush=True)
-
-    if url.startswith("https:"):
-        await trust(url, plain)
-        say("TLS: the authority's certificate is taken")
+async def walk(boxes: Boxes, url: str, plain_url: str, watch: Watch) -> None:
+    """The page from its first command to its last. Raises RuntimeError where it does not hold."""
+    account = {"name": NAME, "password": secrets.token_urlsafe(24)}
+    async with watch.timed("up from nothing: the image built, the first admin's code printed"):
+        await boxes("up", "--build", "--detach")
+        code = await boxes.first_code()
+    await trust(url, plain_url)
+    await sealed(boxes)
     async with httpx.AsyncClient(base_url=url, timeout=60.0, headers={"origin": url}) as client:
         await until_healthy(client)
-        account = {"code": code, "name": "ada", "password": secrets.token_urlsafe(24)}
-        answered(await client.post("/api/first-admin", json=account))
+        answered(await client.post("/api/first-admin", json={"code": code, **account}))
         health = await vehicle_ready(client)
-        say(f"signed in; the server: {health}")
-        spec = answered(await client.get("/api/defaults"))["spec"]
-        flight = Flight(client, answered(await client.post("/api/missions", json=spec))["mission_id"])
-        await flight.preflight()
-        await flight.order("take_control")
-        await flight.order("start", FIRST_FENCE)
-        outcome = await watched(flight, say)
-    say(f"outcome: {outcome}")
-    return 0 if health["database"]["kind"] == "postgresql" and outcome == "localized" else 1
+        watch.say(f"signed in; the server: {health}")
+        if health["database"]["kind"] != "postgresql":
+            raise RuntimeError("PostgreSQL does not keep the journal")
+        async with watch.timed("mission: drafted to ended", "a backup and three killed boxes in it"):
+            flight, archive, saved = await fly(boxes, client, watch)
+        async with watch.timed("restore into empty volumes, and up again"):
+            await boxes.empty()
+            await boxes("run", "--rm", "-T", "server", "crossfix", "restore", archive)
+            await boxes("up", "--detach")
+            await until_healthy(client)
+        answered(await client.post("/api/session", json=account))
+        restored = await flight.facts()
+        if restored[: len(saved)] != saved:
+            raise RuntimeError("the restored mission is another one")
+        watch.say(f"restored: {len(saved)} facts, and {NAME} signs in again")
 
 
-async def watched(flight: Flight, say: Callable[[object], None]) -> str:
-    """Until the mission has ended; its outcome. Raises TimeoutError."""
-    seen = 0
-    async with asyncio.timeout(FLIGHT_S):
-        while True:
-            facts = [record["event"] for record in await flight.facts()]
-            bearings = sum(fact["kind"] == "bearing_measured" for fact in facts)
-            for fact in facts[seen:]:
-                if fact["kind"] == "phase_changed":
-                    say(f"{fact['after']}, bearings: {bearings}")
-                if fact["kind"] == "mission_ended":
-                    return fact["outcome"]
-            seen = len(facts)
-            await asyncio.sleep(1.0)
+async def main(boxes: Boxes, arguments: argparse.Namespace, begun: Begun) -> None:
+    watch = Watch()
+    try:
+        await walk(boxes, arguments.url, arguments.plain, watch)
+    finally:
+        if not arguments.keep:
+            await boxes("down", "--volumes")
+    write(
+        arguments.out,
+        "containers",
+        "The containers of docker-compose.yml",
+        begun,
+        watch.figures,
+        page="install-for-a-team.md",
+        remark=arguments.remark,
+    )
 
 
 if __name__ == "__main__":
-    sys.exit(asyncio.run(main(sys.argv[1], sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else "http://localhost")))
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--compose", default="docker compose", help="the program (%(default)s)")
+    parser.add_argument("--url", default="https://localhost", help="the page (%(default)s)")
+    parser.add_argument(
+        "--plain", default="http://localhost", help="where the authority's certificate is (%(default)s)"
+    )
+    parser.add_argument("--keep", action="store_true", help="leave everything as it is at the end")
+    parser.add_argument("--remark", default="", help="into the record: which images were stood in for, for instance")
+    add_out(parser)
+    given = parser.parse_args()
+    asyncio.run(main(Boxes(shlex.split(given.compose)), given, begin(__file__)))

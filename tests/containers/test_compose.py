@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ipaddress
+import json
 import re
 from pathlib import Path
 
 import pytest
 import yaml
 
+from backend.auth.registry import new_code
 from backend.settings import Settings
+from tests.containers.boxes import CODE, EMPTIED
 
 DEPLOY = Path(__file__).parent.parent.parent / "deploy"
 COMPOSE = yaml.safe_load((Path(__file__).parent.parent.parent / "docker-compose.yml").read_text())
@@ -33,6 +37,22 @@ def test_nothing_runs_as_root_or_writes_where_it_should_not():
         assert SERVICES[name]["cap_drop"] == ["ALL"], name
     assert not [name for name, service in SERVICES.items() if service.get("user") and name != "secrets"]
     assert SERVICES["secrets"]["network_mode"] == "none"
+
+
+def test_the_server_is_never_given_the_address_that_the_proxy_needs():
+    """Docker gives the lowest one that is free, and the server is up before the proxy."""
+    web = COMPOSE["networks"]["web"]["ipam"]["config"][0]
+    subnet = ipaddress.ip_network(unset(web["subnet"]))
+    proxy = ipaddress.ip_address(unset(SERVICES["proxy"]["networks"]["web"]["ipv4_address"]))
+    assert proxy in subnet
+    beside = [name for name, service in SERVICES.items() if name != "proxy" and "web" in service.get("networks", [])]
+    assert int(proxy) > int(subnet.network_address) + 1 + len(beside), "the first address is the gateway's"
+    assert json.loads(unset(SERVICES["server"]["environment"]["CROSSFIX_TRUSTED_PROXIES"])) == [str(proxy)]
+
+
+def test_who_comes_without_tls_is_sent_to_the_port_that_was_set():
+    assert SERVICES["proxy"]["environment"]["HTTPS_PORT"] in SERVICES["proxy"]["ports"][1]
+    assert "redir https://{host}:{$HTTPS_PORT:443}{uri}" in (DEPLOY / "Caddyfile").read_text()
 
 
 def test_no_password_stands_in_the_file():
@@ -89,10 +109,26 @@ def test_the_page_for_teams_names_what_the_file_has():
     assert {"ADDRESS", "LISTEN"} <= named
 
 
+def test_an_upgrade_does_not_go_on_with_the_old_image():
+    """`up` alone builds only what is not there."""
+    page = (DEPLOY.parent / "docs" / "install-for-a-team.md").read_text()
+    upgrade = page[page.index("To upgrade:") :]
+    assert "    docker compose up --build --detach\n" in upgrade
+    assert SERVICES["server"]["build"]
+
+
 def test_a_restore_empties_all_that_a_backup_holds():
     """Not the archives, nor the password with which the database is made again."""
     page = (DEPLOY.parent / "docs" / "install-for-a-team.md").read_text()
     emptied = re.search(r"docker volume rm (.+)", page)
     assert emptied is not None
     kept = {volume.split(":")[0] for name in ("server", "database") for volume in SERVICES[name]["volumes"]}
-    assert set(emptied[1].split()) == {f"{COMPOSE['name']}_{volume}" for volume in kept - {"backups", "secrets"}}
+    kept -= {"backups", "secrets"}
+    assert set(emptied[1].split()) == {f"{COMPOSE['name']}_{volume}" for volume in kept}
+    assert set(EMPTIED) == kept, "what `make containers` restores into"
+
+
+def test_the_code_of_the_first_admin_is_found_in_the_log():
+    """`make containers` reads it there."""
+    log = "server-1  | Nobody can use it yet. Open the page and make the first admin; the code for it works once: "
+    assert CODE.findall(f"{log}{new_code()}\n")

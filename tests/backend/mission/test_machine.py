@@ -6,6 +6,7 @@ from facts import (
     HOME,
     NOT_YET,
     OURS,
+    PERSON,
     SECOND,
     TWO_SPEC,
     bearing,
@@ -20,7 +21,7 @@ from backend.mission.inputs import ServerCameBack
 from backend.mission.state import fold
 from backend.reasons import refusals
 from backend.search.effects import UpdateBelief
-from backend.search.inputs import NotStored
+from backend.search.inputs import BearingsArrived, NotStored
 from backend.spec import FIRST_EMITTER
 
 
@@ -87,6 +88,38 @@ def test_a_restart_brings_the_same_search_back_with_its_beliefs_to_be_folded_aga
     assert walk.craft.phase == "hold"
     assert sent(walk.command(commands.Resume())) != []
     assert Walk().give(ServerCameBack()) == (), "a draft was not in the air"
+
+
+def landing_with_what_was_found() -> Walk:
+    walk = Walk().to("measuring")
+    walk.to_craft(inputs.SweepTaken((bearing(1),)))
+    walk.believe(localized=True)
+    walk.to_craft(inputs.HomeReached())
+    assert walk.state.phase == "landing"
+    return walk
+
+
+def test_what_was_found_before_a_restart_stays_found_when_the_vehicle_stands_there_already() -> None:
+    """A search ends with the belief of its bearings, whether or not they are folded again by then."""
+    walk = landing_with_what_was_found()
+    localized_at, started_at = walk.search.localized_at_s, walk.search.started_at_s
+    assert localized_at is not None
+    assert started_at is not None
+    for _ in range(2):
+        walk.give(ServerCameBack())
+    assert not walk.search.localized
+    walk.to_craft(inputs.Restarted(OURS, on_ground=True))
+    (ended,) = walk.of_kind(MissionEnded)
+    assert (ended.outcome, ended.mission_time_s) == ("localized", localized_at - started_at)
+    assert fold(walk.recorded) == walk.state
+
+
+def test_a_bearing_that_comes_after_a_restart_takes_back_what_was_found() -> None:
+    walk = landing_with_what_was_found()
+    walk.give(ServerCameBack())
+    walk.give(BearingsArrived((bearing(2, source=PERSON, bearing_id="p"),)))
+    walk.to_craft(inputs.Restarted(OURS, on_ground=True))
+    assert walk.search.outcome == "not_localized"
 
 
 def test_after_an_abort_and_a_restart_the_craft_is_held_and_brought_home() -> None:
