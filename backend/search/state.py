@@ -176,8 +176,10 @@ class SearchState:
     def found(self) -> bool:
         """What the search ends with: localized now; of one that follows, localized at one time or other."""
         emitters = self.emitters.values()
+        if not emitters:
+            return False
         claimed = self.follows and all(emitter.claim is not None for emitter in emitters)
-        return bool(emitters) and (claimed or all(emitter.found for emitter in emitters))
+        return claimed or all(emitter.found for emitter in emitters)
 
     @property
     def sought(self) -> tuple[EmitterState, ...]:

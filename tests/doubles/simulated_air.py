@@ -96,6 +96,9 @@ class SimulatedLink:
         known = name in self._firmware.parameters
         return self._firmware.parameters[name] if known else None
 
+    def has_answered(self, name: str) -> bool:
+        return name in self._firmware.parameters
+
     async def set_parameter(self, name: str, value: float) -> bool:
         await asyncio.sleep(2.0 * self._delay_s)
         self._firmware.parameters.set(name, value)
