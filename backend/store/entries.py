@@ -61,7 +61,7 @@ def to_records(mission_id: str, rows: Sequence[EventRow], imports: Imports | Non
 
 
 def to_texts(mission_id: str, rows: Sequence[EventRow], imports: Imports | None = None) -> list[str]:
-    """The JSON of what `to_records` gives. A body of today's form is told as it was stored, without a look at it.
+    """The JSON of what `to_records` gives. A body of today's form is passed on as it was stored, unread.
 
     imports: as in to_records. Raises ValueError when an older body is no event.
     """

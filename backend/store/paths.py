@@ -79,7 +79,7 @@ def _planes(table: NDArray[np.int64]) -> bytes:
 
 
 def _from_planes(body: bytes, count: int) -> NDArray[np.int64]:
-    """Raises ValueError when it is not a table of so many points."""
+    """Raises ValueError when it is not a table of `count` points."""
     planes = np.frombuffer(body, np.uint8).reshape(2 + len(STEPS), 8, count)
     return np.ascontiguousarray(planes.transpose(0, 2, 1)).view("<i8")[:, :, 0].astype(np.int64)
 

@@ -6,7 +6,7 @@ emitters are independent, so that exactly
     P(x_1 .. x_m, n) = p(n) prod_i p(x_i) L_i(x_i, n),    P(x_i, n) = p(x_i) L_i(x_i, n) p(n) prod_{j != i} Z_j(n),
     Z_j(n) = sum_x p(x) L_j(x, n).
 
-Each emitter's own evidence is left out of what it is told, so nothing counts twice. Only one source is shared. Two that
+What an emitter gets leaves its own evidence out, so nothing counts twice. Only one source is shared. Two that
 heard the same two emitters would hang together through both places: then prod_j Z_j needs the grid of both errors at
 once, and taken one by one what either tells would come back to it by way of the other. The errors of all other sources
 are estimated for each emitter by itself, within Z_j too, and no less is known of them than before.
