@@ -154,7 +154,7 @@ def bias_left(one: Lesson, offset_deg: float) -> float:
 def _evidence_for(one: Lesson, offset_deg: float, prior: ErrorPrior) -> FloatArray:
     """(t, k, e) at the prior's values, for a flight whose bearings have this taken off them, degrees clockwise.
 
-    How far the bias strays is counted from what was taken off. Where that was something else, the bias that was found is
+    How far the bias strays is counted from what was taken off. Where that was something else, the bias found is
     held against the new one: N(bias; 0, spread^2 + its standard error^2), whatever scale and rate are. So an offset
     that is taken over makes the flights which suggested it tell of a smaller spread, and one that is taken back of a
     larger: neither counts twice.
