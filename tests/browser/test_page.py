@@ -66,7 +66,18 @@ def test_the_safety_bar_is_small_and_needs_neither_webgl_nor_the_rest(server: Se
     page = context.new_page()
     fetched: list[Response] = []
     page.on("response", lambda response: fetched.append(response))
-    later = ("FlyPage", "FlyMap", "createMap", "EditMap", "maplibre", "reasons", "pages.en", "truth", "review")
+    later = (
+        "FlyPage",
+        "FlyMap",
+        "createMap",
+        "EditMap",
+        "maplibre",
+        "gridNotation",
+        "reasons",
+        "pages.en",
+        "truth",
+        "review",
+    )
 
     def lose(route: Route) -> None:
         if any(name in route.request.url for name in later):
