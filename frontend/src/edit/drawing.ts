@@ -28,6 +28,11 @@ async function unite(): Promise<void> {
   if (united && now?.spec.area === before.spec.area) update({ ...now, spec: { ...now.spec, area: united.area } });
 }
 
+let uniting: Promise<void> = Promise.resolve();
+
+/** Until what was drawn last has become one with what was there: before that the area is still to change. */
+export const areaUnited = (): Promise<void> => uniting;
+
 /** Puts polygons into the draft: they replace the suggested area, or any when they are to, else they are added. */
 export function add(kind: What, polygons: readonly Rings[]): void {
   const now = draft.peek();
@@ -36,7 +41,7 @@ export function add(kind: What, polygons: readonly Rings[]): void {
   if (kind === "area") {
     const joined = areaOf(now.hasArea && !now.suggested && !replaces.peek() ? [...polygonsOf(area), ...polygons] : polygons)!;
     update({ ...now, hasArea: true, suggested: false, spec: { ...now.spec, area: joined } });
-    void unite();
+    uniting = unite();
   } else if (kind === "fence") {
     update({ ...now, spec: set(now.spec, "flight.fence", areaOf(polygons)) });
   } else {

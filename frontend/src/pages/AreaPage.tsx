@@ -5,7 +5,7 @@ import { asProblem, send } from "../commands/send";
 import { AreaSection } from "../edit/AreaSection";
 import { watchCoverage } from "../edit/coverage";
 import { draft, forget, storedDraft, update } from "../edit/draft";
-import { replaces } from "../edit/drawing";
+import { areaUnited, replaces } from "../edit/drawing";
 import { OutlookCard } from "../edit/OutlookCard";
 import { askOutlook, clearOutlook, forgetOutlookOfOthers, outlook } from "../edit/outlook";
 import { t } from "../i18n";
@@ -91,7 +91,7 @@ export function AreaPage({ route }: { route: AreaRoute }) {
                   class="primary"
                   data-testid="outlook-ask"
                   disabled={isAsking || !isReadable}
-                  onClick={() => void askOutlook(id, draft.peek()!.spec)}
+                  onClick={() => void areaUnited().then(() => draft.peek() && askOutlook(id, draft.peek()!.spec))}
                 >
                   {t(isAsking ? "area.asking" : "area.ask")}
                 </button>
