@@ -267,7 +267,7 @@ async def abort(viewers: int, stalled: int, times: int) -> dict[str, Any]:
                 await watching.stdout.readline()
                 async with asyncio.timeout(60):
                     while not (await order(port, mission, "start"))["accepted"]:  # noqa: ASYNC110 (as a person would)
-                        await asyncio.sleep(0.2)
+                        await asyncio.sleep(1.1)  # more than one refusal a second is slowed down
                 await asyncio.sleep(chance.uniform(0.1, 1.5))
                 held_at.clear()
                 phase = services.missions.display.status().phase or ""
