@@ -20,8 +20,9 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,7 @@ from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.strikes.proxy import (
     ATTITUDE,
+    BATTERY_STATUS,
     COMMAND_INT,
     COMMAND_LONG,
     GLOBAL_POSITION,
@@ -56,6 +58,8 @@ from tests.strikes.strike import until
 
 ORDERS = {20: "return", 21: "land", 22: "take-off", 115: "yaw", 176: "mode", 178: "speed", 192: "place", 400: "arm"}
 """MAV_CMD that move the vehicle, in words. A yaw step of PX4 is a place."""
+TURNING_DEG_S = 3.0
+"""Below, an autopilot corrects its heading."""
 FALSE_TIMES = 3.0
 """A claim is false when its error is beyond this multiple of what it stated."""
 
@@ -64,6 +68,7 @@ FALSE_TIMES = 3.0
 class Flown:
     """One mission. emitter_m: where it stood, metres (east, north) of home. error_m, stated_m: None without a claim.
 
+    turned_deg: yaw, to and fro, faster than `TURNING_DEG_S`, until it ended. drawn_mah: by the autopilot's count.
     orders: how often each reached the vehicle. texts: the autopilot's warnings and worse, each once, with how often.
     failed: why the mission was not flown to its end; "" when it was.
     """
@@ -78,6 +83,8 @@ class Flown:
     bearing_errors_deg: tuple[float, ...]
     took_s: float
     holds: tuple[str, ...]
+    turned_deg: float
+    drawn_mah: float | None
     orders: Counter[str]
     texts: Counter[str]
     failed: str = ""
@@ -136,11 +143,28 @@ def said(record: Sequence[Passed]) -> Counter[str]:
     return Counter(whole)
 
 
-async def one(url: str, seed: int, delay_s: float) -> Flown:
-    """A mission that is not flown to its end is an outcome, too: the vehicle is then landed."""
+def turned_deg(record: Sequence[Passed]) -> float:
+    attitudes = [passed for passed in record if passed.way == "from" and passed.number == ATTITUDE]
+    total = 0.0
+    for before, after in pairwise(attitudes):
+        rate = abs(math.degrees(after.fields["yawspeed"]))
+        total += rate * (after.at_s - before.at_s) if rate > TURNING_DEG_S else 0.0
+    return total
+
+
+def drawn_mah(record: Sequence[Passed]) -> float | None:
+    """None where the autopilot does not count, as PX4's own simulator does not."""
+    counts = [p.fields["current_consumed"] for p in record if p.way == "from" and p.number == BATTERY_STATUS]
+    return counts[-1] - counts[0] if counts and counts[-1] > counts[0] >= 0 else None
+
+
+async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | None = None) -> Flown:
+    """A mission that is not flown to its end is an outcome, too: the vehicle is then landed. changes: as `fly` takes
+    them.
+    """
     with tempfile.TemporaryDirectory(prefix="crossfix-mission-") as folder:
         async with proxied(url) as proxy:
-            proxy.kept, proxy.delay_s = KEPT | {ATTITUDE, GLOBAL_POSITION}, delay_s
+            proxy.kept, proxy.delay_s = KEPT | {ATTITUDE, BATTERY_STATUS, GLOBAL_POSITION}, delay_s
             settings = Settings(
                 port=0,
                 data_dir=Path(folder),
@@ -155,7 +179,7 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 found, failed = dict[str, Any](), ""
                 began_s = time.monotonic()
                 try:
-                    log = await fly(running, settings)
+                    log = await fly(running, settings, changes=changes)
                     found = summary(log, settings, running.receiver.truth)
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
@@ -174,6 +198,8 @@ async def one(url: str, seed: int, delay_s: float) -> Flown:
                 bearing_errors_deg=tuple(found.get("bearing_errors_deg", ())),
                 took_s=found.get("mission_time_s", took_s),
                 holds=tuple(found.get("holds", ())),
+                turned_deg=turned_deg(proxy.record),
+                drawn_mah=drawn_mah(proxy.record),
                 orders=ordered(proxy.record),
                 texts=said(proxy.record),
                 failed=failed,
