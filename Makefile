@@ -118,8 +118,8 @@ stories: setup-dev build browser ## what a user does on the page, in Chromium; i
 long: setup-dev ## the kernel against its reference 10,000 times, and tables recomputed: a quarter of an hour
 	$(BIN)/pytest -m long --timeout 3600
 
-fuzz: setup-dev build ## 100,000 odd requests and messages to a running server: hours
-	CROSSFIX_FUZZ_OUT=$(MEASUREMENTS) CROSSFIX_FUZZ_REQUESTS=100000 CROSSFIX_FUZZ_MESSAGES=100000 $(BIN)/pytest tests/fuzz --timeout 86400
+fuzz: setup-dev build kernel ## 100,000 odd requests and messages to a running server: hours
+	CROSSFIX_FUZZ_OUT=$(MEASUREMENTS) CROSSFIX_FUZZ_REQUESTS=100000 CROSSFIX_FUZZ_MESSAGES=100000 $(BIN)/pytest tests/fuzz -n 2 --timeout 86400
 
 load: setup-dev build ## a hundred viewers, five of them stalled: latency and memory over ten minutes
 	$(BIN)/python -m tests.benchmarks.live_load fanout --seconds 600 --out $(MEASUREMENTS)

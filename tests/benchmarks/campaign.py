@@ -141,7 +141,7 @@ def chaos(scale: float, out: Path, short: bool) -> list[Step]:
         ),
         Step(
             "odd requests and messages",
-            ("pytest", "tests/fuzz", "--timeout", "86400", "-q"),
+            ("pytest", "tests/fuzz", "-n", "2", "--timeout", "86400", "-q"),
             ("fuzz_requests", "fuzz_messages", "fuzz_failures"),
             fuzz,
         ),
