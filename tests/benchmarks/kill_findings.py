@@ -1,4 +1,4 @@
-"""What a loop of kills found, as a summary, as figures and as a row of the page's table (figures 8 and 21)."""
+"""What loops of kills found, as a summary, as figures and as rows of the page's table (figures 8 and 21)."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tests.benchmarks.figures.circumstances import Begun
+from tests.benchmarks.figures.pieces import SEED, count, numbers
 from tests.benchmarks.figures.record import Cell, Column, Figure, Table
 from tests.benchmarks.figures.writer import plain, wanted
 
 HOLD_WITHIN_S = 5.0
 IDLE_LOAD, HIGH_LOAD = 1.0, 12.0
+FORKED, WHOLE = "forked server to HOLD, s", "whole `crossfix serve` to HOLD, s"
 COLUMNS = (
     *(Column(name=name) for name in ("run", "kills", "facts shown before a kill", "of them bearings")),
     *(Column(name=name) for name in ("lost or changed", "beliefs compared", "changed")),
-    *(Column(name=name, decimals=2) for name in ("forked server to HOLD, s: median", "most")),
-    *(Column(name=name, decimals=1) for name in ("whole `crossfix serve` to HOLD, s: median", "most")),
-    Column(name="whole starts"),
+    *(Column(name=f"{FORKED}: {which}", decimals=2) for which in ("median", "most")),
+    *(Column(name=f"{WHOLE}: {which}", decimals=1) for which in ("median", "most")),
+    *(Column(name=name) for name in ("whole starts", "taken for a pilot", SEED, "commit")),
 )
 
 
@@ -70,22 +72,28 @@ class Findings:
         return not (self.lost or self.beliefs_changed or self.taken_for_a_pilot or late)
 
 
-def figures(found: Findings, database: str, load_before: float) -> list[Figure]:
-    """load_before: the machine's own, without this benchmark; it says which bound a whole start has."""
+def figures(found: Findings, runs: Table, database: str, load_before: float) -> list[Figure]:
+    """Counts of all runs, times of a whole start of this one. load_before: the machine's own, without this benchmark;
+    it says which bound a whole start has."""
+    note = f"{len(runs.rows)} runs together" if len(runs.rows) > 1 else ""
     made = [
-        wanted("kills", found.kills, of=database),
-        wanted("kill_lost", found.lost, of=database),
-        wanted("kill_beliefs", found.beliefs_changed, of=database),
-        plain("acknowledged facts", found.acknowledged, ""),
-        plain("of them bearings", found.bearings, ""),
-        plain("beliefs compared", found.beliefs_compared, ""),
-        plain("failsafes taken for a pilot", found.taken_for_a_pilot, ""),
+        wanted("kills", count(runs, "kills"), of=database, note=note),
+        wanted("kill_lost", count(runs, "lost or changed"), of=database, note=note),
+        wanted("kill_beliefs", count(runs, "changed"), of=database, note=note),
+        plain("acknowledged facts", count(runs, "facts shown before a kill"), ""),
+        plain("of them bearings", count(runs, "of them bearings"), ""),
+        plain("beliefs compared", count(runs, "beliefs compared"), ""),
+        plain("failsafes taken for a pilot", count(runs, "taken for a pilot"), ""),
     ]
-    forked, whole = found.hold_s["forked"], found.hold_s["whole"]
-    if forked:
-        made.append(wanted("restart", round(max(forked), 2), of=database, note=f"starts: {len(forked)}"))
-        made.append(plain("restart to HOLD, server forked, median", round(statistics.median(forked), 2), "s"))
-    if whole:
+    if most := numbers(runs, f"{FORKED}: most"):
+        made.append(wanted("restart", round(max(most), 2), of=database, note=note))
+    made += _whole_starts(found, database, load_before)
+    return made
+
+
+def _whole_starts(found: Findings, database: str, load_before: float) -> list[Figure]:
+    made: list[Figure] = []
+    if whole := found.hold_s["whole"]:
         most, note = round(max(whole), 2), f"starts: {len(whole)}"
         if load_before < IDLE_LOAD:
             made.append(wanted("start_idle", most, of=database, note=note))
@@ -108,8 +116,8 @@ def figures(found: Findings, database: str, load_before: float) -> list[Figure]:
     return made
 
 
-def runs(found: Findings, begun: Begun) -> Table:
-    """The run as the one row of a table; rows of other runs are added by hand when they count together."""
+def runs(found: Findings, begun: Begun, seed: int) -> Table:
+    """The run as the one row of a table."""
 
     def spread(values: list[float]) -> tuple[Cell, Cell]:
         return (statistics.median(values), max(values)) if values else (None, None)
@@ -118,5 +126,6 @@ def runs(found: Findings, begun: Begun) -> Table:
         *(f"{begun.date}, load {begun.load:.1f}", found.kills, found.acknowledged, found.bearings),
         *(found.lost, found.beliefs_compared, found.beliefs_changed),
         *(*spread(found.hold_s["forked"]), *spread(found.hold_s["whole"]), len(found.hold_s["whole"])),
+        *(found.taken_for_a_pilot, seed, begun.commit),
     )
     return Table(name="runs", columns=COLUMNS, rows=(row,))

@@ -4,6 +4,8 @@
     python -m tests.benchmarks.kill_loop --kills 1000 --database postgresql
     python -m tests.benchmarks.kill_loop --kills 30 --away 6.2 7.0 --whole 0     restarts as the failsafe begins
     python -m tests.benchmarks.kill_loop --kills 12 --whole 1 --speedup 1        when a whole start holds the vehicle
+    python -m tests.benchmarks.kill_loop --kills 50 --pieces 8 --seed 40 --add --out docs/measurements
+                                                                                 400 more, kept after each 50
 
 The real server over real sockets flies the simulated vehicle, which lives in a process of its own and flies on. A
 server is a fork of a process that has imported everything, so that a thousand restarts take two hours rather than
@@ -32,6 +34,7 @@ from typing import Any
 import httpx
 
 from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.pieces import figures_kept, rows_kept
 from tests.benchmarks.figures.writer import add_out, write
 from tests.benchmarks.kill_findings import Findings, figures, runs
 from tests.conftest import PostgresCluster, postgres_programs, postgres_user
@@ -354,19 +357,30 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=3)
     parser.add_argument("--whole", type=int, default=10, metavar="N", help="every N-th start is a whole one; 0: none")
     parser.add_argument("--away", type=float, nargs=2, default=(0.0, 0.0), metavar="S", help="no server for so long")
+    parser.add_argument("--pieces", type=int, default=1, metavar="N", help="so many runs, each with the next seed")
+    parser.add_argument("--add", action="store_true", help="to the runs of the record that is there")
     add_out(parser)
     given = vars(parser.parse_args())
-    out, begun = given.pop("out"), begin(__file__)
+    out, pieces, add, first = (given.pop(name) for name in ("out", "pieces", "add", "seed"))
+    good = [piece(given | {"seed": seed}, out, add=add or seed > first) for seed in range(first, first + pieces)]
+    sys.exit(not all(good))
+
+
+def piece(given: dict[str, Any], out: Path | None, *, add: bool) -> bool:
+    """One run and its record. given: the arguments of `run`. add: to the runs of before. False: see `Findings.good`."""
+    begun = begin(__file__)
     found = asyncio.run(run(**given))
-    print(json.dumps(found.summary(), indent=2))
+    print(json.dumps(found.summary(), indent=2), flush=True)
     database = {"sqlite": "SQLite", "postgresql": "PostgreSQL"}[given["database"]]
-    made = figures(found, database, begun.load)
     only_whole = given["whole"] == 1
     name = f"{'whole_starts' if only_whole else 'kill'}_{given['database']}"
     title = f"{'Whole starts after kill -9' if only_whole else 'Kill -9'}, {database}"
-    page = "faults-in-flight.md#kill--9"
-    write(out, name, title, begun, made, tables=[runs(found, begun)], page=page)
-    sys.exit(not found.good)
+    before = out if add else None
+    table = rows_kept(before, name, runs(found, begun, given["seed"]))
+    made = figures_kept(before, name, figures(found, table, database, begun.load))
+    remark = "commit, date and load: of the last run; the table has those of each" if len(table.rows) > 1 else ""
+    write(out, name, title, begun, made, tables=[table], page="faults-in-flight.md#kill--9", remark=remark)
+    return found.good
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -10,7 +11,10 @@ import pytest
 from planner.study.table import summarize
 from tests.benchmarks import live_load, storage_faults, studies, takeover
 from tests.benchmarks.figures.circumstances import begin
+from tests.benchmarks.figures.pieces import numbers, rows_kept
+from tests.benchmarks.figures.reader import read
 from tests.benchmarks.figures.record import Figure
+from tests.benchmarks.figures.writer import write
 from tests.benchmarks.kill_findings import Findings, figures, runs
 from tests.benchmarks.study_cells import STUDIES
 
@@ -82,13 +86,30 @@ def test_a_database_away_for_ten_minutes_may_lose_nothing() -> None:
 def test_the_bound_of_a_whole_start_is_that_of_the_machines_load(load_before: float, start: dict[str, bool]) -> None:
     found = Findings(kills=30, hold_s={"forked": [0.8, 0.9], "whole": [3.0, 3.2]}, told_s={"whole": [1.5, 1.9]})
     kept = {"kills": False, "kill_lost": True, "kill_beliefs": True, "restart": True}
-    assert met(figures(found, "SQLite", load_before)) == kept | start
+    assert met(figures(found, runs(found, begin(__file__), 3), "SQLite", load_before)) == kept | start
 
 
 def test_a_loop_of_kills_is_a_row_whether_or_not_it_had_whole_starts() -> None:
     for whole in ([], [3.0]):
-        table = runs(Findings(kills=2, hold_s={"forked": [0.8, 0.9], "whole": whole}), begin(__file__))
-        assert table.rows[0][-1] == len(whole)
+        table = runs(Findings(kills=2, hold_s={"forked": [0.8, 0.9], "whole": whole}), begin(__file__), 3)
+        assert numbers(table, "whole starts") == [len(whole)]
+
+
+def test_kills_of_several_runs_count_together(tmp_path: Path) -> None:
+    begun = begin(__file__)
+    early, late = Findings(kills=600, hold_s={"forked": [4.0], "whole": []}), Findings(kills=400, lost=1)
+    for found, seed in ((early, 3), (late, 4)):
+        table = rows_kept(tmp_path, "kill_sqlite", runs(found, begun, seed))
+        made = figures(found, table, "SQLite", 5.0)
+        write(tmp_path, "kill_sqlite", "Kill -9", begun, made, tables=[table])
+    assert met(list(read(tmp_path / "kill_sqlite.json").figures)) == {
+        "kills": True,
+        "kill_lost": False,
+        "kill_beliefs": True,
+        "restart": True,
+    }
+    with pytest.raises(ValueError, match="seed 4"):
+        rows_kept(tmp_path, "kill_sqlite", runs(late, begun, 4))
 
 
 def missions(time_s: float, runs: int) -> pd.DataFrame:
