@@ -7,40 +7,21 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import pytest
 from playwright.sync_api import expect
 from screen import OpenScreen, Screen
-from served import Server, started
+from served import Server
+from team import PASSWORD, PHONE, Shared, team_server
 
-PASSWORD = "correct horse battery"
 NEW = "another horse battery"
-PHONE: dict[str, Any] = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
-
-
-@dataclass
-class Shared:
-    """A server that others can reach, so people sign in. code: of its first admin."""
-
-    server: Server
-    code: str
 
 
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shared]:
-    data_dir = tmp_path_factory.mktemp("team")
-    arguments = ["--data-dir", str(data_dir), "--speedup", "3", "--seed", "3", "--users"]
-    process = started([*arguments, "--port", "0"])
-    assert process.stdout is not None
-    told = json.loads(process.stdout.readline())
-    assert told["people"] == "waiting"
-    server = Server(told["url"], data_dir, arguments, process)
-    try:
-        yield Shared(server, told["first_admin_code"])
-    finally:
-        server.stop()
+    with team_server(tmp_path_factory.mktemp("team")) as made:
+        yield made
 
 
 def enter(screen: Screen, name: str) -> None:
@@ -101,6 +82,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     admin.part("entry-code").fill(shared.code.lower())
     admin.part("entry-submit").click()
     expect(admin.part("menu")).to_be_visible()
+    expect(admin.part("made-invitation")).to_have_count(1)
     admin.page.get_by_label("For how many phones").select_option("2")
     admin.part("invite").click()
     expect(admin.part("made-invitation")).to_have_count(2)

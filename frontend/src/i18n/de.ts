@@ -97,6 +97,7 @@ export const de: Record<MessageKey, string> = {
   "entry.firstAdmin.explain":
     "Der Server hat beim Start einen Code ausgegeben, in seinem Terminal oder Protokoll. Wer ihn hier eingibt, verwaltet diesen Server und lädt die anderen ein.",
   "entry.code": "Code des Servers",
+  "entry.firstAdmin.invite": "Als Nächstes Einladungen zeigen für",
   "entry.join": "Sie sind eingeladen",
   "entry.join.explain": "Wählen Sie einen Namen und ein Passwort. Ihre Rolle: {role}.",
   "entry.join.admin": "Sie dürfen auch Personen verwalten.",
@@ -586,6 +587,9 @@ export const de: Record<MessageKey, string> = {
   "missions.welcome.example": "Das Beispiel fliegen",
   "missions.welcome.plan": "Eine Suche planen",
   "missions.welcome.planHint": "Zeichne das Gebiet auf eine Karte; vor dem Start siehst du, wie lange es dauern wird.",
+  "missions.welcome.suggested": "Die vorgeschlagene Suche nehmen",
+  "missions.welcome.suggestedHint":
+    "Um das Fluggerät, mit üblichen Werten. Als Nächstes kommen die Prüfungen; geflogen wird erst, wenn du zum Start schiebst.",
   "missions.welcome.bring": "Oder sieh dir einen Flug an, den jemand anderes aufgezeichnet hat:",
   "missions.noneNamed": "Keine Mission trägt das im Namen.",
   "missions.more": "Weitere Missionen zeigen",

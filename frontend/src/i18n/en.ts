@@ -95,6 +95,7 @@ export const en = {
   "entry.firstAdmin.explain":
     "The server printed a code when it started, in its terminal or log. Whoever enters it here manages this server and invites the others.",
   "entry.code": "Code from the server",
+  "entry.firstAdmin.invite": "Show invitations next, for",
   "entry.join": "You are invited",
   "entry.join.explain": "Choose a name and a password. Your role: {role}.",
   "entry.join.admin": "You may manage people, too.",

@@ -206,6 +206,8 @@ export const pagesEn = {
   "missions.welcome.example": "Fly the example",
   "missions.welcome.plan": "Plan a search",
   "missions.welcome.planHint": "Draw the area on a map; before take-off you see how long it will take.",
+  "missions.welcome.suggested": "Take the suggested search",
+  "missions.welcome.suggestedHint": "Around the vehicle, with usual values. The checks come next; nothing flies until you slide to start.",
   "missions.welcome.bring": "Or look at a flight that somebody else recorded:",
   "missions.noneNamed": "No mission has this in its name.",
   "missions.more": "Show more missions",

@@ -1,12 +1,12 @@
 // Letting people in: a link and its QR code, each for one person, shown once.
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { t } from "../i18n";
 import * as access from "../sources/accessApi";
+import { COUNTS, phonesNext } from "../state/invite";
 import type { Try } from "./PeoplePage";
 import { RolePick } from "./RolePick";
 
 const HOURS = [1, 24, 168] as const;
-const COUNTS = [1, 2, 3, 4, 6, 8] as const;
 
 function Made({ made }: { made: access.MadeInvitation }) {
   return (
@@ -30,7 +30,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
   const [role, setRole] = useState<access.Role>("operator");
   const [admin, setAdmin] = useState(false);
   const [hours, setHours] = useState<number>(24);
-  const [count, setCount] = useState<number>(1);
+  const [count, setCount] = useState<number>(phonesNext.peek() || 1);
   const [made, setMade] = useState<access.MadeInvitation[]>([]);
   const makeAll = async () => {
     setMade([]);
@@ -39,6 +39,13 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
       setMade((before) => [...before, one]);
     }
   };
+  useEffect(() => {
+    if (phonesNext.peek() === 0) return;
+    phonesNext.value = 0;
+    attempt(makeAll());
+  }, []);
+  const shown = useRef<HTMLDivElement>(null);
+  useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [made.length]);
   return (
     <section>
       <div class="page-head">
@@ -72,7 +79,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
       </div>
       {made.length > 0 && (
         <>
-          <div class="made-invitations">
+          <div class="made-invitations" ref={shown}>
             {made.map((one) => (
               <Made made={one} key={one.invitation.invitation_id} />
             ))}

@@ -13,11 +13,12 @@ import { upload } from "../sources/upload";
 import { ANY, asQuery, type Filter, type Library, withFirstPage, withNextPage } from "../state/library";
 import { isOver } from "../state/mission";
 import { go, missionAddress } from "../state/route";
+import { me } from "../state/session";
 import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration, formatNumber } from "../units/quantities";
-import type { MissionBrought, MissionSummary, Problem } from "../wire";
+import type { MissionBrought, MissionSpec, MissionSummary, Problem } from "../wire";
 import "../style/library.css";
 import "../style/review.css";
 
@@ -231,7 +232,15 @@ function Place({ missions }: { missions: readonly MissionSummary[] }) {
 }
 
 /** What a first visitor may do, each with what it is good for. */
-function Welcome({ children }: { children: ComponentChildren }) {
+function Welcome({ children, onProblem }: { children: ComponentChildren; onProblem: (problem: Problem) => void }) {
+  const takeSuggested = async () => {
+    try {
+      const drafted = await api.draftMission((await api.defaults()).spec as MissionSpec);
+      go(missionAddress(drafted.mission_id));
+    } catch (error) {
+      onProblem(asProblem(error));
+    }
+  };
   return (
     <div class="welcome" data-testid="welcome">
       <h2>{t("missions.welcome")}</h2>
@@ -243,6 +252,12 @@ function Welcome({ children }: { children: ComponentChildren }) {
         <strong>{t("missions.welcome.plan")}</strong>
         <span>{t("missions.welcome.planHint")}</span>
       </a>
+      {me.value?.role !== "viewer" && (
+        <button type="button" class="welcome-way" data-testid="welcome-suggested" onClick={() => void takeSuggested()}>
+          <strong>{t("missions.welcome.suggested")}</strong>
+          <span>{t("missions.welcome.suggestedHint")}</span>
+        </button>
+      )}
       <div class="welcome-way">
         <span>{t("missions.welcome.bring")}</span>
         <div class="row-actions">{children}</div>
@@ -308,7 +323,7 @@ export function MissionsPage() {
         {refused && <ProblemBox problem={refused} />}
         {problem && <ProblemBox problem={problem} />}
         {!library && !problem && <p class="muted">{t("missions.loading")}</p>}
-        {isEmpty && <Welcome>{bringing}</Welcome>}
+        {isEmpty && <Welcome onProblem={setRefused}>{bringing}</Welcome>}
         {shown?.length === 0 && !isEmpty && <p>{t("missions.noneNamed")}</p>}
         {shown && shown.length > 0 && (
           <table class="table library-table">

@@ -4,6 +4,7 @@ import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import { makeFirstAdmin, providerAddress, recover, type SessionState, signIn } from "../sources/accessApi";
 import { type Fault, faultOf, providerProblem } from "../sources/providerProblem";
+import { COUNTS, phonesNext } from "../state/invite";
 import { go, type Route } from "../state/route";
 import { session } from "../state/session";
 import { EntryForm } from "./EntryForm";
@@ -38,6 +39,7 @@ function Code({ value, onInput }: { value: string; onInput: (value: string) => v
 /** given: by the link that the server prints. Whoever made the account lets the others in next. */
 function FirstAdmin({ encrypted, given }: { encrypted: boolean; given: string }) {
   const [code, setCode] = useState(given);
+  const [phones, setPhones] = useState(1);
   return (
     <EntryForm
       title={t("entry.firstAdmin")}
@@ -45,6 +47,7 @@ function FirstAdmin({ encrypted, given }: { encrypted: boolean; given: string })
       fresh
       onSubmit={async (name, password) => {
         const entered = await makeFirstAdmin(code, name, password);
+        phonesNext.value = phones;
         go("#/people");
         session.value = entered;
       }}
@@ -52,6 +55,19 @@ function FirstAdmin({ encrypted, given }: { encrypted: boolean; given: string })
       {!encrypted && <NotEncrypted />}
       <p>{t("entry.firstAdmin.explain")}</p>
       <Code value={code} onInput={setCode} />
+      <label for="entry-phones">{t("entry.firstAdmin.invite")}</label>
+      <select
+        id="entry-phones"
+        data-testid="entry-phones"
+        value={String(phones)}
+        onChange={(e) => setPhones(Number(e.currentTarget.value))}
+      >
+        {[0, ...COUNTS].map((each) => (
+          <option value={String(each)} key={each}>
+            {t("people.forPhones", { count: each })}
+          </option>
+        ))}
+      </select>
     </EntryForm>
   );
 }
