@@ -20,13 +20,14 @@ import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
+from typing import Any
 
 import httpx
 
 from tests.benchmarks.figures.circumstances import Begun, begin
 from tests.benchmarks.figures.record import Figure
 from tests.benchmarks.figures.writer import add_out, plain, write
-from tests.containers.boxes import Boxes
+from tests.containers.boxes import SOURCES, Boxes
 from tests.containers.flight import Fact, Flight, answered, count, phase, trust, until_healthy, vehicle_ready
 
 NAME = "ada"
@@ -59,9 +60,20 @@ async def sealed(boxes: Boxes) -> None:
     for place in ("/written", "/opt/crossfix/written", "/var/lib/written"):
         if "written" in await boxes.inside("sh", "-c", f"touch {place} 2>/dev/null && echo written || true"):
             raise RuntimeError(f"{place} can be written")
-    for bill in ("server.cdx.json", "page.cdx.json"):
-        if not json.loads(await boxes.inside("cat", f"/opt/crossfix/bill/{bill}"))["components"]:
-            raise RuntimeError(f"{bill} names nothing")
+    server, page = [
+        json.loads(await boxes.inside("cat", f"/opt/crossfix/bill/{name}.cdx.json")) for name in ("server", "page")
+    ]
+    if not server["components"]:
+        raise RuntimeError("the server's bill of materials names nothing")
+    if missing := left_out(page, json.loads((SOURCES / "frontend" / "package-lock.json").read_text())):
+        raise RuntimeError(f"the page's bill of materials leaves out {missing}")
+
+
+def left_out(bill: dict[str, Any], lock: dict[str, Any]) -> list[str]:
+    """What npm's lock file wants for more than development, and the bill of materials (CycloneDX) does not name."""
+    named = {each["name"] for each in bill["components"]}
+    wanted = {path.rpartition("node_modules/")[2] for path, one in lock["packages"].items() if not one.get("dev")}
+    return sorted(wanted - {""} - named)
 
 
 async def back(boxes: Boxes, service: str, client: httpx.AsyncClient) -> None:

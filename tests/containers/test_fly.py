@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from tests.containers.flight import Fact, Flight, phase
-from tests.containers.fly import Watch
+from tests.containers.fly import Watch, left_out
 
 HOLD: Fact = {"kind": "phase_changed", "after": "hold"}
 
@@ -46,3 +46,17 @@ async def test_a_step_that_fails_is_no_figure() -> None:
         async with watch.timed("restore"):
             raise RuntimeError
     assert [(figure.name, figure.unit) for figure in watch.figures] == [("up", "s")]
+
+
+def test_a_bill_of_materials_names_what_is_for_more_than_development() -> None:
+    lock = {
+        "packages": {
+            "": {"name": "page"},
+            "node_modules/vite": {"dev": True},
+            "node_modules/maplibre-gl": {},
+            "node_modules/maplibre-gl/node_modules/@types/geojson": {},
+        }
+    }
+    bill = {"components": [{"name": "maplibre-gl"}]}
+    assert left_out(bill, lock) == ["@types/geojson"]
+    assert left_out({"components": [*bill["components"], {"name": "@types/geojson"}]}, lock) == []
