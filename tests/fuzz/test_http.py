@@ -281,10 +281,13 @@ def test_no_request_makes_the_server_stumble(number: int, tmp_path: Path, capsys
         ended_well = True
     finally:
         took_s = time.monotonic() - began
-        with capsys.disabled():
+        with capsys.disabled():  # on standard error, which xdist lets through
+            for failure in answers.failures:
+                print(f"\nseed {seed}: {failure}", file=sys.stderr, flush=True)
             print(
                 f"\nseed {seed}, {took_s:.0f} s: {answers.seen.total()} requests to {answers.operations()} operations, "
                 f"{dict(answers.statuses())}; slowest {answers.slowest_s:.1f} s; most time: {answers.dearest()}",
+                file=sys.stderr,
                 flush=True,
             )
         more = {
