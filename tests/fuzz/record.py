@@ -68,7 +68,7 @@ class Fuzzing:
         table = rows_kept(out, self.name, own)
         pieces = len(table.rows)
         figures = [
-            wanted(self.key, count(table, self.sent), of=self.of, note=f"{pieces} pieces, each with its own seed"),
+            wanted(self.key, count(table, self.sent), of=self.of, note=f"pieces: {pieces}, each with its own seed"),
             wanted("fuzz_failures", count(table, "failures"), of=self.of),
             *(plain(name, count(table, name), "") for name in self.sums),
             *(plain(name, max(numbers(table, name)), unit) for name, unit in most.items()),

@@ -268,7 +268,8 @@ def leave_nothing_flying(data_dir: Path) -> None:
 @pytest.mark.parametrize("number", range(-(-REQUESTS // A_ROUND)))
 def test_no_request_makes_the_server_stumble(number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked, seed, answers, ended_well = min(A_ROUND, REQUESTS - number * A_ROUND), SEED + number, Answers(), False
-    command = f"CROSSFIX_FUZZ_REQUESTS={REQUESTS} CROSSFIX_FUZZ_ROUND={A_ROUND} pytest tests/fuzz/test_http.py -n 2"
+    asked_for = f"CROSSFIX_FUZZ_REQUESTS={REQUESTS} CROSSFIX_FUZZ_ROUND={A_ROUND} CROSSFIX_FUZZ_SEED={SEED}"
+    command = f"{asked_for} pytest tests/fuzz/test_http.py -n 2"
     began, begun = time.monotonic(), replace(begin(__file__), command=command)
     if number == 0:
         HTTP.begin_anew()

@@ -198,7 +198,8 @@ async def test_no_message_makes_the_live_channel_stumble(tmp_path: Path, capsys:
         with capsys.disabled():
             print(f"\n{line}", end="", flush=True)
 
-    begun = replace(begin(__file__), command=f"CROSSFIX_FUZZ_MESSAGES={MESSAGES} pytest tests/fuzz/test_live.py")
+    command = f"CROSSFIX_FUZZ_MESSAGES={MESSAGES} CROSSFIX_FUZZ_SEED={SEED} pytest tests/fuzz/test_live.py"
+    begun = replace(begin(__file__), command=command)
     server_settings = Settings(
         port=0, data_dir=tmp_path, time_factor=10.0, spool_reserve_bytes=2**20, live_ping_timeout_s=60
     )
