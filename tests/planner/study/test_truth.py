@@ -136,13 +136,16 @@ def test_what_a_search_is_told_is_what_the_row_draws_from():
 
 
 def test_shares_are_of_the_claims():
-    claim = Claim(True, True, 5.0, 10.0, 4, 300.0, 1.0, 2.0)
-    far = replace(claim, in_c95=False, error_m=31.0, bias_off_deg=5.0)
-    never = replace(claim, claimed=False, in_c95=False, error_m=99.0)
+    claim = Claim(1, True, True, 5.0, 10.0, 0.01, 4, 300.0, 1.0, 2.0)
+    far = replace(claim, seed=2, in_c95=False, error_m=31.0, far_chance=0.04, bias_off_deg=5.0)
+    never = replace(claim, seed=3, claimed=False, in_c95=False, error_m=99.0, far_chance=0.9)
     found = truth_of("bias5", "joint", [claim, far, never, claim])
     assert found.claimed == 0.75
     assert found.in_c95 == pytest.approx(2.0 / 3.0)
     assert found.beyond_3x == pytest.approx(1.0 / 3.0)
+    assert (found.beyond_low, found.beyond_high) == wilson(1, 3)
+    assert found.beyond_believed == pytest.approx(0.02)
+    assert found.beyond_seeds == (2,)
     assert found.bias_inside == 0.75
 
 
