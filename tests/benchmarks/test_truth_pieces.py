@@ -8,8 +8,11 @@ import pytest
 
 from planner.study.truth import Claim
 from tests.benchmarks import truth
-from tests.benchmarks.truth import Series, row, summed_up
+from tests.benchmarks.figures.circumstances import ROOT
+from tests.benchmarks.figures.reader import read
+from tests.benchmarks.truth import Series, merged, row, summed_up
 
+RECORDED = ROOT / "docs" / "measurements" / "truth.json"
 BIAS5 = Series("bias5", "joint")
 
 
@@ -50,3 +53,21 @@ def test_without_a_folder_nothing_is_kept_and_a_broken_piece_is_flown_alone(flow
     assert summed_up(BIAS5, 3, tmp_path, "one")[0].missions == 3
     assert flown == [1, 2, 3, 1, 2, 3]
     assert len(row(summed_up(BIAS5, 3, tmp_path, "one")[0])) == len(truth.COLUMNS)
+
+
+def test_rows_that_are_not_flown_again_stay_in_the_record(flown: list[int], tmp_path: Path) -> None:
+    before = read(RECORDED)
+    names = [column.name for column in before.tables[0].columns]
+    found, _ = summed_up(BIAS5, 30, None, "one")
+    figures, table, remark = merged(before, [found])
+    rows = {cells[:3]: dict(zip((c.name for c in table.columns), cells, strict=True)) for cells in table.rows}
+    old = {cells[:3]: dict(zip(names, cells, strict=True)) for cells in before.tables[0].rows}
+    assert list(rows) == list(old)
+    assert rows["bias5", "joint", "nothing"]["missions"] == 30
+    assert rows["right", "joint", "nothing"]["missions"] == old["right", "joint", "nothing"]["missions"] != 30
+    assert [figure.name for figure in figures] == [figure.name for figure in before.figures]
+    beyond = {
+        figure.name: figure.note for figure in figures if figure.name.endswith(("stated: bias5", "stated: walls"))
+    }
+    assert [note.startswith("30 missions") for note in beyond.values()] == [True, False]
+    assert str(before.commit) in remark

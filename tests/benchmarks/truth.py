@@ -2,7 +2,8 @@
 
     python -m tests.benchmarks.truth --missions 1000 --out docs/measurements        (or: make truth)
 
-Every row is `crossfix study truth --row ROW`; the independent model flies the same missions for comparison.
+Every row is `crossfix study truth --row ROW`; the independent model flies the same missions for comparison. Rows of the
+record that are not flown again (`--only`) stay in it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from planner.study.error_worlds import ROWS
 from planner.study.truth import TOLD, UNKNOWN, Claim, Model, Truth, truth_of
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
-from tests.benchmarks.figures.record import Cell, Column, Figure, Table
+from tests.benchmarks.figures.reader import read
+from tests.benchmarks.figures.record import Cell, Column, Figure, Record, Table
 from tests.benchmarks.figures.writer import add_out, plain, wanted, write
 
 JUDGED = ("independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20", "walls", "walls_bias5")
@@ -153,6 +155,23 @@ def summed_up(series: Series, missions: int, kept: Path | None, commit: str) -> 
     return truth_of(series.row, series.model, claims, pieces[0]["known"]), {piece["commit"] for piece in pieces}
 
 
+def merged(before: Record | None, found: Sequence[Truth]) -> tuple[list[Figure], Table, str]:
+    """Figures, table and a remark: of these rows, and of those of the record before that were not flown again."""
+    made, rows, remark = figures(found), {cells[:3]: cells for cells in (row(one) for one in found)}, ""
+    if before is not None:
+        names = [column.name for column in before.tables[0].columns]
+        old = [dict(zip(names, cells, strict=True)) for cells in before.tables[0].rows]
+        taken_over = [tuple(cells.get(column.name) for column in COLUMNS) for cells in old]
+        again = {figure.name: figure for figure in made}
+        kept = [again.pop(figure.name, figure) for figure in before.figures]
+        made = [*kept, *again.values()]
+        left = {cells[:3]: cells for cells in taken_over if cells[:3] not in rows}
+        rows = {cells[:3]: rows.get(cells[:3], cells) for cells in taken_over} | rows
+        if left:
+            remark = f"{len(left)} rows are of {before.date}, commit {before.commit}"
+    return made, Table(name="truth", columns=COLUMNS, rows=tuple(rows.values())), remark
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Count what the claims of simulated searches are worth.")
     parser.add_argument("--missions", type=int, default=1000)
@@ -175,19 +194,12 @@ def main() -> None:
     commit = begun.commit or "none"
     flown = [summed_up(one, arguments.missions, arguments.pieces, commit) for one in series]
     found, commits = [truth for truth, _ in flown], sorted(set[str]().union(*(flew for _, flew in flown)))
-    table = Table(name="truth", columns=COLUMNS, rows=tuple(row(one) for one in found))
+    record = None if arguments.out is None else arguments.out / "truth.json"
+    made, table, remark = merged(read(record) if record is not None and record.exists() else None, found)
     print(markdown(table))
-    remark = "" if commits == [commit] else f"flown by {', '.join(commits)}"
-    write(
-        arguments.out,
-        "truth",
-        "Truth at the claim",
-        begun,
-        figures(found),
-        tables=[table],
-        page="truth.md",
-        remark=remark,
-    )
+    if commits != [commit]:
+        remark = "; ".join(filter(None, [f"flown by {', '.join(commits)}", remark]))
+    write(arguments.out, "truth", "Truth at the claim", begun, made, tables=[table], page="truth.md", remark=remark)
 
 
 if __name__ == "__main__":
