@@ -42,8 +42,9 @@ FEWEST_TOLD = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What came of one mission. time_s: until its end. error_m, stated_m, in_c95, far_chance: at the claim, the last
-    the belief's own probability that the error is beyond three times what it states.
+    """What came of one mission. time_s: until its end. error_m, stated_m, rms_m, in_c95, far_chance: at the claim.
+    stated_m is the mean distance by the belief, rms_m its root mean square, far_chance the belief's own probability
+    that the error is beyond three times what it states.
 
     bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
     (NaN: it knows none).
@@ -54,6 +55,7 @@ class Claim:
     in_c95: bool
     error_m: float
     stated_m: float
+    rms_m: float
     far_chance: float
     bearings: int
     time_s: float
@@ -71,10 +73,10 @@ class Truth:
     """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1], the last two of those that claimed.
 
     in_c95_low, in_c95_high: Wilson's 95 % interval. beyond_low, beyond_high: the same of beyond_3x. beyond_believed:
-    what the beliefs themselves said of it at the claims. beyond_seeds: the missions beyond, to look at. mean_s: s until
-    the claim or the last bearing. bias_inside: share in which the bias was within two of its stated standard
-    deviations. prior: what was known of the sensor before. planner: who chose the places. shared: what one tag's
-    bearings told of the compass counted for all.
+    what the beliefs themselves said of it at the claims. beyond_seeds: the missions beyond, to look at. beyond_3rms:
+    share beyond three times the root mean square that the belief gives. mean_s: s until the claim or the last bearing.
+    bias_inside: share in which the bias was within two of its stated standard deviations. prior: what was known of the
+    sensor before. planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
     """
 
     row: str
@@ -89,6 +91,7 @@ class Truth:
     beyond_high: float
     beyond_believed: float
     beyond_seeds: tuple[int, ...]
+    beyond_3rms: float
     mean_s: float
     bearings_mean: float
     error_mean_m: float
@@ -203,6 +206,7 @@ def claim_at(
         in_c95=bool(distance_to_convex(target[None], confidence_region(belief))[0] <= 0.0),
         error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
         stated_m=spread.expected_rmse,
+        rms_m=float(np.sqrt(np.trace(spread.covariance))),
         far_chance=1.0 - mass_within(belief, spread.x, spread.y, BEYOND * spread.expected_rmse),
         bearings=bearings,
         time_s=time_s,
@@ -237,6 +241,7 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
         beyond_high=beyond_high,
         beyond_believed=float(np.mean([c.far_chance for c in claimed])) if claimed else nothing,
         beyond_seeds=tuple(beyond),
+        beyond_3rms=float(np.mean([c.error_m > BEYOND * c.rms_m for c in claimed])) if claimed else nothing,
         mean_s=float(np.mean([c.time_s for c in claims])),
         bearings_mean=float(np.mean([c.bearings for c in claims])),
         error_mean_m=float(np.mean([c.error_m for c in claimed])) if claimed else nothing,

@@ -24,7 +24,7 @@ def flown(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     def row_claims(name: str, seeds: range, *_: object) -> tuple[list[Claim], str]:
         seeds_flown.extend(seeds)
         errors = {seed: 40.0 if seed % 10 == 0 else 5.0 for seed in seeds}
-        return [Claim(s, True, True, e, 10.0, 0.01, 4, 300.0, 1.0, 2.0) for s, e in errors.items()], "nothing"
+        return [Claim(s, True, True, e, 10.0, 12.0, 0.01, 4, 300.0, 1.0, 2.0) for s, e in errors.items()], "nothing"
 
     monkeypatch.setattr(truth, "row_claims", row_claims)
     monkeypatch.setattr(truth, "PIECE", 10)

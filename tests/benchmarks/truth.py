@@ -43,6 +43,7 @@ COLUMNS = (
     Column(name="truth in C95, %", decimals=1),
     Column(name="beyond 3 x stated, %", decimals=1),
     Column(name="as the beliefs say, %", decimals=1),
+    Column(name="beyond 3 x RMS, %", decimals=1),
     Column(name="time, s", decimals=0),
     Column(name="bearings", decimals=2),
     Column(name="error, m", decimals=1),
@@ -57,7 +58,8 @@ def row(found: Truth) -> tuple[Cell, ...]:
     half = 50.0 * (found.in_c95_high - found.in_c95_low)
     inside: Cell = None if said["in_c95"] is None else (100.0 * said["in_c95"], half)
     beyond: Cell = None if said["beyond_3x"] is None else (100.0 * said["beyond_3x"], beyond_half(found))
-    believed, bias = (None if said[name] is None else 100.0 * said[name] for name in ("beyond_believed", "bias_inside"))
+    names = ("beyond_believed", "beyond_3rms", "bias_inside")
+    believed, beyond_rms, bias = (None if said[name] is None else 100.0 * said[name] for name in names)
     return (
         found.row,
         found.model,
@@ -67,6 +69,7 @@ def row(found: Truth) -> tuple[Cell, ...]:
         inside,
         beyond,
         believed,
+        beyond_rms,
         found.mean_s,
         found.bearings_mean,
         said["error_mean_m"],
