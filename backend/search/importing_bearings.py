@@ -17,7 +17,7 @@ from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, emitter_of, refuse_far
 from backend.search.localization import localization
-from backend.search.reported import COMPASS_SHARE, COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ
+from backend.search.reported import COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ, compass_share_deg
 from backend.search.state import SearchState, evolve
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.bearing_scatter import bearing_scatter
@@ -114,6 +114,6 @@ def _fact(
         drift_m=0.0,
         binned_db=[],
         fitted_db=[],
-        heading_sigma_deg=min(COMPASS_SIGMA_DEG, COMPASS_SHARE * sigma_deg),
+        heading_sigma_deg=compass_share_deg(sigma_deg),
         taken_at_s=at_s,
     )
