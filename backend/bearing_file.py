@@ -54,5 +54,5 @@ def _kraken(table: Table) -> Recording:
 
 def _recorded(row: Row, told: ReportedBearing) -> RecordedBearing:
     return RecordedBearing(
-        row.line, told.place, told.bearing_deg, told.sigma_deg, told.by, False, told.taken_at_s, told.frequency_hz
+        row.line, told.place, told.bearing_deg, told.sigma_deg, told.by, True, told.taken_at_s, told.frequency_hz
     )

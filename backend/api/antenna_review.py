@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from backend.events import BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
-from backend.reasons import carried
+from backend.reasons import Reason, carried
 from backend.search.antenna import antenna_flown, corrected, correction_flown
 from backend.search.counted import counted
+from backend.search.machine import bearings_corrected, turned
 from backend.wire.resources import AntennaReview, PatternUpload
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.pattern_file import pattern_json
@@ -33,15 +34,16 @@ def antenna_review(recorded: Sequence[Recorded], emitter_id: str | None, ours: A
     in_file = corrected(pattern, -correction_flown(recorded))
     kept = [_kept(fact) for fact in _counted(recorded, chosen) if fact.source.kind != "person" and fact.binned_db]
     found = repeating(kept, pattern)
-    doubt = None
+    belief = _last_belief(recorded, chosen)
+    doubt: Reason | None = None if belief is None else _turned_together(belief)
     if found is not None and found.significant:
-        doubt = NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps)
-    place = _localized_at(recorded, chosen)
+        doubt = carried(NotTheMeasuredAntenna(pattern.name, max(found.repeats_db, found.uneven_db), found.sweeps))
+    place = None if belief is None else _localized_at(belief)
     refined = None if place is None or doubt is None else refined_pattern(kept, place, in_file)
     return AntennaReview(
         sweeps=len(kept),
         repeats_db=None if found is None else found.repeats_db,
-        doubt=None if doubt is None else carried(doubt),
+        doubt=doubt,
         proposed=None if refined is None else PatternUpload(text=pattern_json(refined), filename=PROPOSED_FILENAME),
     )
 
@@ -67,9 +69,19 @@ def _kept(fact: BearingMeasured) -> KeptSweep:
     return KeptSweep(fact.place, fact.bearing_deg, binned, noise)
 
 
-def _localized_at(recorded: Sequence[Recorded], emitter_id: str) -> Place | None:
-    """Where the last belief has it, when that claims it."""
+def _last_belief(recorded: Sequence[Recorded], emitter_id: str) -> BeliefUpdated | None:
     beliefs = [r.event for r in recorded if isinstance(r.event, BeliefUpdated) and r.event.emitter_id == emitter_id]
-    if not beliefs or not beliefs[-1].localized or beliefs[-1].estimate is None:
+    return beliefs[-1] if beliefs else None
+
+
+def _localized_at(belief: BeliefUpdated) -> Place | None:
+    """Where the belief has the emitter, when it claims that."""
+    if not belief.localized or belief.estimate is None:
         return None
-    return Place(beliefs[-1].estimate.lat, beliefs[-1].estimate.lon)
+    return Place(belief.estimate.lat, belief.estimate.lon)
+
+
+def _turned_together(belief: BeliefUpdated) -> Reason | None:
+    """An antenna that points beside deviates from its pattern nowhere: what it is off by stands in the belief alone."""
+    own = (one for one in belief.sources if one.source.kind != "person")
+    return next((bearings_corrected(one) for one in own if turned(one)), None)

@@ -12,6 +12,7 @@ import numpy as np
 import typer
 
 from backend.cli.edge import print_json, remark, stop
+from backend.search.reported import compass_share_deg
 from backend.search.source_priors import unknown_errors
 from backend.settings import settings_of
 from backend.spec import ErrorModel
@@ -227,7 +228,8 @@ def _localize(
     bearings: list[Bearing] = []
     for b in recorded:
         x, y = frame.to_enu(b.place)
-        bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), math.radians(b.sigma_deg), outliers))
+        sigma = math.radians(_own_sigma_deg(b) if joint else b.sigma_deg)
+        bearings.append(Bearing(x, y, compass_to_angle(b.bearing_deg), sigma, outliers))
     problem = Problem(region, bearings[0].sigma, threshold, 0.0, LinearMotion(1.0), estimator=estimator)
     belief = _fold_joint(problem, bearings, outliers) if joint else _fold(problem, bearings)
     judged = verdict(problem, LocalizationRule(threshold), bearings, belief)
@@ -253,6 +255,13 @@ def _localize(
         answer["expected_rmse_m"] = round(spread.expected_rmse, 3)
         answer["c95"] = {"type": "Polygon", "coordinates": [ring]}
     return answer
+
+
+def _own_sigma_deg(bearing: RecordedBearing) -> float:
+    """Without the compass' share, which a joint belief counts once for all of them, as it does of those in flight."""
+    if not bearing.stated:
+        return bearing.sigma_deg
+    return math.sqrt(bearing.sigma_deg**2 - compass_share_deg(bearing.sigma_deg) ** 2)
 
 
 def _fold(problem: Problem, bearings: list[Bearing]) -> GridBelief | None:

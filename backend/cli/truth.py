@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated
 
@@ -17,7 +18,7 @@ from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
 from planner.study.truth import TOLD, UNKNOWN, Claim, Model, Search, Truth, learn, missions, row_named, truth_of
 from planner.study.truth import told as true_errors
-from planner.study.truth_planners import truth_planner
+from planner.study.truth_planners import TruthPlanner, truth_planner
 
 HOME = Place(50.6234, 7.2046)
 """Anywhere: the worlds are flat."""
@@ -91,18 +92,28 @@ def study_row(
 ) -> Truth:
     """Raises StudyError for names and numbers that make no sense. flights: that teach the sensor's errors before. told:
     the joint model knows the row's true errors. shared: all tags' bearings tell it of the compass."""
-    known = _model(model)
+    known = known_model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
-    if told and (known != "joint" or flights or row in TAGS):
-        raise StudyError("--told goes with the joint model of one emitter, and without --flights")
-    places = truth_planner(planner)
-    if places != "fisher" and (row in TAGS or row in SPEEDS):
-        raise StudyError(f"--planner goes with one emitter that stays where it is, not with {row}")
-    if shared and (row not in TAGS or known != "joint"):
-        raise StudyError("--shared-errors goes with the joint model of several tags")
     if row in TAGS:
+        _check(row, known, flights, told, planner, shared)
         return _tags_row(row, count, known, first_seed, shared)
+    claims, knows = row_claims(row, range(first_seed, first_seed + count), known, flights, told, planner, shared)
+    return replace(truth_of(row, known, claims, knows), planner=truth_planner(planner))
+
+
+def row_claims(
+    row: str,
+    seeds: Sequence[int],
+    model: Model = "joint",
+    flights: int = 0,
+    told: bool = False,
+    planner: str = "fisher",
+    shared: bool = False,
+) -> tuple[list[Claim], str]:
+    """Mission by mission of a row with one emitter, and what was known of its sensor before; arguments and errors as of
+    `study_row`."""
+    places = _check(row, model, flights, told, planner, shared)
     wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
     task = localization(mission, HOME)
@@ -112,22 +123,33 @@ def study_row(
         raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
     if wanted is not None and told:
         prior, knows = true_errors(wanted), TOLD
-    if wanted is not None and flights and known == "joint":
+    if wanted is not None and flights and model == "joint":
         prior = learn(search, wanted, range(FIRST_LESSON, FIRST_LESSON + flights), prior)
         knows = f"{flights} flights"
         remark(f"{row}: learned from {knows}")
     claims: list[Claim] = []
-    seeds = range(first_seed, first_seed + count)
     flown = (
-        moving_missions(search, row, seeds, known, prior)
+        moving_missions(search, row, seeds, model, prior)
         if wanted is None
-        else missions(search, wanted, seeds, known, prior)
+        else missions(search, wanted, seeds, model, prior)
     )
     for claim in flown:
         claims.append(claim)
-        if len(claims) % REMARK_EVERY == 0 and len(claims) < count:
-            remark(f"{row}: {len(claims)} of {count} missions")
-    return replace(truth_of(row, known, claims, knows), planner=places)
+        if len(claims) % REMARK_EVERY == 0 and len(claims) < len(seeds):
+            remark(f"{row}: {len(claims)} of {len(seeds)} missions")
+    return claims, knows
+
+
+def _check(row: str, model: Model, flights: int, told: bool, planner: str, shared: bool) -> TruthPlanner:
+    """The planner's name, known. StudyError for options that do not go together."""
+    if told and (model != "joint" or flights or row in TAGS):
+        raise StudyError("--told goes with the joint model of one emitter, and without --flights")
+    places = truth_planner(planner)
+    if places != "fisher" and (row in TAGS or row in SPEEDS):
+        raise StudyError(f"--planner goes with one emitter that stays where it is, not with {row}")
+    if shared and (row not in TAGS or model != "joint"):
+        raise StudyError("--shared-errors goes with the joint model of several tags")
+    return places
 
 
 def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool) -> Truth:
@@ -141,7 +163,8 @@ def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool)
     return replace(truth_of(row, model, claims), missions=count, shared=shared)
 
 
-def _model(name: str) -> Model:
+def known_model(name: str) -> Model:
+    """StudyError for a name that is not known."""
     for one in MODELS:
         if one == name:
             return one
@@ -159,5 +182,6 @@ def sentence(found: Truth) -> str:
         f"{found.row}, {found.model} errors{known}: {found.missions} missions, "
         f"{found.claimed:.1%} localized in {found.mean_s:.0f} s with {found.bearings_mean:.1f} bearings; "
         f"truth in C95 {found.in_c95:.1%} [{found.in_c95_low:.1%}, {found.in_c95_high:.1%}], beyond three times stated "
-        f"{found.beyond_3x:.1%} (error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
+        f"{found.beyond_3x:.1%} [{found.beyond_low:.1%}, {found.beyond_high:.1%}], by the beliefs themselves "
+        f"{found.beyond_believed:.1%} (error {found.error_mean_m:.1f} m, stated {found.stated_mean_m:.1f} m)"
     )

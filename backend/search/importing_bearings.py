@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
+
+import numpy as np
 
 from backend.events import BearingMeasured, Event, ImportSource, RecordingImported
 from backend.reasons import Reason, carried
 from backend.reasons import search as reasons
-from backend.search.area import corner_of
+from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, emitter_of, refuse_far
 from backend.search.localization import localization
-from backend.search.reported import COMPASS_SHARE, COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ
+from backend.search.reported import COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ, compass_share_deg
 from backend.search.state import SearchState, evolve
-from backend.spec import EmitterSpec
+from backend.spec import EmitterSpec, MissionSpec
+from hardware.direction_finding.bearing_scatter import bearing_scatter
 from hardware.direction_finding.bearings_file import RecordedBearing
+from hardware.frame import LocalFrame
+from hardware.readings import Place
 
 LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
 
@@ -46,17 +54,34 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
             remarks=remarks,
         )
     ]
-    number = max([state.place_number, *(b.place_number for b in state.measured)])
-    for one, at_s in zip(heard, times, strict=True):
+    for one in heard:
         refuse_far(one.place, mission)
+    home = state.home or corner_of(mission.area)
+    number = max([state.place_number, *(b.place_number for b in state.measured)])
+    for one, at_s in zip(_with_sigmas(heard, mission, home), times, strict=True):
         number += 1
         fact = _fact(mission_id, state, upload, emitter, one, number, at_s)
         facts.append(fact)
         state = evolve(state, fact, first_s or 0.0)
     known = state.emitters[emitter.emitter_id]
-    task = localization(mission, state.home or corner_of(mission.area), emitter.emitter_id)
+    task = localization(mission, home, emitter.emitter_id)
     belief, _ = task.after(known.unheard).belief_fact(known.bearings)
     return Import((*facts, belief), ())
+
+
+def _with_sigmas(bearings: Sequence[RecordedBearing], mission: MissionSpec, home: Place) -> list[RecordedBearing]:
+    """Those whose file states no sigma get the one that their missing one another in the search area shows, and the
+    compass' share, which shows in no scatter."""
+    open_ = [one for one in bearings if not one.stated]
+    if not open_:
+        return list(bearings)
+    frame = LocalFrame(home)
+    west, south, east, north = target_area(mission, frame).bounds
+    places = np.array([frame.to_enu(one.place) for one in open_])
+    degrees = np.array([one.bearing_deg for one in open_])
+    found = bearing_scatter(places, degrees, np.array([west, south]), np.array([east, north]))
+    sigma_deg = math.hypot(found.sigma_deg, COMPASS_SIGMA_DEG)
+    return [one if one.stated else replace(one, sigma_deg=sigma_deg) for one in bearings]
 
 
 def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:
@@ -89,6 +114,6 @@ def _fact(
         drift_m=0.0,
         binned_db=[],
         fitted_db=[],
-        heading_sigma_deg=min(COMPASS_SIGMA_DEG, COMPASS_SHARE * sigma_deg),
+        heading_sigma_deg=compass_share_deg(sigma_deg),
         taken_at_s=at_s,
     )

@@ -146,19 +146,20 @@ def _belief(step: SearchStep, given: BeliefReady) -> None:
 def doubt_headings(step: SearchStep, belief: BeliefUpdated) -> None:
     """Bearings that are turned together are a caution, whether that stops the claim or is taken into account."""
     askew = next((reason for reason in belief.not_yet if isinstance(reason, search.HeadingsAskew)), None)
-    askew = askew or next((_corrected(one) for one in belief.sources if _turned(one)), None)
+    askew = askew or next((bearings_corrected(one) for one in belief.sources if turned(one)), None)
     if askew is None:
         clear_alerts(step, "heading")
     else:
         alert(step, "heading", "caution", askew)
 
 
-def _turned(source: SourceErrorsFact) -> bool:
+def turned(source: SourceErrorsFact) -> bool:
     """By more than a compass may be off, and more than chance makes it."""
     return abs(source.bias_deg) > max(TOLERABLE_DEG, SIGNIFICANT * source.bias_std_error_deg)
 
 
-def _corrected(source: SourceErrorsFact) -> search.BearingsCorrected:
+def bearings_corrected(source: SourceErrorsFact) -> search.BearingsCorrected:
+    """In words, what was taken off its bearings."""
     return search.BearingsCorrected(source.bias_deg, source.bias_std_error_deg)
 
 

@@ -81,10 +81,15 @@ def reported_fact(state: SearchState, report: ReportedBearing, now_s: float) -> 
         drift_m=0.0,
         binned_db=[],
         fitted_db=[],
-        heading_sigma_deg=min(COMPASS_SIGMA_DEG, COMPASS_SHARE * report.sigma_deg),
+        heading_sigma_deg=compass_share_deg(report.sigma_deg),
         remarks=remarks,
         taken_at_s=report.taken_at_s,
     )
+
+
+def compass_share_deg(sigma_deg: float) -> float:
+    """Of a stated sigma, what all bearings of its source have in common."""
+    return min(COMPASS_SIGMA_DEG, COMPASS_SHARE * sigma_deg)
 
 
 def _emitter_id(state: SearchState, wanted: str | None, frequency_hz: float | None) -> str:

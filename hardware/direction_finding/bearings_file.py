@@ -27,8 +27,8 @@ _SIGMA = ("sigma_deg", "sigma", "std_deg")
 class RecordedBearing:
     """One bearing: degrees clockwise from true north, taken at `place`. line: where it stands in the file.
 
-    stated: whether the file gives its sigma. at_s: UTC epoch seconds at which it was taken, frequency_hz: of what was
-    heard; None: the file does not tell.
+    stated: whether the file gives its sigma, or the device that wrote it has a known one. at_s: UTC epoch seconds at
+    which it was taken, frequency_hz: of what was heard; None: the file does not tell.
     """
 
     line: int

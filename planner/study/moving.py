@@ -12,16 +12,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from planner.belief.estimate import confidence_region, estimate
 from planner.belief.moving import Assumed, MovingBelief, moving_prior, predicted, update_moving
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
-from planner.geometry import distance_to_convex
 from planner.motion import flight_time
 from planner.movement import DRIFTING_S, WALKING_S, Movement
 from planner.policy.fisher import fisher
 from planner.study.error_worlds import ROWS, Row
-from planner.study.truth import Claim, Model, Search, anywhere, bearing_of
+from planner.study.truth import Claim, Model, Search, anywhere, bearing_of, claim_at
 from planner.study.walkers import Kind, walker
 from planner.types import Bearing
 
@@ -69,15 +67,4 @@ def fly_after(search: Search, speed: float, seed: int, model: Model, prior: Erro
         said = verdict(problem, rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
-    spread, truth = estimate(belief, problem.estimator), emitter.at(time)
-    found = belief.errors_of("craft")
-    return Claim(
-        claimed=said.localized,
-        in_c95=bool(distance_to_convex(truth[None], confidence_region(belief))[0] <= 0.0),
-        error_m=float(np.hypot(spread.x - truth[0], spread.y - truth[1])),
-        stated_m=spread.expected_rmse,
-        bearings=len(bearings),
-        time_s=time,
-        bias_off_deg=float("nan") if found is None else float(np.rad2deg(found.bias - sensor.bias)),
-        bias_sd_deg=float("nan") if found is None else float(np.rad2deg(found.bias_sd)),
-    )
+    return claim_at(seed, said.localized, belief, problem, emitter.at(time), sensor.bias, len(bearings), time)

@@ -11,12 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
 from planner.belief.shared_source import with_shared_errors
 from planner.belief.verdict import verdict
-from planner.geometry import distance_to_convex
 from planner.motion import flight_time
 from planner.options import FIELD, PlannerOptions
 from planner.plan import plan
@@ -24,7 +22,7 @@ from planner.policy.several import Wanted, plan_several
 from planner.study.error_worlds import Row, Sensor
 from planner.study.errors import StudyError
 from planner.study.scenarios import Scenario, scenario
-from planner.study.truth import Claim, Model, bearing_of, folded, prior_of
+from planner.study.truth import Claim, Model, bearing_of, claim_at, folded, prior_of
 from planner.types import Bearing, FloatArray, LocalizationRule
 
 TAGS = {"tags_4": 4, "tags_8": 8, "tags_4_bias5": 4, "tags_8_bias5": 8}
@@ -93,11 +91,11 @@ def fly_tags(
         for tag in tags:
             tag.localized = verdict(problem, rule, tag.bearings, tag.belief).localized
             if tag.localized and tag.claim is None:
-                tag.claim = _claim(tag, world, claimed=True)
+                tag.claim = _claim(tag, world, seed, claimed=True)
         if all(tag.localized for tag in tags):
             break
         place = _next_place(world, [tag for tag in tags if not tag.localized], here, options)
-    claims = [tag.claim or _claim(tag, world, claimed=False) for tag in tags]
+    claims = [tag.claim or _claim(tag, world, seed, claimed=False) for tag in tags]
     return [replace(claim, time_s=time) for claim in claims]
 
 
@@ -118,18 +116,7 @@ def _next_place(world: Scenario, wanted: Sequence[_Tag], here: FloatArray, optio
     return np.array([chosen.x, chosen.y])
 
 
-def _claim(tag: _Tag, world: Scenario, *, claimed: bool) -> Claim:
+def _claim(tag: _Tag, world: Scenario, seed: int, *, claimed: bool) -> Claim:
     """time_s: not known yet."""
-    spread = estimate(tag.belief, world.problem.estimator)
-    target = tag.sensor.target
-    errors = tag.belief.errors[0] if isinstance(tag.belief, JointBelief) else None
-    return Claim(
-        claimed=claimed,
-        in_c95=bool(distance_to_convex(target[None], confidence_region(tag.belief))[0] <= 0.0),
-        error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
-        stated_m=spread.expected_rmse,
-        bearings=len(tag.bearings),
-        time_s=0.0,
-        bias_off_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias - tag.sensor.bias)),
-        bias_sd_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias_sd)),
-    )
+    sensor, bearings = tag.sensor, len(tag.bearings)
+    return claim_at(seed, claimed, tag.belief, world.problem, sensor.target, sensor.bias, bearings, time_s=0.0)

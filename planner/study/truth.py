@@ -14,10 +14,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from planner.belief.estimate import confidence_region, estimate
+from planner.belief.estimate import confidence_region, estimate, mass_within
 from planner.belief.grid import GridBelief, prior_belief, update
 from planner.belief.joint import JointBelief, joint_prior, update_joint
 from planner.belief.learning import flight_evidence, learned
+from planner.belief.moving import MovingBelief
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.geometry import bounds, contains, distance_to_convex
@@ -41,29 +42,41 @@ FEWEST_TOLD = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What came of one mission. time_s: until its end. error_m, stated_m, in_c95: at the claim.
+    """What came of one mission. time_s: until its end. error_m, stated_m, rms_m, in_c95, far_chance: at the claim.
+    stated_m is the mean distance by the belief, rms_m its root mean square, far_chance the belief's own probability
+    that the error is beyond three times what it states.
 
     bias_off_deg, bias_sd_deg: what the belief was wrong by about the bias of the bearings, and what it stated of that
     (NaN: it knows none).
     """
 
+    seed: int
     claimed: bool
     in_c95: bool
     error_m: float
     stated_m: float
+    rms_m: float
+    far_chance: float
     bearings: int
     time_s: float
     bias_off_deg: float
     bias_sd_deg: float
+
+    @property
+    def beyond(self) -> bool:
+        """Whether a claim was wrong by more than three times what it stated."""
+        return self.claimed and self.error_m > BEYOND * self.stated_m
 
 
 @dataclass(frozen=True, slots=True)
 class Truth:
     """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1], the last two of those that claimed.
 
-    in_c95_low, in_c95_high: Wilson's 95 % interval. mean_s: s until the claim or the last bearing. bias_inside: share
-    in which the bias was within two of its stated standard deviations. prior: what was known of the sensor before.
-    planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
+    in_c95_low, in_c95_high: Wilson's 95 % interval. beyond_low, beyond_high: the same of beyond_3x. beyond_believed:
+    what the beliefs themselves said of it at the claims. beyond_seeds: the missions beyond, to look at. beyond_3rms:
+    share beyond three times the root mean square that the belief gives. mean_s: s until the claim or the last bearing.
+    bias_inside: share in which the bias was within two of its stated standard deviations. prior: what was known of the
+    sensor before. planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
     """
 
     row: str
@@ -74,6 +87,11 @@ class Truth:
     in_c95_low: float
     in_c95_high: float
     beyond_3x: float
+    beyond_low: float
+    beyond_high: float
+    beyond_believed: float
+    beyond_seeds: tuple[int, ...]
+    beyond_3rms: float
     mean_s: float
     bearings_mean: float
     error_mean_m: float
@@ -165,19 +183,36 @@ def _flown(search: Search, row: Row, seed: int, model: Model, unknown: GridBelie
         said = verdict(problem, search.rule, bearings, belief)
         if said.localized or len(bearings) == search.most_bearings:
             break
+    claim = claim_at(seed, said.localized, belief, problem, target, sensor.bias, len(bearings), time)
+    return claim, belief
+
+
+def claim_at(
+    seed: int,
+    claimed: bool,
+    belief: GridBelief,
+    problem: Problem,
+    target: FloatArray,
+    bias: float,
+    bearings: int,
+    time_s: float,
+) -> Claim:
+    """What the belief says, held against the truth. target: (2,) m. bias: rad, of the first source's bearings."""
     spread = estimate(belief, problem.estimator)
-    errors = belief.errors[0] if isinstance(belief, JointBelief) else None
-    claim = Claim(
-        claimed=said.localized,
+    known = belief.errors if isinstance(belief, JointBelief | MovingBelief) else ()
+    return Claim(
+        seed=seed,
+        claimed=claimed,
         in_c95=bool(distance_to_convex(target[None], confidence_region(belief))[0] <= 0.0),
         error_m=float(np.hypot(spread.x - target[0], spread.y - target[1])),
         stated_m=spread.expected_rmse,
-        bearings=len(bearings),
-        time_s=time,
-        bias_off_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias - sensor.bias)),
-        bias_sd_deg=float("nan") if errors is None else float(np.rad2deg(errors.bias_sd)),
+        rms_m=float(np.sqrt(np.trace(spread.covariance))),
+        far_chance=1.0 - mass_within(belief, spread.x, spread.y, BEYOND * spread.expected_rmse),
+        bearings=bearings,
+        time_s=time_s,
+        bias_off_deg=float(np.rad2deg(known[0].bias - bias)) if known else float("nan"),
+        bias_sd_deg=float(np.rad2deg(known[0].bias_sd)) if known else float("nan"),
     )
-    return claim, belief
 
 
 ROWS_SEED = 14
@@ -190,6 +225,8 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
     nothing = float("nan")
     inside = sum(c.in_c95 for c in claimed)
     low, high = wilson(inside, len(claimed)) if claimed else (nothing, nothing)
+    beyond = [c.seed for c in claimed if c.beyond]
+    beyond_low, beyond_high = wilson(len(beyond), len(claimed)) if claimed else (nothing, nothing)
     known = [c for c in claims if np.isfinite(c.bias_off_deg)]
     return Truth(
         row=row,
@@ -199,7 +236,12 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
         in_c95=inside / len(claimed) if claimed else nothing,
         in_c95_low=low,
         in_c95_high=high,
-        beyond_3x=float(np.mean([c.error_m > BEYOND * c.stated_m for c in claimed])) if claimed else nothing,
+        beyond_3x=len(beyond) / len(claimed) if claimed else nothing,
+        beyond_low=beyond_low,
+        beyond_high=beyond_high,
+        beyond_believed=float(np.mean([c.far_chance for c in claimed])) if claimed else nothing,
+        beyond_seeds=tuple(beyond),
+        beyond_3rms=float(np.mean([c.error_m > BEYOND * c.rms_m for c in claimed])) if claimed else nothing,
         mean_s=float(np.mean([c.time_s for c in claims])),
         bearings_mean=float(np.mean([c.bearings for c in claims])),
         error_mean_m=float(np.mean([c.error_m for c in claimed])) if claimed else nothing,

@@ -1709,7 +1709,8 @@ export interface components {
         /**
          * @description What a mission's own sweeps of an emitter say of its antenna. `sweeps`: how many were compared. `repeats_db`:
          *     what they deviate from the flown pattern by alike, None: too few. `doubt`: that this is not the antenna which was
-         *     measured. `proposed`: the pattern that they show, once the emitter is localized; the what-if takes it as it is.
+         *     measured, or that all its bearings are turned (it may point beside, or the compass is off). `proposed`: the pattern
+         *     that they show, once the emitter is localized; the what-if takes it as it is.
          */
         AntennaReview: {
             sweeps: number;

@@ -11,7 +11,7 @@ from backend.events import CraftSource, MissionDrafted, MissionStarted
 from backend.search.antenna import antenna_fact
 from backend.search.localization import localization
 from backend.search.sweep_facts import Taken, sweep_fact
-from backend.spec import MissionSpec
+from backend.spec import MissionSpec, SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.calibration import true_bearing_deg
 from hardware.direction_finding.comparison import beam
@@ -23,7 +23,9 @@ from tests.benchmarks.pattern_mismatch import Mismatch, deformed, sweep_of
 
 NOMINAL = beam(60.0)
 UNEVEN = deformed(60.0, left=0.75, right=1.25)
+SQUINTED = deformed(60.0, squint_deg=12.0)
 TASK = localization(SPEC, HOME)
+JOINT = SPEC.model_copy(update={"sensor": SensorSpec(bearing_errors="joint")})
 EMITTER: Place = TASK.place(20.0, 110.0)
 PLACES = [(-100.0, 10.0), (120.0, 30.0), (130.0, 180.0), (-120.0, 170.0), (0.0, 20.0), (10.0, 195.0)]
 
@@ -51,7 +53,7 @@ async def fly(services, heard: AntennaPattern, localized: bool, mission: Mission
         assert fact.kind == "bearing_measured"
         bearings.append(fact)
         events.append(fact)
-    belief = TASK.belief_fact(bearings)[0]
+    belief = localization(mission, HOME).belief_fact(bearings)[0]
     events.append(belief.model_copy(update={"localized": localized and belief.estimate is not None}))
     await services.journal.append("m1", events)
 
@@ -71,8 +73,22 @@ async def test_another_antenna_is_named_and_its_pattern_proposed(client, service
     assert raw.json().get("reason", {}).get("code") == "samples_not_stored"  # the pattern itself was taken
 
 
-async def test_the_measured_antenna_is_left_alone(client, services):
-    await fly(services, NOMINAL, localized=True)
+async def test_an_antenna_that_points_beside_is_proposed_as_it_points(client, services):
+    """Its sweeps fit the pattern as well as ever; that they are all turned shows where they cross."""
+    await fly(services, SQUINTED, localized=True, mission=JOINT)
+    told = (await client.get("/api/missions/m1/antenna")).json()
+    assert told["doubt"]["code"] == "bearings_corrected"
+    assert abs(told["doubt"]["bias_deg"]) > 8.0
+    proposed = parse_pattern(told["proposed"]["filename"], told["proposed"]["text"])
+    angle = np.arange(-60.0, 61.0)
+    points_deg = float(angle[np.argmax(proposed.gain_at(angle))])
+    assert abs(points_deg) > 6.0
+    assert np.sign(points_deg) == -np.sign(told["doubt"]["bias_deg"])
+
+
+@pytest.mark.parametrize("mission", [SPEC, JOINT])
+async def test_the_measured_antenna_is_left_alone(client, services, mission):
+    await fly(services, NOMINAL, localized=True, mission=mission)
     told = (await client.get("/api/missions/m1/antenna")).json()
     assert told["doubt"] is None
     assert told["proposed"] is None

@@ -64,6 +64,25 @@ async def test_our_own_bearing_file_comes_back_as_it_went(client, services):
     assert [b.place.lat for b in ours] == [b.place.lat for b in theirs]
 
 
+async def test_bearings_without_a_sigma_get_the_one_that_their_misses_show(client, services):
+    """Seven degrees were taken for granted: bearings that miss one another by fifteen then claimed a wrong place."""
+    told: list[float] = []
+    for off_deg in (0.0, 25.0):
+        mission_id = await draft(client)
+        turned = [bearing_deg(*place) + off * off_deg for place, off in zip(PLACES, (1, -1, 0.8, -0.6), strict=True)]
+        rows = "".join(f"{lat},{lon},{b}\n" for (lon, lat), b in zip(PLACES, turned, strict=True))
+        reply = await bring(client, mission_id, f"lat,lon,bearing_deg\n{rows}")
+        assert reply.status_code == 201, reply.text
+        found = {b.sigma_deg for b in await facts(services, mission_id, "bearing_measured")}
+        assert len(found) == 1
+        told += found
+    assert told[0] < 10.0
+    assert told[1] > 14.0
+    stated = await draft(client)
+    assert (await bring(client, stated, "lat,lon,bearing_deg,sigma_deg\n50.6,7.2,40,9\n")).status_code == 201
+    assert [b.sigma_deg for b in await facts(services, stated, "bearing_measured")] == [9.0]
+
+
 async def test_what_does_not_belong_to_the_search_is_refused_whole(client, services):
     mission_id = await draft(client)
     far = f"lat,lon,bearing_deg\n50.6,7.2,{bearing_deg(7.2, 50.6)}\n10.0,10.0,5\n"

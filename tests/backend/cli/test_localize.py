@@ -7,14 +7,19 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 import typer
 from shapely.geometry import Point, shape
 from typer.testing import CliRunner
 
 from backend.cli.localize import localize
+from backend.search.source_priors import unknown_errors
 from hardware.frame import LocalFrame
 from hardware.readings import Place
+from planner.belief.estimate import estimate
+from planner.belief.joint import joint_prior, update_joint
+from planner.types import Bearing, LinearMotion, Problem
 
 APP = typer.Typer()
 APP.command()(localize)
@@ -108,6 +113,24 @@ def test_an_unknown_estimator_is_named_with_the_known_ones(tmp_path: Path) -> No
     result = CliRunner().invoke(APP, [str(written(tmp_path, [(0, 0, 45.0)])), "--estimator", "mode"])
     assert result.exit_code == 2
     assert '"mode" is no estimator: choose one of map, expected_value, geometric_median' in result.stderr
+
+
+def test_a_stated_sigma_counts_as_it_does_in_flight(tmp_path: Path) -> None:
+    """Of 13 degrees 12 are each bearing's own and 5 the compass', which the joint belief counts once for all."""
+    rows = [(x, y, bearing_to(x, y, 120.0, 140.0)) for x, y in ((0, 0), (250, 0), (100, 350), (-80, 150))]
+    places = [Bearing(x, y, math.radians(90.0 - bearing), math.radians(12.0)) for x, y, bearing in rows]
+    square = np.array([(-300.0, -300.0), (500.0, -300.0), (500.0, 600.0), (-300.0, 600.0)])
+    corners = [FRAME.to_geo(x, y) for x, y in (*square, square[0])]
+    area = tmp_path / "area.geojson"
+    area.write_text(json.dumps({"type": "Polygon", "coordinates": [[[p.lon, p.lat] for p in corners]]}))
+    path = str(written(tmp_path, rows, sigma=13.0))
+    answer = json.loads(CliRunner().invoke(APP, [path, "--area", str(area), "--json"]).stdout)
+    problem = Problem((square,), places[0].sigma, 10.0, 0.0, LinearMotion(1.0), estimator="geometric_median")
+    belief = joint_prior(problem, otherwise=unknown_errors(0.1))
+    for bearing in places:
+        belief = update_joint(belief, bearing)
+    stated = estimate(belief, "geometric_median").expected_rmse
+    assert answer["expected_rmse_m"] == pytest.approx(stated, rel=0.03)
 
 
 def test_a_common_offset_of_all_bearings_is_found_and_taken_off(tmp_path: Path) -> None:

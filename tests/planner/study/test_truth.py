@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from planner.belief.verdict import MOST_BEYOND
 from planner.study.error_worlds import ROWS, Row, Sensor, Wall
 from planner.study.errors import StudyError
 from planner.study.truth import Claim, Search, fly, missions, row_named, told, truth_of, wilson
@@ -111,7 +112,11 @@ def test_a_mission_depends_on_its_seed_and_on_nothing_else():
 
 @pytest.mark.parametrize("model", ["joint", "independent"])
 def test_all_missions_of_a_right_sensor_are_claimed(model):
-    found = truth_of("right", model, list(missions(SEARCH, row_named("right"), range(4), model)))
+    claims = list(missions(SEARCH, row_named("right"), range(4), model))
+    found = truth_of("right", model, claims)
+    assert all(claim.stated_m < claim.rms_m < 1.5 * claim.stated_m for claim in claims)
+    if model == "joint":
+        assert 0.0 < max(claim.far_chance for claim in claims) <= MOST_BEYOND
     assert (found.missions, found.claimed) == (4, 1.0)
     assert found.in_c95_low < found.in_c95 <= 1.0
     assert (found.as_json()["bias_inside"] is None) == (model == "independent")
@@ -136,13 +141,18 @@ def test_what_a_search_is_told_is_what_the_row_draws_from():
 
 
 def test_shares_are_of_the_claims():
-    claim = Claim(True, True, 5.0, 10.0, 4, 300.0, 1.0, 2.0)
-    far = replace(claim, in_c95=False, error_m=31.0, bias_off_deg=5.0)
-    never = replace(claim, claimed=False, in_c95=False, error_m=99.0)
+    claim = Claim(1, True, True, 5.0, 10.0, 12.0, 0.01, 4, 300.0, 1.0, 2.0)
+    far = replace(claim, seed=2, in_c95=False, error_m=31.0, far_chance=0.04, bias_off_deg=5.0)
+    never = replace(claim, seed=3, claimed=False, in_c95=False, error_m=99.0, far_chance=0.9)
     found = truth_of("bias5", "joint", [claim, far, never, claim])
     assert found.claimed == 0.75
     assert found.in_c95 == pytest.approx(2.0 / 3.0)
     assert found.beyond_3x == pytest.approx(1.0 / 3.0)
+    assert (found.beyond_low, found.beyond_high) == wilson(1, 3)
+    assert found.beyond_believed == pytest.approx(0.02)
+    assert found.beyond_seeds == (2,)
+    assert found.beyond_3rms == 0.0
+    assert truth_of("bias5", "joint", [replace(far, error_m=37.0)]).beyond_3rms == 1.0
     assert found.bias_inside == 0.75
 
 
