@@ -16,6 +16,7 @@ from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.measuring import Measured, measure
+from backend.craft.on_the_way import heard_on_leg
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, turn_vetoes
 from backend.events import PlanChosen
@@ -72,6 +73,7 @@ class Work:
     async def fly(self, effect: effects.FlyTo) -> inputs.CraftInput:
         """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""
         began_s, speed = self.equipment.clock.now(), self.task.mission.flight.speed_m_s
+        begin = self.equipment.vehicle.telemetry().position
         end = self.task.frame.to_enu(effect.place)
         plan = await asyncio.to_thread(self._turn_at, end, 1)
         facing_deg = None if plan is None or plan.begin_deg is None else self._nose_deg(plan.begin_deg)
@@ -97,7 +99,10 @@ class Work:
                 return inputs.PlaceNotTaken(effect.place, carried(error.reason))
         here = self._here()
         off = math.dist(self.task.frame.to_enu(here), end)
-        return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)
+        flown_s = self.equipment.clock.now() - began_s
+        mission, search = self.task.mission, self.search()
+        heard = await heard_on_leg(self.equipment, mission, self.listening, search, effect.place_number, begin, began_s)
+        return inputs.Arrived(here, off, flown_s, heard)
 
     async def measure(self, effect: effects.Measure) -> inputs.CraftInput:
         """SweepTaken, a rejected sweep too, or WorkVetoed. Raises HardwareError."""

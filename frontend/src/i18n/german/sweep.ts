@@ -6,6 +6,15 @@ export const sweep = {
     text: "In keiner Richtung war ein Puls des Senders zu hören.",
     remedy: "Ihn einschalten oder näher bei ihm messen.",
   },
+  readings_left_out: {
+    text:
+      "{readings|Messwert|Messwerte} weggelassen: {why?heading_unknown=keine Richtung nahe genug in der Zeit" +
+      "|place_unknown=der Ort des Fluggeräts war nicht sicher|overdriven=der Empfänger war übersteuert" +
+      "|at_noise=kaum über dem Rauschen|beside_a_turn=neben einem Ort, an dem es ohnehin gedreht und gehört hat" +
+      "|pointed_one_way=die Antenne zeigte in eine Richtung, die Leistung sagt dann keine Peilung" +
+      "|too_many=andere Abschnitte des Wegs wurden weiter gedreht}.",
+    remedy: "",
+  },
   no_heading_heard: {
     text: "Das Fluggerät meldete während der Drehung keine Richtung.",
     remedy: "Seine Telemetrie und die Rate von ATTITUDE prüfen.",
