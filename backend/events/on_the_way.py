@@ -27,9 +27,9 @@ class HeardOnTheWay(Fact):
     """One leg to a place, and what was heard of an emitter meanwhile; of joint errors alone it changes the belief.
 
     leg_id: by which it is left out, as a bearing by its bearing_id. counted: power samples behind the readings.
-    left_out: of those that say nothing, how many and why. readings: hardware's WayReadings, packed, in metres from
-    `origin`; None: no stretch says anything. gain_db: (36,) of the antenna, as in SilenceFact. sigma_deg: of a bearing
-    that the sensor would have taken; no stretch counts for more.
+    left_out: of those that say nothing, how many and why. nose: what it did meanwhile, where it swung. readings:
+    hardware's WayReadings, packed, in metres from `origin`; None: no stretch says anything. gain_db: (36,) of the
+    antenna, as in SilenceFact. sigma_deg: of a bearing that the sensor would have taken; no stretch counts for more.
     """
 
     kind: Literal["heard_on_the_way"] = "heard_on_the_way"
@@ -39,6 +39,7 @@ class HeardOnTheWay(Fact):
     place_number: int
     counted: int
     left_out: list[Reason]
+    nose: list[Reason]
     stretches: list[StretchFact]
     origin: Place
     readings: Annotated[str, Field(max_length=MOST_PACKED)] | None

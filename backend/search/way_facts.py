@@ -18,18 +18,20 @@ from hardware.direction_finding.on_the_way import OnTheWay, WayError, WayReading
 from hardware.direction_finding.silence import relative_gain_db
 from hardware.frame import LocalFrame
 from hardware.readings import HeadingSample, Place, PowerSample
+from hardware.reasons.on_the_way import NoseSwung
 from planner.on_the_way import Stretch
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """begin, end: where it led from and to. turned_at: those of the two where the craft turned, or will, and listened.
-    place_number: of its end."""
+    """begin: where it led from. turned_at: where the craft turned and listened, or will. place_number: of its end.
+    nose: what it did meanwhile, where it swung."""
 
     source: BearingSource
     place_number: int
     begin: Place
     turned_at: tuple[Place, ...]
+    nose: tuple[NoseSwung, ...] = ()
 
 
 def way_fact(
@@ -49,6 +51,7 @@ def way_fact(
         place_number=leg.place_number,
         counted=found.counted,
         left_out=[carried(reason) for reason in found.left_out],
+        nose=[carried(one) for one in leg.nose],
         stretches=_drawn(found),
         origin=leg.begin,
         readings=found.readings.packed() if found.counted else None,

@@ -123,6 +123,7 @@ export const en = {
   "state.waiting": "Waiting for you: accept place {number}",
   "state.flying": "Flying to place {number}",
   "state.flyingEta": "Flying to place {number}, {time}",
+  "state.noseSwings": "the nose swings to listen",
   "state.measuring": "Taking the bearing at place {number}",
   "state.measuringAgain": "Taking the bearing at place {number} again (attempt {attempt})",
   "state.hold": "Holding. {reason}",

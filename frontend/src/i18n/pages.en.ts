@@ -329,6 +329,7 @@ export const pagesEn = {
   "edit.retakes": "Take again at most",
   "edit.sectorTurns": "turn only as far as the bearing needs",
   "edit.listenOnTheWay": "listen on the way too (common bias)",
+  "edit.swingOnTheWay": "and swing the nose meanwhile",
   "edit.wholeTurns": "places with a whole turn first",
   "edit.bearingErrors": "errors of bearings",
   "edit.bearingErrors.joint": "a common bias is estimated",

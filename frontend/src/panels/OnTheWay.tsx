@@ -3,7 +3,7 @@ import { t } from "../i18n";
 import type { Way } from "../state/emitter";
 import { cursor } from "../state/moment";
 import { mission } from "../state/shown";
-import { wayWords, whyLeftOut } from "../state/wayWords";
+import { noseWords, wayWords, whyLeftOut } from "../state/wayWords";
 import { CountButton } from "./CountButton";
 
 export function OnTheWay({ ways }: { ways: readonly Way[] }) {
@@ -15,6 +15,11 @@ export function OnTheWay({ ways }: { ways: readonly Way[] }) {
         <li key={seq}>
           <span class={excluded ? "muted" : ""}>{wayWords(fact)}</span>
           {excluded && ` (${t(leftOut ? "sweep.excluded" : "sweep.muted")})`}
+          {noseWords(fact).map((words) => (
+            <div class="muted" key={words}>
+              {words}
+            </div>
+          ))}
           {fact.left_out.length > 0 && (
             <details>
               <summary>{t("way.leftOut")}</summary>

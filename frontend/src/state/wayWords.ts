@@ -9,3 +9,6 @@ export function wayWords({ place_number: number, stretches }: HeardOnTheWay): st
 }
 
 export const whyLeftOut = ({ left_out }: HeardOnTheWay): string[] => left_out.map(reasonText);
+
+/** What the nose did meanwhile; nothing where it did not swing. */
+export const noseWords = ({ nose }: HeardOnTheWay): string[] => nose.map(reasonText);

@@ -125,6 +125,7 @@ export const someLeg = (changes: Partial<EventOf<"heard_on_the_way">> = {}): Eve
   place_number: 2,
   counted: 120,
   left_out: [{ code: "readings_left_out", why: "beside_a_turn", readings: 30 }],
+  nose: [],
   stretches: [
     { begin: { lat: 50, lon: 7 }, end: { lat: 50.0002, lon: 7 }, turned_deg: 70 },
     { begin: { lat: 50.0002, lon: 7 }, end: { lat: 50.0004, lon: 7 }, turned_deg: 50.4 },

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import pytest
 from craft_walk import CraftWalk
 from equipment import FRAME, HOME, spec
 from facts import OWN
@@ -12,9 +13,11 @@ from stage import Stage
 
 from backend.craft import effects, inputs
 from backend.craft.listening import Listening, channels_of
-from backend.craft.on_the_way import heard_on_leg
+from backend.craft.on_the_way import clear_m, heard_on_leg, swings_of
+from backend.craft.safety import Limits, limits_of
 from backend.events import HeardOnTheWay, PlaceReached
-from backend.search.state import SearchState
+from backend.search.state import EmitterState, SearchState
+from backend.search.task import search_task
 from backend.spec import FIRST_EMITTER, EmitterSpec, MissionSpec
 from hardware.readings import HeadingSample, Place, PowerSample
 from hardware.reasons.on_the_way import ReadingsLeftOut
@@ -52,6 +55,38 @@ async def test_a_leg_becomes_one_fact_an_emitter() -> None:
     assert (fact.emitter_id, fact.source, fact.place_number) == (FIRST_EMITTER, OWN, 2)
     assert len(fact.stretches) == 4
     assert fact.tells
+
+
+def swings(mission: MissionSpec, limits: Limits):
+    task = search_task(mission, HOME, 100.0)
+    search = replace(SearchState(), spec=mission, emitters={FIRST_EMITTER: EmitterState(FIRST_EMITTER)}, home=HOME)
+    return swings_of(task, search, limits, 30.0, [(0.0, 0.0), (60.0, 0.0)], 200.0)
+
+
+def test_the_nose_swings_only_where_a_mission_asks_for_it_and_listens() -> None:
+    mission = listening_mission()
+    limits = limits_of(search_task(mission, HOME, 100.0))
+    assert swings(mission, limits) is None
+    asked = mission.model_copy(update={"sensor": mission.sensor.model_copy(update={"swing_on_the_way": True})})
+    deaf = asked.model_copy(update={"sensor": asked.sensor.model_copy(update={"listen_on_the_way": False})})
+    assert swings(deaf, limits) is None
+    found = swings(asked, limits)
+    assert found is not None
+    assert found.plan.facing_deg == 200.0
+    assert found.plan.rate_deg_s == mission.sensor.turn_rate_deg_s
+    assert 60.0 <= found.plan.amplitude_deg <= 120.0
+
+
+def test_what_is_clear_ends_at_the_fence_and_at_what_may_not_be_flown() -> None:
+    limits = limits_of(search_task(listening_mission(), HOME, 100.0))
+    inside = limits.fence.representative_point()
+    place = FRAME.to_geo(inside.x, inside.y)
+    free = clear_m(limits, place)
+    assert free == pytest.approx(limits.fence.boundary.distance(inside), abs=0.01)
+    zone = inside.buffer(free / 4.0).boundary.buffer(1.0)
+    assert clear_m(replace(limits, no_fly=(zone,)), place) == pytest.approx(free / 4.0 - 1.0, abs=0.2)
+    west, south, *_ = limits.fence.bounds
+    assert clear_m(limits, FRAME.to_geo(west - 5.0, south - 5.0)) == 0.0
 
 
 async def test_a_mission_that_does_not_ask_for_it_hears_nothing_on_the_way() -> None:

@@ -11,6 +11,7 @@ from backend.events import BeliefUpdated, HeardOnTheWay, PlaceReached
 from backend.search.localization import localization
 from backend.spec import FIRST_EMITTER, MissionSpec, Place
 from hardware.readings import HeadingSample
+from hardware.yaw_swings import Swinging
 
 STEPS = 60
 
@@ -26,7 +27,13 @@ def turning_in_flight(stage: Stage) -> None:
     vehicle = stage.vehicle
     goto = vehicle.goto
 
-    async def turning(place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None) -> None:
+    async def turning(
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
+    ) -> None:
         assert vehicle.state.position is not None
         here, there = FRAME.to_enu(vehicle.state.position), FRAME.to_enu(place)
         for step in range(STEPS):

@@ -15,6 +15,13 @@ export const sweep = {
       "|too_many=andere Abschnitte des Wegs wurden weiter gedreht}.",
     remedy: "",
   },
+  nose_swung: {
+    text:
+      "Die Nase pendelte {swung|Mal|Mal} um {amplitude_deg} nach jeder Seite, mit {rate_deg_s} und höchstens {lag_deg} zurück" +
+      "{end?near_place=, bis der Ort nahe war|not_ours=, bis ein anderer Befehl kam oder jemand anderes flog" +
+      "|lags=. Dann folgte sie nicht und wurde in Ruhe gelassen|refused=. Dann lehnte der Autopilot ab, und sie wurde in Ruhe gelassen}.",
+    remedy: "",
+  },
   no_heading_heard: {
     text: "Das Fluggerät meldete während der Drehung keine Richtung.",
     remedy: "Seine Telemetrie und die Rate von ATTITUDE prüfen.",
