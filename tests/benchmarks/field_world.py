@@ -58,10 +58,12 @@ COLUMNS = (
 def flown(names: Sequence[str], seeds: range, kept: Path | None) -> dict[str, dict[int, FieldMission]]:
     """By row and seed. kept: folder of what was flown before, and of what is."""
     found = {name: _kept(kept, name) for name in names}
-    studies = {name: FieldStudy.of(ROWS[name], HEADING_SIGMA_DEG) for name in names}
+    studies = dict[str, FieldStudy]()
     for seed in seeds:
         for name in names:
             if seed not in found[name]:
+                if name not in studies:
+                    studies[name] = FieldStudy.of(ROWS[name], HEADING_SIGMA_DEG)
                 found[name][seed] = studies[name].fly(seed)
                 _keep(kept, name, found[name][seed])
                 print(f"{name} {seed}: {found[name][seed].time_s:.0f} s", file=sys.stderr, flush=True)
