@@ -197,7 +197,9 @@ class SensorSpec(Model):
     sector_turns: a carrier's sweep turns only as far as its bearing needs; a stored specification that does not say so
     means whole turns. whole_turns: from how many places all directions are heard before sectors are.
     bearing_offset_deg: by how much bearings of the craft are known to read too large, clockwise (mounting and compass),
-    beyond what its antenna's file says; it is taken off where they are made.
+    beyond what its antenna's file says; it is taken off where they are made. listen_on_the_way: of joint errors, what
+    is heard between places counts too; a stored specification that does not say so means that it does not.
+    swing_on_the_way: the nose swings meanwhile, where it listens on the way.
     """
 
     sigma_deg: float = Field(default=7.0, ge=0.1, le=60)
@@ -216,6 +218,8 @@ class SensorSpec(Model):
     sweep_evidence: SweepEvidence = "peak"
     bearing_offset_deg: float = Field(default=0.0, ge=-180, le=180, allow_inf_nan=False)
     shared_errors: bool = False
+    listen_on_the_way: bool = False
+    swing_on_the_way: bool = False
 
 
 class PlannerSpec(Model):

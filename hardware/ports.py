@@ -23,6 +23,7 @@ from hardware.readings import (
     Sweep,
     Telemetry,
 )
+from hardware.yaw_swings import Swinging
 from planner.reason import ReasonedError
 
 if TYPE_CHECKING:  # much comes with these, and a vehicle left in flight is held before that is loaded
@@ -126,10 +127,16 @@ class Vehicle(Protocol):
         ...
 
     async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+        self,
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
     ) -> None:
         """Fly there and return once telemetry says arrived and settled. heading_deg: where the nose is wanted by then;
-        an autopilot may leave it elsewhere."""
+        an autopilot may leave it elsewhere. swinging: what the nose does on the way; nothing of it changes the mode,
+        and it is over when this ends for whatever reason."""
         ...
 
     async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:

@@ -44,10 +44,12 @@ exact_entry = cast(Compiler, njit(cache=True, nogil=True))
 COMPILED_IN = (
     "kernels/**/*.py",
     "belief/compiled_evidence.py",
+    "belief/compiled_on_the_way.py",
     "belief/estimate.py",
     "belief/grid.py",
     "compiling.py",
     "observation.py",
+    "on_the_way.py",
 )
 """Code or constants of these files are in the machine code."""
 SOURCES = int(digest(COMPILED_IN)[:15], 16)

@@ -21,6 +21,7 @@ FOLDED_KINDS = (
     "source_mute_changed",
     "belief_updated",
     "sweep_rejected",
+    "heard_on_the_way",
 )
 """The events that a belief depends on."""
 

@@ -11,7 +11,15 @@ from dataclasses import dataclass, replace
 
 from backend.api.another_antenna import AnotherAntenna
 from backend.api.beliefs import FOLDED_KINDS
-from backend.events import BearingMeasured, BeliefUpdated, PlanChosen, Recorded, Supposition, SweepRejected
+from backend.events import (
+    BearingMeasured,
+    BeliefUpdated,
+    HeardOnTheWay,
+    PlanChosen,
+    Recorded,
+    Supposition,
+    SweepRejected,
+)
 from backend.reasons import Reason, carried
 from backend.search.area import corner_of
 from backend.search.localization import Localization
@@ -56,13 +64,15 @@ def what_if(
         frame_base64=base64.b64encode(frame).decode(),
         sweeps=supposed,
         antenna=None if antenna is None else antenna.named,
+        legs_left_out=found.legs_left_out,
     )
 
 
 @dataclass(frozen=True, slots=True)
 class Supposed:
     """counted: the flown bearings that count. said: before the first and after each of them, with the fact and the
-    belief. flown: what was said in flight, by the number of bearings."""
+    belief. flown: what was said in flight, by the number of bearings. legs_left_out: that would count but for the other
+    antenna, with which they cannot be heard again."""
 
     task: Localization
     home: Place
@@ -70,6 +80,7 @@ class Supposed:
     flown: dict[int, BeliefUpdated]
     sweeps: list[SweepFact]
     said: list[tuple[BeliefUpdated, GridBelief]]
+    legs_left_out: int
 
 
 def suppose(
@@ -86,16 +97,19 @@ def suppose(
     task = tasks.emitters[about]
     counted = state.emitters[task.emitter_id].bearings
     supposed: list[SweepFact] = []
-    said, bare = [task.belief_fact([])], task
+    flown_legs = [leg for leg in state.emitters[task.emitter_id].legs if leg.leg_id not in wanted.without]
+    bare, legs = task, _legs_of_each(recorded, counted, () if antenna else flown_legs)
+    task = bare.after((), legs[0])
+    said = [task.belief_fact([])]
     unheard = {one.sweep_id for one in state.emitters[task.emitter_id].unheard}
     for number, sweeps in enumerate(_sweeps_of_each(recorded, counted), start=1):
         supposed += _taken(sweeps, supposed, mission, wanted, antenna)
         silent = [fact for fact in supposed if isinstance(fact, SweepRejected) and fact.sweep_id in unheard]
         told = tasks.about(_others_supposed(then.get(number, state), wanted), about).beside
         # through another antenna the other emitters' bearings would be others, too: none of them counts
-        task = replace(bare.after(silent), beside=told if antenna is None else None)
+        task = replace(bare.after(silent, legs[number]), beside=told if antenna is None else None)
         said.append(task.belief_fact(_bearings(supposed)))
-    return Supposed(task, home, counted, flown, supposed, said)
+    return Supposed(task, home, counted, flown, supposed, said, len(flown_legs) if antenna else 0)
 
 
 def changed(mission: MissionSpec, wanted: Supposition) -> MissionSpec:
@@ -160,6 +174,25 @@ def _sweeps_of_each(recorded: Sequence[Recorded], counted: Sequence[BearingMeasu
                 sweeps = []
             case _:
                 pass
+
+
+def _legs_of_each(
+    recorded: Sequence[Recorded],
+    counted: Sequence[BearingMeasured],
+    legs: Sequence[HeardOnTheWay],
+) -> list[list[HeardOnTheWay]]:
+    """Before the first counted bearing and after each of them, the legs until the next."""
+    ids, counting = {fact.bearing_id for fact in counted}, {leg.leg_id for leg in legs}
+    found: list[list[HeardOnTheWay]] = [[]]
+    for record in recorded:
+        match record.event:
+            case HeardOnTheWay(leg_id=leg_id) as leg if leg_id in counting:
+                found[-1].append(leg)
+            case BearingMeasured(bearing_id=bearing_id) if bearing_id in ids:
+                found.append(list(found[-1]))
+            case _:
+                pass
+    return found
 
 
 def _taken(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -17,7 +17,9 @@ import numpy as np
 from shapely import Point, Polygon
 
 from backend.api.suggestion import suggested_mission
-from backend.events import BearingMeasured, CraftSource
+from backend.cli.field_legs import Listens, flown, listened
+from backend.cli.field_rivals import RIVALS
+from backend.events import BearingMeasured, CraftSource, HeardOnTheWay
 from backend.search.localization import Localization, localization
 from backend.search.planning import decide, foreseen
 from backend.search.sector import (
@@ -32,24 +34,20 @@ from backend.search.sector import (
     whole_turn,
 )
 from backend.search.sweep_facts import Taken, sweep_fact
+from backend.search.swings import swing_plan
 from backend.simulation.field_world import Field, antenna_pattern, drawn_field
 from backend.spec import MissionSpec, PlannerSpec
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.sweep import first_part
 from hardware.readings import Place
-from planner.airspace import may_fly
+from hardware.yaw_swings import Swinging
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief
 from planner.geometry import bounds
-from planner.kernels.entropy import expected_entropies
 from planner.motion import flight_time, turn_between
-from planner.policy.actions import action_space
-from planner.policy.entropy import entpp
-from planner.policy.fisher import fisher
-from planner.sampling import equal_mass_points
 from planner.study.truth import wilson
-from planner.types import FloatArray, FullMotion, Problem
+from planner.types import FullMotion
 
 HOME = Place(50.6234, 7.2046)
 SETTLE_S = 4.0
@@ -59,10 +57,6 @@ HOVER_W = 250.0
 FAR_M = 50.0
 """Bearings from nearer do not count in the statistics of bearings, as in the thesis' (6.3.2)."""
 OUTLIER_DEG = 30.0
-STEP_M = 30.0
-"""Between the nine places that the greedy planner compares."""
-
-
 LOOK_S = 1.0
 """To brake, look, and turn on, when a sector was not enough."""
 
@@ -72,10 +66,11 @@ Turns = Literal["whole", "sector"]
 @dataclass(frozen=True, slots=True)
 class FieldOptions:
     """turns: once around at every place, or as far as needed. turn_rate_deg_s: of a sweep. compass_sd_deg: of the
-    flights' heading errors."""
+    flights' heading errors. listens: where."""
 
     planner: str = "crossfix"
     turns: Turns = "whole"
+    listens: Listens = "places"
     turn_rate_deg_s: float = 30.0
     compass_sd_deg: float = 4.0
 
@@ -101,56 +96,6 @@ class FieldMission:
         return self.localized and self.error_m > 3.0 * self.stated_m
 
 
-Rival = Callable[[Problem, GridBelief, tuple[float, float], np.random.Generator], tuple[float, float]]
-"""A planner that a mission's specification does not name: the next place, m ENU."""
-
-
-def _entropy_of_nine(
-    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
-) -> tuple[float, float]:
-    """Stay, or one step in eight directions: the least expected entropy, averaged over eight bearings."""
-    steps = STEP_M * np.array([(0.0, 0.0), *((np.cos(a), np.sin(a)) for a in np.arange(8) * np.pi / 4)])
-    places = np.array(here) + steps
-    allowed = may_fly(problem, places)
-    places = places[allowed] if allowed.any() else action_space(problem, belief)
-    rows, columns = np.nonzero(belief.density > 1e-12 * belief.density.max())
-    x, y = belief.centres()
-    cells, mass = np.column_stack([x[columns], y[rows]]), belief.density[rows, columns]
-    found = expected_entropies(cells, mass, places, equal_mass_points(belief, 8), problem.sigma)
-    return _of(places, int(np.argmin(found)))
-
-
-def _random_walk(
-    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
-) -> tuple[float, float]:
-    places = action_space(problem, belief)
-    return _of(places, int(rng.integers(len(places))))
-
-
-def _of(places: FloatArray, index: int) -> tuple[float, float]:
-    return float(places[index, 0]), float(places[index, 1])
-
-
-def _fisher(
-    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
-) -> tuple[float, float]:
-    choice = fisher(problem, belief, here)
-    return choice.x, choice.y
-
-
-def _entpp(
-    problem: Problem, belief: GridBelief, here: tuple[float, float], rng: np.random.Generator
-) -> tuple[float, float]:
-    choice = entpp(problem, belief, here)
-    return choice.x, choice.y
-
-
-RIVALS: Mapping[str, Rival] = {
-    "fisher": _fisher,
-    "entpp": _entpp,
-    "entropy_of_nine": _entropy_of_nine,
-    "random_walk": _random_walk,
-}
 OURS = ("crossfix", "rollout")
 """The suggested mission's planner, and the specification's default: rollouts on the Fisher policy."""
 PLANNERS = (*OURS, *RIVALS)
@@ -165,6 +110,8 @@ def mission_of(options: FieldOptions) -> MissionSpec:
             "measurement_time_s": 360.0 / options.turn_rate_deg_s + SETTLE_S,
             "turn_rate_deg_s": options.turn_rate_deg_s,
             "sector_turns": options.turns == "sector",
+            "listen_on_the_way": options.listens != "places",
+            "swing_on_the_way": options.listens == "way_swinging",
         }
     )
     own = spec.planner if options.planner == "crossfix" else PlannerSpec(estimator=spec.planner.estimator)
@@ -193,22 +140,35 @@ class FieldStudy:
         task, rate = self.task, self.options.turn_rate_deg_s
         field = drawn_field(seed, task.frame, bounds(task.problem.area), self.options.compass_sd_deg)
         rng, motion = np.random.default_rng([seed, 3]), FullMotion()
-        measured: list[BearingMeasured] = []
+        measured, legs = list[BearingMeasured](), list[HeardOnTheWay]()
         here, heading, time_s = (0.0, 0.0), 0.0, 0.0
         sweeps, retakes, turned_deg = 0, 0, 0.0
+        way_deg, turned_at = 0.0, list[tuple[float, float]]()
         fact, belief = task.belief_fact(measured)
         while not fact.localized and sweeps < self.spec.localization.maximum_bearings:
-            place = self._choose(belief, measured, here, rng)
+            place = self._choose(task, belief, measured, here, rng)
             way = np.array(place) - np.array(here)
             length, flown_s = float(np.hypot(*way)), 0.0
             if length > 0.0:
                 direction = float(np.arctan2(way[1], way[0]))
                 time_s += float(flight_time(motion, length, turn_between(heading, direction)))
-                flown_s = float(flight_time(motion, length))
+                swinging = self._swinging(task, belief, measured, here, place)
+                # the yaw for a sector is laid on the way, unless the nose has other things to do there
+                flown_s = float(flight_time(motion, length)) if swinging is None else 0.0
+                if self.options.listens != "places":
+                    nose = flown(here, place, heading, swinging)
+                    legs.append(listened(field, nose, [*turned_at, place], len(legs), self.spec.sensor, self.pattern))
+                    way_deg += nose.turned_deg
+                    direction = nose.heading
+                    task = self.task.after((), legs)
+                    fact, belief = task.belief_fact(measured)
                 heading = direction
             here = place
+            turned_at.append(place)
+            if fact.localized:
+                break
             for attempt in range(1, 2 + self.spec.sensor.maximum_retakes):
-                plan = self._turn(belief, measured, here, attempt)
+                plan = self._turn(task, belief, measured, here, attempt)
                 swing_s = 0.0 if plan.begin_deg is None else _apart(heading, plan.begin_deg) / rate
                 found, turned, looks = self.measured(field, here, sweeps, plan)
                 spent_s = turned / rate + (looks - 1) * LOOK_S + SETTLE_S
@@ -234,12 +194,13 @@ class FieldStudy:
             stated_m=math.nan if estimate is None else estimate.expected_rmse_m,
             bearings=len(measured),
             rejected=retakes,
-            turned_deg=turned_deg,
+            turned_deg=turned_deg + way_deg,
             off_deg=tuple(off for b in measured if (off := self._off_deg(field, b)) is not None),
         )
 
     def _choose(
         self,
+        task: Localization,
         belief: GridBelief,
         measured: Sequence[BearingMeasured],
         here: tuple[float, float],
@@ -247,12 +208,28 @@ class FieldStudy:
     ) -> tuple[float, float]:
         rival = RIVALS.get(self.options.planner)
         if rival is not None:
-            return rival(foreseen(self.task.problem, measured, belief), belief, here, rng)
-        decision = decide(self.task, belief, measured, here)
+            return rival(foreseen(task.problem, measured, belief), belief, here, rng)
+        decision = decide(task, belief, measured, here)
         return decision.x, decision.y
+
+    def _swinging(
+        self,
+        task: Localization,
+        belief: GridBelief,
+        measured: Sequence[BearingMeasured],
+        here: tuple[float, float],
+        place: tuple[float, float],
+    ) -> Swinging | None:
+        if self.options.listens != "way_swinging":
+            return None
+        middle = (0.5 * (here[0] + place[0]), 0.5 * (here[1] + place[1]))
+        expected = expected_here(task, belief, measured, middle)
+        plan = swing_plan(expected, self.pattern.offset_to_nose_deg, self.options.turn_rate_deg_s, None)
+        return Swinging(plan, lambda _: math.inf)
 
     def _turn(
         self,
+        task: Localization,
         belief: GridBelief,
         measured: Sequence[BearingMeasured],
         here: tuple[float, float],
@@ -261,7 +238,7 @@ class FieldStudy:
         because = must_be_whole(self.spec, measured, attempt)
         if not self.spec.sensor.sector_turns or because is not None:
             return whole_turn(because or "first")
-        return planned_turn(expected_here(self.task, belief, measured, here))
+        return planned_turn(expected_here(task, belief, measured, here))
 
     def measured(
         self, field: Field, here: tuple[float, float], number: int, plan: TurnPlan

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, cast, get_args
 
 import typer
 
 from backend.cli.edge import print_json, remark
+from backend.cli.field_legs import Listens
 from backend.cli.field_missions import PLANNERS, FieldMission, FieldOptions, FieldStudy, FieldSummary, Turns, summary
 from planner.study.errors import StudyError
 
@@ -17,6 +19,7 @@ HEADING_SIGMA_DEG = 4.0
 COLUMNS = (
     "planner",
     "turns",
+    "listens",
     "missions",
     "time, s",
     "90 %",
@@ -28,31 +31,45 @@ COLUMNS = (
 )
 
 
+@dataclass(frozen=True, slots=True)
+class FieldWays:
+    """What the rows differ in: each planner with each way of turning and of listening."""
+
+    planners: Sequence[str]
+    turns: Sequence[str]
+    listens: Sequence[str]
+
+
 def field_rows(
-    planners: Sequence[str],
-    turns: Sequence[str],
+    ways: FieldWays,
     runs: int,
     seed: int,
     turn_rate_deg_s: float,
     compass_sd_deg: float,
     json_: bool,
 ) -> None:
-    """Flies and prints one row a planner and way of turning. seed: of the first mission. Raises StudyError for what
+    """Flies and prints the rows. seed: of the first mission. Raises StudyError for what
     cannot be flown."""
     if not 5.0 <= turn_rate_deg_s <= 90.0:
         raise StudyError(f"--turn-rate must be 5 to 90 degrees a second, got {turn_rate_deg_s:g}")
     if not 0.0 <= compass_sd_deg <= 60.0:
         raise StudyError(f"--compass-sd must be 0 to 60 degrees, got {compass_sd_deg:g}")
-    for planner in planners:
+    for planner in ways.planners:
         if planner not in PLANNERS:
             raise StudyError(f"field-world has no planner {planner!r}: choose one of {', '.join(PLANNERS)}")
-    for way in turns:
-        if way not in get_args(Turns):
-            raise StudyError(f"--turns must be one of {', '.join(get_args(Turns))}, got {way!r}")
+    for option, given, known in (("turns", ways.turns, Turns), ("listens", ways.listens, Listens)):
+        for way in given:
+            if way not in get_args(known):
+                raise StudyError(f"--{option} must be one of {', '.join(get_args(known))}, got {way!r}")
     rows = [
-        _row(FieldOptions(planner, cast(Turns, way), turn_rate_deg_s, compass_sd_deg), runs, seed)
-        for planner in planners
-        for way in turns
+        _row(
+            FieldOptions(planner, cast(Turns, turns), cast(Listens, listens), turn_rate_deg_s, compass_sd_deg),
+            runs,
+            seed,
+        )
+        for planner in ways.planners
+        for turns in ways.turns
+        for listens in ways.listens
     ]
     if json_:
         answers = [row.as_json() for row in rows]
@@ -69,7 +86,7 @@ def _row(options: FieldOptions, runs: int, seed: int) -> FieldSummary:
     for number in range(seed, seed + runs):
         flown.append(study.fly(number))
         if len(flown) % REMARK_EVERY == 0 and len(flown) < runs:
-            remark(f"{options.planner}, {options.turns}: {len(flown)} of {runs} missions")
+            remark(f"{options.planner}, {options.turns}, {options.listens}: {len(flown)} of {runs} missions")
     return summary(options, flown)
 
 
@@ -82,6 +99,7 @@ def _cells(row: FieldSummary) -> tuple[str, ...]:
     return (
         row.options.planner,
         row.options.turns,
+        row.options.listens,
         str(row.missions),
         f"{row.time_s:.1f} ± {row.time_ci95_s:.1f}",
         f"{row.time_90_s:.0f}",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from backend.cli.edge import print_json, remark, stop, words_of
-from backend.cli.field_study import field_rows
+from backend.cli.field_study import FieldWays, field_rows
 from backend.cli.truth import truth
 from planner.options import STUDY
 from planner.study.errors import StudyError
@@ -86,6 +86,10 @@ def run(
     scheduler: Annotated[
         str | None, typer.Option(help="Address of a Dask scheduler to fly on instead, for instance tcp://host:8786.")
     ] = None,
+    listens: Annotated[
+        list[str] | None,
+        typer.Option(help="field-world: places; way, between them too; or way_swinging, the nose swinging."),
+    ] = None,
     turns: Annotated[
         list[str] | None,
         typer.Option(help="field-world: whole, or sector: only as far as needed. May be repeated: a row each."),
@@ -105,7 +109,7 @@ def run(
     """
     if scenario is not None and FIELD_WORLD in scenario:
         try:
-            _field_world(scenario, planner, turns, runs, seed, turn_rate, compass_sd, json_)
+            _field_world(scenario, planner, turns, listens, runs, seed, turn_rate, compass_sd, json_)
         except (PlannerError, StudyError) as error:
             _refuse(error, json_)
         return
@@ -180,6 +184,7 @@ def _field_world(
     scenario: list[str],
     planner: list[str] | None,
     turns: list[str] | None,
+    listens: list[str] | None,
     runs: int,
     seed: list[int] | None,
     turn_rate: float,
@@ -191,7 +196,8 @@ def _field_world(
         raise StudyError("field-world is flown by itself, from one --seed on: give --scenario and --seed once")
     if runs < 1 or seeds[0] < 0:
         raise StudyError(f"--runs must be 1 or more and --seed 0 or more, got {runs} and {seeds[0]}")
-    field_rows(planner or ["crossfix"], turns or ["whole"], runs, seeds[0], turn_rate, compass_sd, json_)
+    ways = FieldWays(planner or ["crossfix"], turns or ["whole"], listens or ["places"])
+    field_rows(ways, runs, seeds[0], turn_rate, compass_sd, json_)
 
 
 def _refuse(error: object, json_: bool) -> NoReturn:

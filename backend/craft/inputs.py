@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from backend.commands import ForCraft
 from backend.craft.effects import TimerName
 from backend.craft.safety import BatteryStage
-from backend.events import AntennaFact, BearingMeasured, CheckFact, GroundFact, Link, PlanChosen, SweepRejected
+from backend.events import (
+    AntennaFact,
+    BearingMeasured,
+    CheckFact,
+    GroundFact,
+    HeardOnTheWay,
+    Link,
+    PlanChosen,
+    SweepRejected,
+)
 from backend.reasons import Reason
 from backend.reasons.flight import StepName, WatchBroke, Way
 from backend.spec import LearnedErrors, Place
@@ -82,11 +91,12 @@ class NothingToPlan:
 
 @dataclass(frozen=True, slots=True)
 class Arrived:
-    """distance_m: how far from where it was sent to. flight_time_s: by the mission's clock."""
+    """distance_m: how far from where it was sent to. flight_time_s: by the mission's clock. heard: on the way."""
 
     place: Place
     distance_m: float
     flight_time_s: float
+    heard: tuple[HeardOnTheWay, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

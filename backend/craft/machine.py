@@ -55,6 +55,7 @@ from backend.craft.step import (
     clear_failsafe,
     clear_said,
     come_down,
+    doubt_place,
     go_home,
     go_on,
     hold,
@@ -92,8 +93,6 @@ from backend.search.state import SearchState
 
 MOST_REFUSED = 3
 """This number of places in a row that the autopilot will not fly to is no accident."""
-UNSURE_PLACE_M = 5.0
-"""A vehicle that hovers stays within this; what it reports beyond is an alert."""
 
 
 def transition(
@@ -219,6 +218,8 @@ def _finished(step: CraftStep, given: InTheAir | Planned | NothingToPlan | Arriv
                     flight_time_s=given.flight_time_s,
                 )
             )
+            for leg in given.heard:
+                step.record(leg)
             measure(step, flight.Proceeds("flight"))
         case SweepTaken(results=results) if craft.phase == "measuring":
             _swept(step, results)
@@ -233,7 +234,7 @@ def _swept(step: CraftStep, results: tuple[BearingMeasured | SweepRejected, ...]
     for result in (*bearings, *rejected):
         step.record(result)
     for bearing in bearings[:1]:
-        _doubt_place(step, bearing)
+        doubt_place(step, bearing)
     because: Reason = rejected[0].reason if rejected else flight.Proceeds("bearing")
     if bearings:
         go_on(step, flight.Proceeds("bearing"))
@@ -241,13 +242,6 @@ def _swept(step: CraftStep, results: tuple[BearingMeasured | SweepRejected, ...]
         go_on(step, NoUsableBearing(because, again=False))
     else:
         measure(step, NoUsableBearing(because, again=True))
-
-
-def _doubt_place(step: CraftStep, bearing: BearingMeasured) -> None:
-    if bearing.drift_m > UNSURE_PLACE_M:
-        alert(step, "place", "caution", flight.PlaceUnsure(bearing.place_number, bearing.drift_m))
-    else:
-        clear_alerts(step, "place")
 
 
 def _place_not_taken(step: CraftStep, given: PlaceNotTaken) -> None:

@@ -13,6 +13,7 @@ from hardware.fence import MissionNets, Nets, NetsPlan
 from hardware.ports import Clock, Vehicle, VehicleUnreachable
 from hardware.readings import Announcement, HeadingSample, Place, PreflightCheck, ReturnAltitude, Telemetry
 from hardware.reasons.vehicle_news import ParameterSet
+from hardware.yaw_swings import Swinging
 from planner.reason import Reason
 
 log = logging.getLogger("crossfix.mission")
@@ -147,9 +148,14 @@ class ReconnectingVehicle:
         await self._present().take_off(altitude_relative_m)
 
     async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+        self,
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
     ) -> None:
-        await self._present().goto(place, altitude_amsl_m, speed_m_s, heading_deg)
+        await self._present().goto(place, altitude_amsl_m, speed_m_s, heading_deg, swinging)
 
     async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
         await self._present().turn(rate_deg_s, by_deg)

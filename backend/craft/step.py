@@ -24,6 +24,7 @@ from backend.craft.state import CraftState, evolve
 from backend.events import (
     AlertCleared,
     AlertRaised,
+    BearingMeasured,
     Event,
     FlightStarted,
     OrderDone,
@@ -37,7 +38,7 @@ from backend.events import (
     Topic,
 )
 from backend.reasons import Instead, NotDone, NotLocalized, OrderedAgainLater, PlacesUsedUp, Reason
-from backend.reasons.flight import OrderName, Way
+from backend.reasons.flight import OrderName, PlaceUnsure, Way
 from backend.reasons.safety import BATTERY
 from backend.reasons.search import Localized
 from backend.search.effects import Record
@@ -50,6 +51,8 @@ OF_THE_FLIGHT: tuple[Topic, ...] = (
     "order", "autopilot", "clock",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
+UNSURE_PLACE_M = 5.0
+"""A vehicle that hovers stays within this; what it reports beyond is an alert."""
 MOST_SAID = 5
 """Alerts of the autopilot's own words at a time."""
 
@@ -254,6 +257,14 @@ def _raise(step: CraftStep, topic: Topic, level: Literal["warning", "caution", "
     craft_id = step.craft.craft_id
     alert_id = f"{craft_id}-{topic}-{step.craft.alerts_raised + 1}"
     step.record(AlertRaised(alert_id=alert_id, topic=topic, level=level, reason=reason, craft_id=craft_id))
+
+
+def doubt_place(step: CraftStep, bearing: BearingMeasured) -> None:
+    """A caution while the newest bearing's place is not sure."""
+    if bearing.drift_m > UNSURE_PLACE_M:
+        alert(step, "place", "caution", PlaceUnsure(bearing.place_number, bearing.drift_m))
+    else:
+        clear_alerts(step, "place")
 
 
 def tell_said(step: CraftStep, reason: AutopilotWords) -> None:

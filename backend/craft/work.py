@@ -16,6 +16,7 @@ from backend.craft import effects, inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.listening import Listening
 from backend.craft.measuring import Measured, measure
+from backend.craft.on_the_way import heard_on_leg, nose_swung, swings_of
 from backend.craft.recent_telemetry import recent
 from backend.craft.safety import Limits, Situation, place_vetoes, start_vetoes, turn_vetoes
 from backend.events import PlanChosen
@@ -28,6 +29,7 @@ from backend.search.task import SearchTask
 from backend.spec import Place
 from hardware.ports import PlaceRefused, VehicleError
 from hardware.reasons.vehicle import PositionLost
+from hardware.yaw_swings import Swinging, Swings
 from planner.types import PlannerError
 
 LEVEL_M = 1.0
@@ -72,16 +74,19 @@ class Work:
     async def fly(self, effect: effects.FlyTo) -> inputs.CraftInput:
         """Arrived, or WorkVetoed: asked again before each leg of the way round no-fly zones. Raises VehicleError."""
         began_s, speed = self.equipment.clock.now(), self.task.mission.flight.speed_m_s
+        begin = self.equipment.vehicle.telemetry().position
         end = self.task.frame.to_enu(effect.place)
         plan = await asyncio.to_thread(self._turn_at, end, 1)
         facing_deg = None if plan is None or plan.begin_deg is None else self._nose_deg(plan.begin_deg)
         try:
-            way = await asyncio.to_thread(self._way, end)
+            way: list[tuple[float, float]] = await asyncio.to_thread(self._way, end)
         except PlannerError as error:
             return inputs.WorkVetoed((carried(error.reason),))
         await recent(self.situation)
-        altitude, levelled = self.level_altitude(way), False
+        altitude, levelled, swung = self.level_altitude(way), False, list[Swings]()
         while way:
+            facing = facing_deg if len(way) == 1 else None
+            swinging = await asyncio.to_thread(self._swings, way[0], facing)
             vetoes = place_vetoes(self.limits, await recent(self.situation), effect.place, altitude, way[:-1])
             if vetoes:
                 return inputs.WorkVetoed(vetoes)
@@ -92,12 +97,19 @@ class Work:
             (east, north), *way = way
             leg = self.task.frame.to_geo(east, north) if way else effect.place
             try:
-                await self.equipment.vehicle.goto(leg, altitude, speed, None if way else facing_deg)
+                await self.equipment.vehicle.goto(leg, altitude, speed, facing, swinging)
             except PlaceRefused as error:
                 return inputs.PlaceNotTaken(effect.place, carried(error.reason))
+            if swinging is not None and swinging.swings.swinging_s > 0.0:
+                swung.append(swinging.swings)
         here = self._here()
         off = math.dist(self.task.frame.to_enu(here), end)
-        return inputs.Arrived(here, off, self.equipment.clock.now() - began_s)
+        flown_s = self.equipment.clock.now() - began_s
+        mission, search, nose = self.task.mission, self.search(), tuple(map(nose_swung, swung))
+        heard = await heard_on_leg(
+            self.equipment, mission, self.listening, search, effect.place_number, begin, began_s, nose
+        )
+        return inputs.Arrived(here, off, flown_s, heard)
 
     async def measure(self, effect: effects.Measure) -> inputs.CraftInput:
         """SweepTaken, a rejected sweep too, or WorkVetoed. Raises HardwareError."""
@@ -134,6 +146,15 @@ class Work:
         if task.belief(bearings) is None:
             return whole_turn("unsure")
         return planned_turn(expected_here(task, task.planning_belief(bearings), emitter.bearings, place))
+
+    def _swings(self, end: tuple[float, float], facing_deg: float | None) -> Swinging | None:
+        """Of the nose on the way to `end` (m ENU), by what is known now."""
+        position = self.situation().telemetry.position
+        if position is None or not self.task.mission.sensor.swing_on_the_way:
+            return None
+        leg = [self.task.frame.to_enu(position), end]
+        offset_deg = self.equipment.pattern.offset_to_nose_deg
+        return swings_of(self.task, self.search(), self.limits, offset_deg, leg, facing_deg)
 
     def _nose_deg(self, antenna_deg: float) -> float:
         return (antenna_deg - self.equipment.pattern.offset_to_nose_deg) % 360.0

@@ -68,6 +68,7 @@ from backend.events.mission import (
     ServerRestarted,
 )
 from backend.events.nets import NetsNoted, NetsPutBack
+from backend.events.on_the_way import HeardOnTheWay, StretchFact
 from backend.events.orders import (
     AbortOrdered,
     AuthorFact,
@@ -129,6 +130,7 @@ __all__ = [
     "Fact",
     "FlightStarted",
     "GroundFact",
+    "HeardOnTheWay",
     "HoldOrdered",
     "Holder",
     "ImportSource",
@@ -172,6 +174,7 @@ __all__ = [
     "SilenceFact",
     "SourceErrorsFact",
     "SourceMuteChanged",
+    "StretchFact",
     "Supposition",
     "SweepRejected",
     "SweepStarted",
@@ -183,7 +186,7 @@ __all__ = [
     "VariantKept",
 ]
 
-FORM = 3
+FORM = 4
 """Of these facts, as they are stored and exported; a field more is a form more. See backend.store.upgrade."""
 
 ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
@@ -206,6 +209,7 @@ Event = Annotated[
     | PlaceReached
     | SweepStarted
     | SweepRejected
+    | HeardOnTheWay
     | BearingMeasured
     | RecordingImported
     | BearingExcluded

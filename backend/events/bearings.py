@@ -165,7 +165,7 @@ class RecordingImported(Fact):
 
 class BearingExcluded(Fact):
     """An operator's wish: the belief is folded again without it, the bearing stays in the journal. heard False: it is
-    a turn that heard nothing, and bearing_id that of its sweep."""
+    a turn that heard nothing, and bearing_id that of its sweep; or, on_the_way, a leg, and bearing_id its leg_id."""
 
     kind: Literal["bearing_excluded"] = "bearing_excluded"
     emitter_id: Id
@@ -174,6 +174,7 @@ class BearingExcluded(Fact):
     reason: str
     """In the operator's own words."""
     heard: bool = True
+    on_the_way: bool = False
 
 
 class BearingIncluded(Fact):

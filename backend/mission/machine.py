@@ -44,6 +44,7 @@ from backend.events import (
     ControlKept,
     CraftSource,
     Event,
+    HeardOnTheWay,
     MissionStarted,
     ServerRestarted,
     SourceMuteChanged,
@@ -128,9 +129,10 @@ class _Transition:
 
 
 def _outruns_beliefs(fact: Event) -> bool:
-    """A turn that heard nothing counts where it says what it listened to."""
+    """A turn that heard nothing counts where it says what it listened to, a leg where a stretch of it says anything."""
     silent = isinstance(fact, SweepRejected) and fact.silence is not None
-    return silent or isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted)
+    on_the_way = isinstance(fact, HeardOnTheWay) and fact.tells
+    return silent or on_the_way or isinstance(fact, BearingMeasured | Recount | AreaChanged | MissionStarted)
 
 
 def _changes_the_search(fact: Event) -> bool:

@@ -65,7 +65,7 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
         state = evolve(state, fact, first_s or 0.0)
     known = state.emitters[emitter.emitter_id]
     task = localization(mission, home, emitter.emitter_id)
-    belief, _ = task.after(known.unheard).belief_fact(known.bearings)
+    belief, _ = task.after(known.unheard, known.legs).belief_fact(known.bearings)
     return Import((*facts, belief), ())
 
 

@@ -65,7 +65,7 @@ def lesson(mission_id: str, task: SearchTask, search: SearchState, craft_id: str
     if (found := found_at(emitter)) is not None:
         said = _lesson_at(mission_id, localized, taken(most), source, found)
     else:
-        said = _lesson(mission_id, localized.after(emitter.unheard), emitter.bearings, source)
+        said = _lesson(mission_id, localized.after(emitter.unheard, emitter.legs), emitter.bearings, source)
     return None if said is None else replace(said, taken_off_deg=task.mission.sensor.bearing_offset_deg)
 
 

@@ -21,6 +21,7 @@ from backend.events import (
     BeliefUpdated,
     CraftSource,
     EstimateFact,
+    HeardOnTheWay,
     ImportSource,
     PersonSource,
     SourceErrorsFact,
@@ -32,7 +33,9 @@ from backend.search import area
 from backend.search.area import EDGE_TOLERANCE_M
 from backend.search.errors import MissionInputError
 from backend.search.given import motion_of, prior_of
+from backend.search.silences import EAST_DEG, silences_of
 from backend.search.source_priors import priors_of
+from backend.search.way_facts import stretches_of
 from backend.spec import MissionSpec
 from hardware.direction_finding.circle import LikelihoodError, SweepLikelihood
 from hardware.direction_finding.heading_offset import HeadingOffset, heading_offset
@@ -40,12 +43,13 @@ from hardware.frame import LocalFrame, angle_to_compass, compass_to_angle
 from hardware.readings import Place
 from planner.belief.estimate import confidence_region
 from planner.belief.grid import GridBelief, digest, prior_belief, update
-from planner.belief.joint import JointBelief, joint_prior, update_joint
+from planner.belief.joint import JointBelief, heard_on_the_way, joint_prior, update_joint
 from planner.belief.joint import unheard as silent_prior
 from planner.belief.moving import Assumed, MovingBelief, moving_prior, predicted, update_moving
 from planner.belief.verdict import verdict
 from planner.detection import Silence
 from planner.movement import DRIFTING_S, PURPOSEFUL_S, WALKING_S, Movement
+from planner.on_the_way import Stretch
 from planner.types import (
     Bearing,
     Estimate,
@@ -64,8 +68,6 @@ DOUBT = 0.05
 FOLDS_KEPT = 64
 """Beliefs (of a few hundred kB) that the next bearing, and each question about a place, goes on from."""
 
-EAST_DEG = 90
-"""Clockwise from north."""
 
 PERSISTENCE_S = {"animal": WALKING_S, "walking": PURPOSEFUL_S, "drifting": DRIFTING_S}
 """By the kind of movement."""
@@ -79,7 +81,7 @@ class Localization:
     """The task of localizing one emitter, in the planner's words. The frame's origin is the home at the start.
 
     beside: adds to a belief by this emitter's own bearings what others tell of their source's errors
-    (backend.search.together); None: nothing.
+    (backend.search.together); None: nothing. stretches: of way on which it was heard.
     """
 
     mission: MissionSpec
@@ -89,10 +91,14 @@ class Localization:
     prior: GridBelief
     rule: LocalizationRule
     beside: Callable[[GridBelief], GridBelief] | None = None
+    stretches: tuple[Stretch, ...] = ()
     _folds: dict[tuple[Bearing, ...], GridBelief] = field(
         default_factory=dict[tuple[Bearing, ...], GridBelief], repr=False, compare=False
     )
     _after: dict[tuple[Silence, ...], Localization] = field(default_factory=lambda: {}, repr=False, compare=False)
+    _heard: dict[tuple[tuple[Bearing, ...], tuple[Stretch, ...]], GridBelief] = field(
+        default_factory=lambda: {}, repr=False, compare=False
+    )
 
     @property
     def home(self) -> Place:
@@ -116,27 +122,23 @@ class Localization:
         """An emitter that moves is followed by peaks and sigmas: its Kalman filters know no other densities."""
         return isinstance(self.prior, JointBelief) and self.mission.sensor.sweep_evidence == "whole"
 
-    def after(self, unheard: Sequence[SweepRejected]) -> Localization:
-        """The same after turns that heard nothing of the emitter: what they tell is known before any bearing."""
-        told = tuple(self._silence(one) for one in unheard if one.silence is not None)
-        if not told or not isinstance(self.prior, JointBelief):
+    def after(self, unheard: Sequence[SweepRejected], legs: Sequence[HeardOnTheWay] = ()) -> Localization:
+        """The same after turns that heard nothing of the emitter, known before any bearing, and legs on which it was
+        heard, weighed after all of them."""
+        if not isinstance(self.prior, JointBelief):
             return self
-        found = self._after.get(told)
+        silences = silences_of(unheard, self.frame)
+        stretches = tuple(s for leg in legs for s in stretches_of(leg, self.frame, source_name(leg.source)))
+        if not silences and stretches == self.stretches:
+            return self
+        found = self if not silences else self._after.get(silences)
         if found is None:
-            found = replace(self, prior=silent_prior(self.prior, told), beside=None, _folds={}, _after={})
+            found = replace(
+                self, prior=silent_prior(self.prior, silences), beside=None, _folds={}, _after={}, _heard={}
+            )
             self._after.clear()
-            self._after[told] = found
-        return replace(found, problem=self.problem, beside=self.beside)
-
-    def _silence(self, fact: SweepRejected) -> Silence:
-        """Sectors and pattern turn the other way round in the planner's frame."""
-        said = fact.silence
-        assert said is not None
-        east, north = self.frame.to_enu(fact.place)
-        count = len(said.chances)
-        sectors = (round(count * EAST_DEG / 360.0) - np.arange(count)) % count
-        gain = np.array(said.gain_db)[-np.arange(len(said.gain_db)) % len(said.gain_db)]
-        return Silence(east, north, tuple(np.array(said.chances)[sectors].tolist()), tuple(gain.tolist()))
+            self._after[silences] = found
+        return replace(found, problem=self.problem, beside=self.beside, stretches=stretches)
 
     def without(self, closed: BaseGeometry | None) -> Localization:
         """The same with these places (m ENU) closed to the planner, too."""
@@ -166,10 +168,23 @@ class Localization:
     def belief(self, bearings: Sequence[Bearing]) -> GridBelief | None:
         """None when the bearings have no common point and none may be an outlier."""
         try:
-            found = self._folded(tuple(bearings))
+            found = self._with_legs(tuple(bearings))
         except InconsistentBearings:
             return None
         return found if self.beside is None else self.beside(found)
+
+    def _with_legs(self, bearings: tuple[Bearing, ...]) -> GridBelief:
+        """The bearings' belief, and what was heard on the way."""
+        folded = self._folded(bearings)
+        if not self.stretches or not isinstance(folded, JointBelief):
+            return folded
+        found = self._heard.get((bearings, self.stretches))
+        if found is None:
+            found = heard_on_the_way(folded, self.stretches)
+            if len(self._heard) >= FOLDS_KEPT:
+                self._heard.clear()
+            self._heard[bearings, self.stretches] = found
+        return found
 
     def _folded(self, bearings: tuple[Bearing, ...]) -> GridBelief:
         """Bearing by bearing, in order: what was folded for one bearing less is gone on from."""
@@ -204,7 +219,7 @@ class Localization:
         if found is not None:
             return found
         doubted = (replace(b, outlier_probability=max(b.outlier_probability, DOUBT)) for b in bearings)
-        return self._folded(tuple(doubted))
+        return self._with_legs(tuple(doubted))
 
     def belief_fact(self, measured: Sequence[BearingMeasured]) -> tuple[BeliefUpdated, GridBelief]:
         """The fact to record, and the belief to show and to plan with."""
@@ -266,8 +281,7 @@ class Localization:
 
     def place(self, x: float, y: float) -> Place:
         """(x, y) in m ENU to degrees."""
-        point = self.frame.to_geo(x, y)
-        return point
+        return self.frame.to_geo(x, y)
 
 
 def localization(

@@ -19,6 +19,7 @@ from backend.events import (
     BearingMeasured,
     BeliefUpdated,
     Event,
+    HeardOnTheWay,
     ImportSource,
     MissionDeleted,
     MissionEdited,
@@ -196,7 +197,7 @@ def _change_area(step: SearchStep, given: SearchOrdered, command: ChangeArea) ->
 
 
 def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) -> None:
-    found = step.state.bearing(command.bearing_id) or step.state.silent(command.bearing_id)
+    found = step.state.told(command.bearing_id)
     if found is None:
         raise Refused(refusals.NoSuchBearing())
     emitter, left_out = found
@@ -211,13 +212,14 @@ def _exclude(step: SearchStep, given: SearchOrdered, command: ExcludeBearing) ->
             by=given.by,
             reason=command.reason,
             heard=isinstance(left_out, BearingMeasured),
+            on_the_way=isinstance(left_out, HeardOnTheWay),
         )
     )
     update_stale_beliefs(step)
 
 
 def _include(step: SearchStep, given: SearchOrdered, command: IncludeBearing) -> None:
-    found = step.state.bearing(command.bearing_id) or step.state.silent(command.bearing_id)
+    found = step.state.told(command.bearing_id)
     if found is None:
         raise Refused(refusals.NoSuchBearing())
     emitter, _ = found

@@ -19,6 +19,7 @@ from backend.events import (
     CheckFact,
     Event,
     GroundFact,
+    HeardOnTheWay,
     MissionDeleted,
     MissionDrafted,
     MissionEdited,
@@ -63,7 +64,7 @@ class EmitterState:
     of its source's errors, and the area is the same. folded_again: a server before a restart did, and the same bearings
     are being folded again. localized_at_s: UTC epoch seconds at which the belief was first good enough, None when it is
     not. truth: what was told last of where it really was; no belief about it depends on that. silences: turns that
-    heard nothing of it and tell something by that.
+    heard nothing of it and tell something by that. ways: legs on which it was listened to, those that told nothing too.
     """
 
     emitter_id: str
@@ -78,6 +79,7 @@ class EmitterState:
     claimed_at_s: float | None = None
     truth: TruthNoted | None = None
     silences: tuple[SweepRejected, ...] = ()
+    ways: tuple[HeardOnTheWay, ...] = ()
 
     @property
     def bearings(self) -> tuple[BearingMeasured, ...]:
@@ -90,13 +92,21 @@ class EmitterState:
 
     @property
     def bearing_ids(self) -> tuple[str, ...]:
-        """Of those that count, in the order in which they are folded, and of the turns that heard nothing."""
-        return (*(b.bearing_id for b in self.bearings), *(one.sweep_id for one in self.unheard))
+        """Of those that count, in the order in which they are folded, of the turns that heard nothing, and of legs."""
+        beside = (*(one.sweep_id for one in self.unheard), *(leg.leg_id for leg in self.legs))
+        return (*(b.bearing_id for b in self.bearings), *beside)
 
     @property
     def unheard(self) -> tuple[SweepRejected, ...]:
         """The turns that heard nothing of it and count, in their order."""
         return tuple(one for one in self.silences if one.sweep_id not in self.excluded)
+
+    @property
+    def legs(self) -> tuple[HeardOnTheWay, ...]:
+        """Those that tell something and count, in their order."""
+        return tuple(
+            leg for leg in self.ways if leg.tells and leg.leg_id not in self.excluded and leg.source not in self.muted
+        )
 
     @property
     def localized(self) -> bool:
@@ -229,6 +239,18 @@ class SearchState:
                     return emitter, one
         return None
 
+    def way(self, leg_id: str) -> tuple[EmitterState, HeardOnTheWay] | None:
+        """A leg that was listened on, also one that was excluded; None for an unknown id."""
+        for emitter in self.emitters.values():
+            for leg in emitter.ways:
+                if leg.leg_id == leg_id:
+                    return emitter, leg
+        return None
+
+    def told(self, told_id: str) -> tuple[EmitterState, BearingMeasured | SweepRejected | HeardOnTheWay] | None:
+        """What an operator may leave out: a bearing, a turn that heard nothing, or a leg."""
+        return self.bearing(told_id) or self.silent(told_id) or self.way(told_id)
+
     def bearing(self, bearing_id: str) -> tuple[EmitterState, BearingMeasured] | None:
         """Also one that was excluded; None for an unknown id."""
         for emitter in self.emitters.values():
@@ -261,7 +283,9 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
             return replace(state, place_number=max(state.place_number, number))
         case SweepRejected(silence=None):
             return state
-        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated() | SweepRejected():
+        case BearingMeasured() | BearingExcluded() | BearingIncluded() | BeliefUpdated():
+            return _evolve_emitter(state, event, at_s)
+        case SweepRejected() | HeardOnTheWay():
             return _evolve_emitter(state, event, at_s)
         case SourceMuteChanged(source=source, muted=muted):
             sources = state.muted.union((source,)) if muted else state.muted.difference((source,))
@@ -290,7 +314,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
 
 def _evolve_emitter(
     state: SearchState,
-    event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected,
+    event: BearingMeasured | BearingExcluded | BearingIncluded | BeliefUpdated | SweepRejected | HeardOnTheWay,
     at_s: float,
 ) -> SearchState:
     emitter = state.emitters.get(event.emitter_id, EmitterState(event.emitter_id, muted=state.muted))
@@ -301,6 +325,9 @@ def _evolve_emitter(
             number = max(number, event.place_number)
         case SweepRejected():
             emitter = _outrun(replace(emitter, silences=(*emitter.silences, event)))
+        case HeardOnTheWay(tells=tells):
+            emitter = replace(emitter, ways=(*emitter.ways, event))
+            emitter = _outrun(emitter) if tells else emitter
         case BearingExcluded(bearing_id=bearing_id):
             emitter = _recounted(replace(emitter, excluded=emitter.excluded | {bearing_id}))
         case BearingIncluded(bearing_id=bearing_id):
@@ -314,9 +341,11 @@ def _evolve_emitter(
     match event:
         case BeliefUpdated():
             return evolved
+        case HeardOnTheWay() if not event.tells:
+            return evolved
         case BearingExcluded() | BearingIncluded():
             return _told(evolved, emitter.emitter_id, _recounted)
-        case BearingMeasured() | SweepRejected():
+        case BearingMeasured() | SweepRejected() | HeardOnTheWay():
             return _told(evolved, emitter.emitter_id, _outrun)
 
 
@@ -336,8 +365,9 @@ def _muting(emitter: EmitterState, source: BearingSource, muted: frozenset[Beari
 
 
 def _tells(emitter: EmitterState, source: BearingSource) -> bool:
-    """Whether the source took a bearing of it that was not left out by itself."""
-    return any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
+    """Whether the source took a bearing of it that was not left out by itself, or heard it on the way."""
+    took = any(b.source == source and b.bearing_id not in emitter.excluded for b in emitter.measured)
+    return took or any(leg.source == source and leg.tells for leg in emitter.ways)
 
 
 def _recounted(emitter: EmitterState) -> EmitterState:

@@ -1,7 +1,7 @@
 """The localizations of a search's emitters, each with all that the search's facts tell of it besides its own bearings.
 
-These are the turns that heard nothing of it and, where a source's errors are shared (planner.belief.shared_source), the
-other emitters' bearings.
+These are the turns that heard nothing of it, the legs on which it was heard and, where a source's errors are shared
+(planner.belief.shared_source), the other emitters' bearings.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
 from planner.belief.shared_source import with_shared_errors
 from planner.detection import Silence
+from planner.on_the_way import Stretch
 from planner.types import Bearing
 
 SHARED_KEPT = 8
 """Times at which the beliefs about all emitters are kept: a turn's bearings come together, and beliefs one by one."""
 
-Known = tuple[str, tuple[Silence, ...], tuple[Bearing, ...]]
+Known = tuple[str, tuple[Silence, ...], tuple[Bearing, ...], tuple[Stretch, ...]]
 """What the belief about an emitter stands on by itself."""
 
 
@@ -39,17 +40,22 @@ class Together:
 
     def about(self, search: SearchState, emitter_id: str) -> Localization:
         """Of one emitter as things stand."""
-        task = self.emitters[emitter_id].after(search.emitters[emitter_id].unheard)
+        task = self._alone(search, emitter_id)
         sharing = task.mission.sharing
         if emitter_id not in sharing:
             return task
         others = {
-            other: (self.emitters[other].after(search.emitters[other].unheard), search.emitters[other].bearings)
+            other: (self._alone(search, other), search.emitters[other].bearings)
             for other in sharing
             if other != emitter_id and search.emitters[other].bearings
         }
         heard = {other: (one, one.planner_bearings(facts)) for other, (one, facts) in others.items()}
         return replace(task, beside=partial(self._shared, emitter_id, heard))
+
+    def _alone(self, search: SearchState, emitter_id: str) -> Localization:
+        """By what was measured of this emitter alone."""
+        known = search.emitters[emitter_id]
+        return self.emitters[emitter_id].after(known.unheard, known.legs)
 
     def _shared(
         self, emitter_id: str, others: Mapping[str, tuple[Localization, tuple[Bearing, ...]]], alone: GridBelief
@@ -64,7 +70,7 @@ class Together:
                 if isinstance(belief, JointBelief):
                     beliefs[other] = belief
             names = sorted(beliefs)
-            key = tuple((name, beliefs[name].silences, beliefs[name].folded) for name in names)
+            key = tuple((name, one.silences, one.folded, one.stretches) for name in names for one in (beliefs[name],))
             found = self._found.get(key)
             if found is None:
                 found = dict(zip(names, with_shared_errors([beliefs[name] for name in names]), strict=True))

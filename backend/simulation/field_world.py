@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from hardware.direction_finding.antenna import AntennaPattern
 from hardware.frame import LocalFrame
-from hardware.readings import Sweep
+from hardware.readings import HeadingSample, PowerSample, Sweep
 from hardware.sim.propagation import Fading
 from hardware.sim.turn import turn_once
 from hardware.sim.turntable import simulated_antenna
-from hardware.sim.world import Emitter, RadioLink, Reflector, World
+from hardware.sim.world import Emitter, Pose, RadioLink, Reflector, World
 
 FREQUENCY_HZ = 868_300_000.0
 HEIGHT_M = 40.0
@@ -34,6 +34,8 @@ AROUND_M = 60.0
 SCATTERED = Fading(rician_k_db=9.0, coherence_s=0.35)
 SHADOW_DB, SHADOW_M = 5.0, 20.0
 WAVES = 64
+REPORTED_M = 0.1
+"""By how much reported places jitter, standard deviation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,18 +72,41 @@ class Field:
     def sweep(self, x: float, y: float, number: int, rate_deg_s: float, start_deg: float | None = None) -> Sweep:
         """A whole turn at (x, y), from this heading of the nose on, None: from any. What chance there is depends on the
         seed and the number of the sweep alone."""
-        direct, *echoes = (shadow.db(x, y) for shadow in self.shadows)
-        world, rng = self.world, np.random.default_rng([self.seed, number, 2])
-        emitter = dataclasses.replace(world.emitters[0], power_dbm=world.emitters[0].power_dbm - direct)
-        reflectors = tuple(
-            dataclasses.replace(one, loss_db=one.loss_db + lost - direct)
-            for one, lost in zip(world.reflectors, echoes, strict=True)
-        )
-        here = dataclasses.replace(world, emitters=(emitter,), reflectors=reflectors, seed=int(rng.integers(2**31)))
+        rng = np.random.default_rng([self.seed, number, 2])
+        here = dataclasses.replace(self._at(x, y), seed=int(rng.integers(2**31)))
         place, any_deg = self.frame.to_geo(x, y), float(rng.uniform(0.0, 360.0))
         link = RadioLink(here, FREQUENCY_HZ)
         begin_deg = any_deg if start_deg is None else start_deg
         return turn_once(link, place, HEIGHT_M, start_deg=begin_deg, rate_deg_s=rate_deg_s)
+
+    def along(
+        self, x: NDArray[np.float64], y: NDArray[np.float64], heading_deg: NDArray[np.float64], rate_hz: float, leg: int
+    ) -> tuple[list[PowerSample], list[HeadingSample]]:
+        """What a craft hears and reports at (n,) places, m ENU, and headings of its nose, `rate_hz` a second. Chance
+        depends on the seed and the number of the leg alone."""
+        rng = np.random.default_rng([self.seed, leg, 4])
+        link = RadioLink(dataclasses.replace(self.world, seed=int(rng.integers(2**31))), FREQUENCY_HZ)
+        samples: list[PowerSample] = []
+        headings: list[HeadingSample] = []
+        for k, (east, north, nose) in enumerate(zip(x, y, heading_deg, strict=True)):
+            at_s, place = k / rate_hz, self.frame.to_geo(float(east), float(north))
+            link.world = self._at(float(east), float(north))
+            power_dbm, clipped = link.power_dbm(at_s, Pose(place, HEIGHT_M, float(nose)))
+            samples.append(PowerSample(at_s, FREQUENCY_HZ, power_dbm, link.world.front_end.noise_dbm, clipped))
+            off = REPORTED_M * rng.standard_normal(2)
+            told = self.frame.to_geo(float(east + off[0]), float(north + off[1]))
+            headings.append(HeadingSample(at_s, float(nose) % 360.0, told))
+        return samples, headings
+
+    def _at(self, x: float, y: float) -> World:
+        """The world as it is shadowed at (x, y)."""
+        direct, *echoes = (shadow.db(x, y) for shadow in self.shadows)
+        emitter = dataclasses.replace(self.world.emitters[0], power_dbm=self.world.emitters[0].power_dbm - direct)
+        reflectors = tuple(
+            dataclasses.replace(one, loss_db=one.loss_db + lost - direct)
+            for one, lost in zip(self.world.reflectors, echoes, strict=True)
+        )
+        return dataclasses.replace(self.world, emitters=(emitter,), reflectors=reflectors)
 
 
 def antenna_pattern() -> AntennaPattern:

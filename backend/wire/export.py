@@ -161,6 +161,16 @@ def _emitter_features(
         yield {"type": "Point", "coordinates": here}, {"what": "place", **properties}
         ray = {"type": "LineString", "coordinates": [here, _ray_end(fact, target)]}
         yield ray, {"what": "bearing", **properties}
+    for leg in emitter.ways:
+        for stretch in leg.stretches:
+            line = [[place.lon, place.lat] for place in (stretch.begin, stretch.end)]
+            properties = {
+                "name": f"heard on the way to place {leg.place_number}",
+                **several,
+                "turned_deg": stretch.turned_deg,
+                "excluded": leg not in emitter.legs,
+            }
+            yield {"type": "LineString", "coordinates": line}, {"what": "listened", **properties}
     if belief is not None and estimate is not None:
         properties = {
             **several,

@@ -370,7 +370,8 @@ class WhatIfAntenna(Model):
 class WhatIf(Model):
     """`belief`, `plan`: as the events would have been; plan None: `no_plan` says why. `frame_base64`: the belief's
     binary frame (lite). `sweeps`: what each would have told, in order, without those left out or not taken then.
-    `antenna`: through which the sweeps were taken again, None: they were not."""
+    `antenna`: through which the sweeps were taken again, None: they were not. `legs_left_out`: legs that were heard in
+    flight, and not through that antenna: their samples were not kept."""
 
     steps: list[WhatIfStep]
     belief: BeliefUpdated
@@ -379,3 +380,4 @@ class WhatIf(Model):
     frame_base64: str
     sweeps: list[SweepFact]
     antenna: WhatIfAntenna | None
+    legs_left_out: int = 0

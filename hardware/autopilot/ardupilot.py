@@ -89,6 +89,7 @@ ARDUPILOT = Dialect(
     steering=_order("steering_mode", GUIDED),
     reposition_sets_speed=False,
     turn_methods=("condition_yaw", "condition_yaw", "condition_yaw_absolute"),
+    yaw_on_the_way="condition_yaw",
     prearm_has_present_bit=True,
     nets=NetRules(
         parameters=("FENCE_TYPE", "FENCE_ALT_MAX", "FENCE_RADIUS", "FENCE_OPTIONS", "FENCE_ENABLE"),

@@ -85,6 +85,7 @@ class NetRules:
 
 
 TurnMethod = Literal["yaw_steps", "nudged_yaw_steps", "condition_yaw", "condition_yaw_absolute"]
+YawMethod = Literal["reposition", "condition_yaw"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +106,8 @@ class Dialect:
     before_take_off: the mode to be in for arming and take-off. take_off: (altitude relative m, altitude AMSL m) ->
     command. take_off_modes: raw modes while and after climbing; settled_modes: those that mean the climb has ended.
     reposition_sets_speed: DO_REPOSITION's param1 is obeyed; else DO_CHANGE_SPEED follows it.
-    turn_methods: ways to turn a full circle, in the order in which to try them.
+    turn_methods: ways to turn a full circle, in the order in which to try them. yaw_on_the_way: how the nose is sent
+    somewhere while it flies to a place.
     prearm_has_present_bit: SYS_STATUS says by a bit of its own whether it reports the checks before arming; else their
     health bit alone counts.
     return_altitudes: the parameter that the autopilot's own return climbs to and its unit in metres, newest name first.
@@ -133,6 +135,7 @@ class Dialect:
     steering: ModeOrder
     reposition_sets_speed: bool
     turn_methods: tuple[TurnMethod, ...]
+    yaw_on_the_way: YawMethod
     prearm_has_present_bit: bool
     nets: NetRules
     failsafes: tuple[FailsafeRule, ...]

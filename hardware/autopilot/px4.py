@@ -95,6 +95,7 @@ PX4 = Dialect(
     steering=_order("steering_mode", _LOITER, HOLD),
     reposition_sets_speed=True,
     turn_methods=("yaw_steps", "yaw_steps", "nudged_yaw_steps"),
+    yaw_on_the_way="reposition",
     prearm_has_present_bit=False,
     nets=NetRules(
         parameters=("GF_ACTION", "GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"),

@@ -8,7 +8,7 @@ from typing import Literal
 
 from hardware.authority import Authority, OperatorTookControl
 from hardware.autopilot.dialect import FailsafeRule
-from hardware.autopilot.flight import fly_to
+from hardware.autopilot.flight import Flight, fly_to
 from hardware.autopilot.guidance import Guidance
 from hardware.autopilot.hold import hold
 from hardware.autopilot.monitor import Monitor
@@ -26,6 +26,7 @@ from hardware.reasons.vehicle import (
     StandsDisarmed,
 )
 from hardware.reasons.vehicle_news import OperatorInControl, ParameterSet
+from hardware.yaw_swings import Swinging
 
 SAID_LATELY_S = 40.0
 """ArduPilot says every 30 s why it does not arm."""
@@ -169,16 +170,21 @@ class MavsdkVehicle:
             await take_off(self._guidance, altitude_relative_m)
 
     async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+        self,
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
     ) -> None:
         """Fly there and return once telemetry says arrived and settled. heading_deg: of the nose by then, if the
-        autopilot can; None: as it likes."""
+        autopilot can; None: as it likes. swinging: what the nose does until it is near."""
         numbers = (place.lat, place.lon, altitude_amsl_m, speed_m_s, heading_deg or 0.0)
         off_earth = abs(place.lat) > 90 or abs(place.lon) > 180
         if not all(map(math.isfinite, numbers)) or speed_m_s <= 0 or off_earth:
             raise ValueError(f"No place to fly to: {place}, {altitude_amsl_m} m AMSL at {speed_m_s} m/s.")
         self._refuse_on_ground()
-        await fly_to(self._guidance, place, altitude_amsl_m, speed_m_s, heading_deg)
+        await fly_to(self._guidance, Flight(place, altitude_amsl_m, speed_m_s, heading_deg, swinging))
 
     async def turn(self, rate_deg_s: float, by_deg: float = 360.0) -> None:
         """Turn on the spot, clockwise, negative: counterclockwise; returns once telemetry has seen all of it."""

@@ -4,6 +4,7 @@ from hardware.reasons.antenna import AntennaReason
 from hardware.reasons.channels import ChannelReason
 from hardware.reasons.iq_recording import IqRecordingReason
 from hardware.reasons.nets import NetsReason
+from hardware.reasons.on_the_way import NoseSwung, ReadingsLeftOut
 from hardware.reasons.pattern import PatternReason
 from hardware.reasons.payload import PayloadReason
 from hardware.reasons.payload_link import PayloadLinkReason
@@ -25,6 +26,8 @@ HardwareReason = (
     | SimulationReason
     | SweepReason
     | SweepRemark
+    | NoseSwung
+    | ReadingsLeftOut
     | AntennaReason
     | PatternReason
     | TableReason

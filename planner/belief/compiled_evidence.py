@@ -9,12 +9,16 @@ instead of sums of logarithms, and brought back into range every few bearings.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from planner import sweep_likelihood
+from planner.belief.compiled_on_the_way import SUMS, coarse_nodes, weigh_stretches
 from planner.belief.evidence import Evidence, Sightings
 from planner.belief.source_errors import Nodes
 from planner.compiling import SOURCES, allocating, entry, jit
+from planner.on_the_way import Stretch, heard
 from planner.types import FloatArray
 
 RESCALED_EVERY = 8
@@ -25,7 +29,9 @@ FAR_SIGMAS = 9.0
 """Where a Gaussian counts as zero: beside an outlier's share nothing of it is left in 64 bits."""
 
 
-def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evidence:
+def evidence(
+    x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()
+) -> Evidence:
     """See evidence.evidence."""
     cells = len(x)
     out = Evidence(
@@ -38,6 +44,7 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
         np.ascontiguousarray(x, dtype=float),
         np.ascontiguousarray(y, dtype=float),
         seen,
+        heard(stretches, nodes.scale),
         _profiles(seen, nodes),
         nodes.bias,
         nodes.spacing,
@@ -49,7 +56,14 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
     return out
 
 
-def node_evidence(x: FloatArray, y: FloatArray, log: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+def node_evidence(
+    x: FloatArray,
+    y: FloatArray,
+    log: FloatArray,
+    seen: Sightings,
+    nodes: Nodes,
+    stretches: Sequence[Stretch] = (),
+) -> FloatArray:
     """See evidence.node_evidence."""
     found = np.empty((len(nodes.scale) * len(nodes.rate), len(nodes.bias)))
     top = _node_evidence(
@@ -57,6 +71,7 @@ def node_evidence(x: FloatArray, y: FloatArray, log: FloatArray, seen: Sightings
         np.ascontiguousarray(y, dtype=float),
         np.ascontiguousarray(log, dtype=float),
         seen,
+        heard(stretches, nodes.scale),
         _profiles(seen, nodes),
         nodes.bias,
         nodes.spacing,
@@ -242,13 +257,15 @@ def _prepared(seen, profiles, bias, spacing, scale, rate):
 
 
 @entry
-def _evidence(x, y, seen, profiles, bias, spacing, scale, rate, prior, out):
+def _evidence(x, y, seen, on_way, profiles, bias, spacing, scale, rate, prior, out):
     _ = SOURCES
     reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
     table, density, past = np.empty_like(prior), np.empty(len(bias)), np.empty(most_peaks)
+    sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
     for c in range(len(x)):
         table[:] = prior
         log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+        weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
         out.log[c] = outliers + log + np.log(_sums(table, len(rate), out.bias[c], out.scale[c], out.rate[c]))
 
 
@@ -267,17 +284,19 @@ def _scaled(found, factor):
 
 
 @entry
-def _node_evidence(x, y, before, seen, profiles, bias, spacing, scale, rate, found):
+def _node_evidence(x, y, before, seen, on_way, profiles, bias, spacing, scale, rate, found):
     """found (k e, b): the sum over the cells, without a factor whose logarithm is returned."""
     _ = SOURCES
     reach, odds, tables, shares, outliers, most_peaks = _prepared(seen, profiles, bias, spacing, scale, rate)
     table, density, past = np.empty_like(found), np.empty(len(bias)), np.empty(most_peaks)
+    sums = np.empty((SUMS, coarse_nodes(len(bias), spacing)))
     found[:] = 0.0
     top = before[0]
     for c in range(len(x)):
         table[:] = 1.0
         log = before[c]
         log += _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
+        weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
         if log > top:
             _scaled(found, np.exp(top - log))
             top = log

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from planner import sweep_likelihood
+from planner import on_the_way, sweep_likelihood
 from planner.belief.source_errors import Nodes
 from planner.observation import expected_bearing, wrap
+from planner.on_the_way import Stretch
 from planner.types import Bearing, FloatArray, IntArray
 
 
@@ -57,7 +58,7 @@ def sightings(bearings: Sequence[Bearing]) -> Sightings:
     first = np.concatenate([[0], np.cumsum([len(some) for some in peaks])]).astype(np.int64)
     weights = [w / sum(v for _, v in some) for some in peaks for _, w in some]
     profiles = [sweep_likelihood.density(b.profile, SMALLEST_SIGMA) for b in bearings if b.profile]
-    has = np.array([bool(b.profile) for b in bearings])
+    has = np.array([bool(b.profile) for b in bearings], dtype=bool)
     whole = np.where(has, np.cumsum(has) - 1, -1).astype(np.int64)
     sigma = np.array([max(b.sigma, SMALLEST_SIGMA) for b in bearings], dtype=float)
     sigma[has] = [sweep_likelihood.width(profile) for profile in profiles]
@@ -73,14 +74,17 @@ def sightings(bearings: Sequence[Bearing]) -> Sightings:
     )
 
 
-def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evidence:
-    """Of the places (c,) x, y, m ENU.
+def evidence(
+    x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch] = ()
+) -> Evidence:
+    """Of the places (c,) x, y, m ENU. stretches: what the same source heard in flight.
 
     p(z | x) = sum_b,s,e p(b) p(s) p(e) prod_i [(1 - e) sum_j w_ij N(z_ij - dir_i(x) - b; 0, (s sigma_i)^2) + e / 2 pi],
     each bearing's density in units of that at the peak of N(0, sigma_i^2). Of a sweep's profile p_i instead of the sum
-    over peaks (1 - e) p_i,s(dir_i(x) + b), its scale as in planner.sweep_likelihood.
+    over peaks (1 - e) p_i,s(dir_i(x) + b), its scale as in planner.sweep_likelihood. A stretch's factor is
+    (1 - e) f_s(x, b) / c_s + e, as in planner.on_the_way: with one indicator of an outlier for all of its readings.
     """
-    log = _by_node(x, y, seen, nodes) + np.log(nodes.weight)
+    log = _by_node(x, y, seen, nodes, stretches) + np.log(nodes.weight)
     top = log.max(axis=(1, 2, 3), keepdims=True)
     mass = np.exp(log - top)
     whole = mass.sum(axis=(1, 2, 3))
@@ -90,15 +94,23 @@ def evidence(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Evi
     )
 
 
-def node_evidence(x: FloatArray, y: FloatArray, log: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+def node_evidence(
+    x: FloatArray,
+    y: FloatArray,
+    log: FloatArray,
+    seen: Sightings,
+    nodes: Nodes,
+    stretches: Sequence[Stretch] = (),
+) -> FloatArray:
     """(k, e, b) logarithm of sum_x p(x) p(z | x, s, e, b), p(x) given by its logarithm (c,): what the bearings of an
-    emitter tell of their source's errors. The nodes' weights do not count; in the units of `evidence`."""
-    by_place = _by_node(x, y, seen, nodes) + log[:, None, None, None]
+    emitter, and the stretches on which it was heard, tell of their source's errors. The nodes' weights do not count; in
+    the units of `evidence`."""
+    by_place = _by_node(x, y, seen, nodes, stretches) + log[:, None, None, None]
     top = by_place.max(axis=0)
     return np.log(np.exp(by_place - top).sum(axis=0)) + top
 
 
-def _by_node(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> FloatArray:
+def _by_node(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes, stretches: Sequence[Stretch]) -> FloatArray:
     """(c, k, e, b) logarithm of p(z | x, s, e, b)."""
     log = np.zeros((len(x), len(nodes.scale), len(nodes.rate), len(nodes.bias)))
     for i in range(len(seen.x)):
@@ -115,4 +127,7 @@ def _by_node(x: FloatArray, y: FloatArray, seen: Sightings, nodes: Nodes) -> Flo
                 density += seen.weight[j] * np.exp(-0.5 * (error[:, None, :] / sigma[:, None]) ** 2)
         honest = (1.0 - nodes.rate[:, None]) * density[:, :, None, :] / nodes.scale[:, None, None]
         log += np.log(honest + nodes.rate[:, None] * seen.sigma[i] / np.sqrt(2.0 * np.pi))
+    for ratio in on_the_way.log_ratio(x, y, on_the_way.heard(stretches, nodes.scale), nodes.bias, nodes.scale):
+        honest = (1.0 - nodes.rate[:, None]) * np.exp(ratio)[:, :, None, :]
+        log += np.log(honest + nodes.rate[:, None])
     return log

@@ -10,6 +10,7 @@ A joint belief is a `GridBelief`: planner, forecast and page take its mass over 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 
@@ -30,6 +31,7 @@ from planner.belief.grid import (
 from planner.belief.source_errors import ErrorPrior, Nodes, SourceErrors, nodes
 from planner.detection import DetectionModel, Silence, silence_log_likelihood
 from planner.observation import validate_bearing
+from planner.on_the_way import Stretch
 from planner.types import Bearing, FloatArray, IntArray, Problem
 
 UNKNOWN_SOURCE = ErrorPrior()
@@ -44,6 +46,8 @@ MANY_CELLS = 128 * 128
 COARSEST_CELLS = 12
 """Cells along the longer side of the 95 % region that any grid must have."""
 DEEPEST_REFINEMENT = 16
+LEAST_DENSITY = 1e-7
+"""16 nats: what a leg says is two or three."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,8 +55,8 @@ class JointBelief(GridBelief):
     """prior: (ny, nx) mass of the cells before any bearing. folded: all bearings so far. priors: what was known of a
     source's errors before the flight, by source; otherwise: of a source that is not named there. errors: what is known
     now of the errors of each source that took a bearing. silences: turns in which the emitter was not heard, and by
-    what model of detection they count. narrowed: the errors of sources of which bearings of other emitters tell, too,
-    on the grid on which they do (planner.belief.shared_source).
+    what model of detection they count. stretches: of way on which it was heard. narrowed: the errors of sources of
+    which bearings of other emitters tell, too, on the grid on which they do (planner.belief.shared_source).
     """
 
     prior: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
@@ -62,6 +66,7 @@ class JointBelief(GridBelief):
     errors: tuple[SourceErrors, ...] = ()
     silences: tuple[Silence, ...] = ()
     detection: DetectionModel = UNKNOWN_EMITTER
+    stretches: tuple[Stretch, ...] = ()
     narrowed: Mapping[str, Nodes] = field(default_factory=dict[str, Nodes])
 
     def errors_of(self, source: str) -> SourceErrors | None:
@@ -71,6 +76,10 @@ class JointBelief(GridBelief):
     def prior_of(self, source: str) -> ErrorPrior:
         """What was known of a source's errors before the flight."""
         return self.priors.get(source, self.otherwise)
+
+    def stretches_of(self, source: str) -> tuple[Stretch, ...]:
+        """What it heard in flight."""
+        return tuple(one for one in self.stretches if one.source == source)
 
 
 def joint_prior(
@@ -90,6 +99,17 @@ def unheard(
 ) -> JointBelief:
     """The belief, so far without bearings, with these silences instead of those that it had."""
     return _weighed(replace(belief, silences=tuple(silences), detection=detection), compiled_evidence.evidence)
+
+
+def heard_on_the_way(belief: JointBelief, stretches: Sequence[Stretch]) -> JointBelief:
+    """The belief with these stretches instead of those that it had, cropped and refined as after a bearing.
+
+    Last of all: cells that the bearings leave LEAST_DENSITY of the likeliest are looked at no more.
+    """
+    if not belief.folded:
+        return _weighed(replace(belief, stretches=tuple(stretches)), compiled_evidence.evidence)
+    prior = np.where(belief.density > LEAST_DENSITY * belief.density.max(), belief.prior, 0.0)
+    return settled(replace(belief, stretches=tuple(stretches), prior=prior))
 
 
 def log_prior(belief: JointBelief, rows: IntArray, columns: IntArray, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -119,6 +139,14 @@ def settled(belief: JointBelief, weighing: Weighing = compiled_evidence.evidence
     return belief
 
 
+def error_nodes(prior: ErrorPrior, taken: Sequence[Bearing], stretches: Sequence[Stretch]) -> Nodes:
+    """Of a source that took these bearings and heard these stretches, at least one of either. A stretch tells of the
+    bias at most what a bearing of its sigma does, and asks for nodes by that."""
+    sharpest = float(min([*sightings(taken).sigma, *(one.sigma for one in stretches)]))
+    as_bearings = sum((sharpest / one.sigma) ** 2 for one in stretches)
+    return nodes(prior, sharpest, len(taken) + math.ceil(as_bearings))
+
+
 def by_source(bearings: Sequence[Bearing]) -> dict[str, list[Bearing]]:
     """In the order in which the sources first took one."""
     found: dict[str, list[Bearing]] = {}
@@ -127,17 +155,23 @@ def by_source(bearings: Sequence[Bearing]) -> dict[str, list[Bearing]]:
     return found
 
 
+def told_by(belief: JointBelief) -> dict[str, list[Bearing]]:
+    """The bearings of each source that took one or heard a stretch."""
+    unheard_of: dict[str, list[Bearing]] = {one.source: [] for one in belief.stretches}
+    return {**unheard_of, **by_source(belief.folded)}
+
+
 def places_besides(belief: JointBelief, source: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """x, y (c,) of the cells, m ENU, and the logarithm of their probability by all that is known but this source's
-    bearings."""
+    """x, y (c,) of the cells, m ENU, and the logarithm of their probability by all that is known but what this source
+    told."""
     rows, columns = np.nonzero(belief.prior)
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
     log = log_prior(belief, rows, columns, x, y)
-    for other, taken in by_source(belief.folded).items():
+    for other, taken in told_by(belief).items():
         if other != source:
-            seen = sightings(taken)
-            grid = nodes(belief.prior_of(other), float(seen.sigma.min()), len(taken))
-            log = log + compiled_evidence.evidence(x, y, seen, grid).log
+            stretches = belief.stretches_of(other)
+            grid = error_nodes(belief.prior_of(other), taken, stretches)
+            log = log + compiled_evidence.evidence(x, y, sightings(taken), grid, stretches).log
     return x, y, log
 
 
@@ -147,12 +181,13 @@ def _weighed(belief: JointBelief, weighing: Weighing) -> JointBelief:
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
     log = log_prior(belief, rows, columns, x, y)
     found: list[tuple[str, int, ErrorPrior, Nodes, Evidence]] = []
-    for source, taken in by_source(belief.folded).items():
-        seen, prior = sightings(taken), belief.prior_of(source)
-        grid = belief.narrowed.get(source) or nodes(prior, float(seen.sigma.min()), len(taken))
-        weighed = weighing(x, y, seen, grid)
+    for source, taken in told_by(belief).items():
+        prior, stretches = belief.prior_of(source), belief.stretches_of(source)
+        grid = belief.narrowed.get(source) or error_nodes(prior, taken, stretches)
+        weighed = weighing(x, y, sightings(taken), grid, stretches)
         log = log + weighed.log
-        found.append((source, len(taken), prior, grid, weighed))
+        if taken:
+            found.append((source, len(taken), prior, grid, weighed))
     mass = np.exp(log - log.max())
     mass /= mass.sum()
     density = np.zeros_like(belief.prior)

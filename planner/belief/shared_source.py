@@ -6,10 +6,11 @@ emitters are independent, so that exactly
     P(x_1 .. x_m, n) = p(n) prod_i p(x_i) L_i(x_i, n),    P(x_i, n) = p(x_i) L_i(x_i, n) p(n) prod_{j != i} Z_j(n),
     Z_j(n) = sum_x p(x) L_j(x, n).
 
-What an emitter gets leaves its own evidence out, so nothing counts twice. Only one source is shared. Two that
-heard the same two emitters would hang together through both places: then prod_j Z_j needs the grid of both errors at
-once, and taken one by one what either tells would come back to it by way of the other. The errors of all other sources
-are estimated for each emitter by itself, within Z_j too, and no less is known of them than before.
+What an emitter gets leaves its own evidence out, so nothing counts twice. L holds the stretches of way on which the
+source heard the emitter, too. Only one source is shared. Two that heard the same two emitters would hang together
+through both places: then prod_j Z_j needs the grid of both errors at once, and taken one by one what either tells would
+come back to it by way of the other. The errors of all other sources are estimated for each emitter by itself, within
+Z_j too, and no less is known of them than before.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ import numpy as np
 
 from planner.belief import compiled_evidence
 from planner.belief.evidence import sightings
-from planner.belief.joint import JointBelief, by_source, places_besides, settled
-from planner.belief.source_errors import Nodes, nodes
+from planner.belief.joint import JointBelief, by_source, error_nodes, places_besides, settled
+from planner.belief.source_errors import Nodes
 from planner.types import Bearing, FloatArray
 
 
@@ -59,14 +60,16 @@ def common_source(beliefs: Sequence[JointBelief]) -> str | None:
 def common_nodes(beliefs: Sequence[JointBelief], source: str) -> Nodes:
     """The errors' grid, as fine as all the source's bearings together ask for."""
     taken = [bearing for belief in beliefs for bearing in _of(belief, source)]
-    return nodes(beliefs[0].prior_of(source), float(sightings(taken).sigma.min()), len(taken))
+    stretches = [stretch for belief in beliefs for stretch in belief.stretches_of(source)]
+    return error_nodes(beliefs[0].prior_of(source), taken, stretches)
 
 
 def node_evidence(belief: JointBelief, source: str, grid: Nodes) -> FloatArray:
     """(k, e, b) log Z(n), up to a constant: what this emitter's bearings tell of the source's errors. belief: with its
     own bearings alone."""
     x, y, log = places_besides(belief, source)
-    return compiled_evidence.node_evidence(x, y, log, sightings(_of(belief, source)), grid)
+    seen = sightings(_of(belief, source))
+    return compiled_evidence.node_evidence(x, y, log, seen, grid, belief.stretches_of(source))
 
 
 def told_by_others(evidence: Sequence[FloatArray]) -> tuple[FloatArray, ...]:

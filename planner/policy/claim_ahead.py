@@ -172,7 +172,8 @@ def biased_cells(problem: Problem, belief: JointBelief, now: Estimate, errors: S
     kept = whole > NEGLIGIBLE
     middle_x, middle_y, whole = middle_x[kept], middle_y[kept], whole[kept] / whole[kept].sum()
     grid = errors.nodes
-    weighed = compiled_evidence.evidence(middle_x, middle_y, sightings(belief.folded), grid)
+    stretches = belief.stretches_of(errors.source)
+    weighed = compiled_evidence.evidence(middle_x, middle_y, sightings(belief.folded), grid, stretches)
     bias = weighed.bias @ grid.bias
     own = max(problem.sigma**2 - errors.bias_sd**2, SMALLEST_SIGMA**2)
     variance = own + np.maximum(weighed.bias @ grid.bias**2 - bias**2, 0.0)

@@ -22,6 +22,7 @@ from backend.spec import FlightSpec
 from backend.terrain import Terrain
 from hardware.frame import LocalFrame
 from hardware.readings import Place, Telemetry
+from hardware.yaw_swings import Swinging
 
 STEP_M = 2.0
 CLIMB_M_S = 3.0
@@ -104,7 +105,12 @@ class WanderingVehicle:
         self._held(*self.frame.to_enu(self._here()), home + altitude_relative_m)
 
     async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+        self,
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
     ) -> None:
         """Sideways and upwards at once, each at its own speed, as autopilots do."""
         (x0, y0), (x1, y1) = self.frame.to_enu(self._here()), self.frame.to_enu(place)

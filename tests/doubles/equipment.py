@@ -34,6 +34,7 @@ from hardware.reasons.receiver import ReceiverUnplugged
 from hardware.reasons.sweep import NoDirection
 from hardware.reasons.vehicle import ManoeuvreName, ModeNotCommanded, NoAutopilotAnswers, VehicleSilent
 from hardware.reasons.vehicle_news import OperatorInControl, TakenOver
+from hardware.yaw_swings import Swinging
 
 HOME = Place(50.0, 7.0)
 FRAME = LocalFrame(HOME)
@@ -190,7 +191,12 @@ class FlatVehicle:
         self.shows("HOLD")
 
     async def goto(
-        self, place: Place, altitude_amsl_m: float, speed_m_s: float, heading_deg: float | None = None
+        self,
+        place: Place,
+        altitude_amsl_m: float,
+        speed_m_s: float,
+        heading_deg: float | None = None,
+        swinging: Swinging | None = None,
     ) -> None:
         self._order("goto", "flight")
         await self._takes(2.0)

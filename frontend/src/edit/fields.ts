@@ -82,6 +82,8 @@ export const sections: readonly Section[] = [
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),
       { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns" },
+      { kind: "switch", path: "sensor.listen_on_the_way", label: "edit.listenOnTheWay", more: true },
+      { kind: "switch", path: "sensor.swing_on_the_way", label: "edit.swingOnTheWay", more: true },
       number("sensor.whole_turns", "edit.wholeTurns", "places", { min: 1, max: 20, step: 1, more: true }),
       {
         kind: "choice",

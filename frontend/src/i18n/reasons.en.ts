@@ -432,6 +432,14 @@ export const reasonsEn: ReasonTable = {
     text: "The sweep looks like that of another antenna than {name}: its main lobe alone was used.",
     remedy: "Check which antenna is mounted, and measure its pattern: crossfix calibrate.",
   },
+  nose_swung: {
+    text: "The nose swung {swung|time|times} by {amplitude_deg} to either side, at {rate_deg_s} and at most {lag_deg} behind{end?near_place=, until the place was near|not_ours=, until another order or another pilot|lags=. Then it did not follow, and was left alone|refused=. Then the autopilot refused, and it was left alone}.",
+    remedy: "",
+  },
+  readings_left_out: {
+    text: "{readings|reading|readings} left out: {why?heading_unknown=no heading was heard near enough in time|place_unknown=the vehicle was not sure where it was|overdriven=the receiver was overdriven|at_noise=hardly above the noise|beside_a_turn=beside a place where it turns and listens anyway|pointed_one_way=the antenna pointed one way, so their power shows no direction|too_many=other stretches of the way turned further}.",
+    remedy: "",
+  },
   antenna_agrees: {
     text: "Measured {measured_deg}, true {true_deg}, quality {quality:2}.",
     remedy: "",

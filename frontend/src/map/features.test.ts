@@ -4,7 +4,7 @@ import { missionAt } from "../state/mission";
 import { type MissionView, viewOf } from "../state/view";
 import type { MissionEvent } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
-import { excluded, record, someBearing, someBelief, somePlan, someSpec } from "../wire/examples";
+import { excluded, record, someBearing, someBelief, someLeg, somePlan, someSpec } from "../wire/examples";
 import { candidateFeatures, measuredFeatures, planFeatures } from "./features";
 
 const of = (state: MissionView, ...what: string[]) => measuredFeatures(state).features.filter((f) => what.includes(f.properties?.what));
@@ -33,6 +33,16 @@ it("a bearing that was left out has no wedge", () => {
   const state = seen(someBearing(), excluded("b1"));
   expect(of(state, "wedge", "main")).toEqual([]);
   expect(of(state, "excluded")).toHaveLength(1);
+});
+
+it("stretches that were listened on are drawn, faded when their leg was left out", () => {
+  const drawn = of(seen(someLeg({ leg_id: "a" })), "listened");
+  expect(drawn.map((f) => (f.geometry as GeoJSON.LineString).coordinates[0])).toEqual([
+    [7, 50],
+    [7, 50.0002],
+  ]);
+  expect(drawn.map((f) => f.properties?.faded)).toEqual([0, 0]);
+  expect(of(seen(someLeg({ leg_id: "a" }), excluded("a")), "listened").map((f) => f.properties?.faded)).toEqual([1, 1]);
 });
 
 it("the newest rose is the strongest", () => {

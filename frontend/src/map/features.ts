@@ -14,6 +14,7 @@ import type { LonLat } from "../wire/beliefFrame";
 export type Features = GeoJSON.FeatureCollection;
 
 type Bearings = Pick<MissionView, "spec" | "bearings">;
+type Ways = Partial<Pick<MissionView, "ways">>;
 
 export const collection = (features: GeoJSON.Feature[]): Features => ({ type: "FeatureCollection", features });
 
@@ -116,6 +117,12 @@ function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
   });
 }
 
+/** The stretches of way on which something was heard that counts, or counted. */
+const wayFeatures = ({ ways = [] }: Ways): GeoJSON.Feature[] =>
+  ways.flatMap(({ fact, excluded }) =>
+    fact.stretches.map(({ begin, end }) => line([lonLat(begin), lonLat(end)], { what: "listened", faded: excluded ? 1 : 0 })),
+  );
+
 /** The region; once there is a bearing, the expected error as a circle and the estimate: the middle of an area is none. */
 function estimateFeatures({ belief }: Pick<MissionView, "belief">): GeoJSON.Feature[] {
   const estimate = belief?.fact.estimate;
@@ -151,10 +158,11 @@ function truthFeatures({ belief, truth }: Partial<Pick<MissionView, "belief" | "
 
 /** What the sweeps say and what follows, told apart by `what`: one source, so that a new bearing is one upload and one repaint. */
 export const measuredFeatures = (
-  mission: Bearings & Pick<MissionView, "belief"> & Partial<Pick<MissionView, "emitterId" | "truth">>,
+  mission: Bearings & Ways & Pick<MissionView, "belief"> & Partial<Pick<MissionView, "emitterId" | "truth">>,
   emitters: Emitters = new Map(),
 ): Features =>
   collection([
+    ...wayFeatures(mission),
     ...directionFeatures(mission),
     ...roseFeatures(mission),
     ...placeFeatures(mission),

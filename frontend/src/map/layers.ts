@@ -137,6 +137,11 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       paint: { "line-color": colours.path, "line-width": 2, "line-opacity": 0.85 },
       metadata: { switch: "path" },
     },
+    line("listened", "measured", "listened", "bearings", {
+      "line-color": colours.bearingHigh,
+      "line-width": 7,
+      "line-opacity": ["match", ["get", "faded"], 1, 0.12, 0.4],
+    }),
     fill("wedges", "measured", "wedge", "bearings", { "fill-color": quality, "fill-opacity": fading(0.14, 0.05) }),
     line("bearing-halo", "measured", "main", "bearings", { "line-color": colours.halo, "line-width": 4.5, "line-opacity": 0.6 }),
     line("bearings", "measured", "main", "bearings", { "line-color": quality, "line-width": 2.2, "line-opacity": fading(1, 0.6) }),

@@ -1,7 +1,7 @@
 // The newest sweep, or the one picked: plot, bearing, quality, why it was refused, leave it out.
 import { useState } from "preact/hooks";
 import { send } from "../commands/send";
-import { type MessageKey, reasonText, t } from "../i18n";
+import { reasonText, t } from "../i18n";
 import { sourceKey } from "../state/emitter";
 import { sweep as sweepHeard } from "../state/heard";
 import { cursor } from "../state/moment";
@@ -12,6 +12,8 @@ import type { MissionView } from "../state/view";
 import { sourceName } from "../state/words";
 import { formatBearing, formatLength, formatNumber } from "../units/quantities";
 import type { BearingMeasured, BearingSource, SweepProgress, SweepRejected } from "../wire";
+import { CountButton } from "./CountButton";
+import { OnTheWay } from "./OnTheWay";
 import { type PolarData, PolarPlot } from "./PolarPlot";
 import { ProblemNote } from "./ProblemNote";
 
@@ -102,18 +104,6 @@ function mutableOf(source: BearingSource): { of: "person" | "import"; name: stri
     case "person":
       return { of: "person", name: source.name };
   }
-}
-
-/** of: the bearing, or the sweep of a turn that heard nothing. */
-function CountButton({ id, of, leftOut, words }: { id: string; of: string; leftOut: boolean; words: MessageKey }) {
-  const order = leftOut
-    ? ({ kind: "include_bearing", bearing_id: of } as const)
-    : ({ kind: "exclude_bearing", bearing_id: of, reason: "" } as const);
-  return (
-    <button type="button" class="small" data-testid={leftOut ? "include" : "exclude"} onClick={() => void send("sweep", id, order)}>
-      {t(words)}
-    </button>
-  );
 }
 
 /** Whether a bearing counts is an operator's wish, and can be undone. */
@@ -233,6 +223,7 @@ export function SweepPanel() {
       ) : (
         <p class="muted">{t("sweep.none")}</p>
       )}
+      <OnTheWay ways={state.ways} />
     </section>
   );
 }

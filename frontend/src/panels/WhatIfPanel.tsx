@@ -198,6 +198,11 @@ export function WhatIfPanel() {
           {t("whatIf.antenna", { name: shown.answer.antenna.name, offset: formatNumber(shown.answer.antenna.offset_to_nose_deg, 0) })}
         </p>
       )}
+      {shown && shown.answer.legs_left_out > 0 && (
+        <p class="muted" data-testid="what-if-legs">
+          {t("whatIf.legsLeftOut", { count: shown.answer.legs_left_out })}
+        </p>
+      )}
       {shown?.answer.no_plan && <p class="muted">{t("whatIf.noPlan", { reason: reasonText(shown.answer.no_plan) })}</p>}
       <div class="what-if-fields">
         <label>

@@ -12,6 +12,8 @@ export function isMain(event: MissionEvent): boolean {
     case "belief_updated":
     case "order_tried":
       return false;
+    case "heard_on_the_way":
+      return event.readings !== null;
     case "authority_changed":
       return event.by !== null || event.authority.taken_by !== null;
     default:
@@ -25,6 +27,7 @@ export function toneOf(event: MissionEvent): EventTone {
   switch (event.kind) {
     case "bearing_measured":
     case "sweep_rejected":
+    case "heard_on_the_way":
     case "bearing_excluded":
     case "bearing_included":
     case "source_mute_changed":

@@ -3,6 +3,7 @@ import { type MessageKey, personName, reasonText, t } from "../i18n";
 import { formatBearing, formatDuration, formatLength, formatNumber, type UnitSystem } from "../units/quantities";
 import type { BeliefUpdated, Command, EmitterSpec, EventOf, MissionEvent, Recorded } from "../wire";
 import { emitterName } from "./emitterName";
+import { wayWords } from "./wayWords";
 import { authorityWords, checkName, phaseName, sourceName } from "./words";
 
 /** null: the mission by itself. */
@@ -116,6 +117,8 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
         number: event.place_number,
         quality: formatNumber(event.quality, 2),
       });
+    case "heard_on_the_way":
+      return wayWords(event);
     case "antenna_checked":
       return t(event.check.ok ? "event.antenna_ok" : "event.antenna_wrong", { detail: reasonText(event.check.reason) });
     case "recording_imported":
@@ -123,6 +126,7 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
         ? t("event.bearings_imported", { name: event.filename, by: byWords(event.by) })
         : t("event.recording_imported", { name: event.filename, count: event.sweep_ids.length, by: byWords(event.by) });
     case "bearing_excluded":
+      if (event.on_the_way) return t("event.way_excluded", { by: byWords(event.by) });
       if (!event.heard) return t("event.silence_excluded", { by: byWords(event.by) });
       return event.reason
         ? t("event.bearing_excluded", { by: byWords(event.by), reason: event.reason })

@@ -13,6 +13,7 @@ import {
   record,
   someBearing,
   someBelief,
+  someLeg,
   somePlan,
   someReason,
   someSpec,
@@ -112,6 +113,15 @@ describe("the mission as a fold of its events", () => {
     const left = [silent("a"), silent("b"), { ...excluded("b"), heard: false }];
     expect(seen(...left).rejected.map((r) => r.excluded)).toEqual([false, true]);
     expect(seen(...left, included("b")).rejected.map((r) => r.excluded)).toEqual([false, false]);
+  });
+
+  it("marks a leg that was left out, or whose craft is muted, until it counts again", () => {
+    const legs = [someLeg({ leg_id: "a" }), someLeg({ leg_id: "b" })];
+    const counts = (...more: MissionEvent[]) => seen(...legs, ...more).ways.map((way) => !way.excluded);
+    expect(counts()).toEqual([true, true]);
+    expect(counts(excluded("b"))).toEqual([true, false]);
+    expect(counts(excluded("b"), included("b"))).toEqual([true, true]);
+    expect(counts(mute(someLeg().source, true))).toEqual([false, false]);
   });
 
   it("forgets the plan that was vetoed", () => {

@@ -145,6 +145,7 @@ function foldSearch(state: MissionState, { event, at_utc: at, seq }: Recorded): 
 const emitterOf = (event: MissionEvent): string | null => {
   switch (event.kind) {
     case "sweep_rejected":
+    case "heard_on_the_way":
     case "bearing_measured":
     case "bearing_excluded":
     case "bearing_included":

@@ -1,7 +1,7 @@
 // A mission as one craft and one emitter show it: what the panels and the map draw. With one of each that is all of it.
 import type { LinkName, MissionPhase, PlanChosen, Reason, WhatIf } from "../wire";
 import { type CraftState, emptyCraft, type Lost, pilotHas } from "./craft";
-import { type At, type Bearing, type BeliefPoint, type EmitterState, emptyEmitter, type Rejected } from "./emitter";
+import { type At, type Bearing, type BeliefPoint, type EmitterState, emptyEmitter, type Rejected, type Way } from "./emitter";
 import type { MissionState } from "./mission";
 
 export interface Pilot {
@@ -26,6 +26,7 @@ export interface MissionView extends Omit<MissionState, "emitters" | "crafts" | 
   attempt: number;
   bearings: readonly Bearing[];
   rejected: readonly Rejected[];
+  ways: readonly Way[];
   belief: EmitterState["belief"];
   beliefs: readonly BeliefPoint[];
   truth: EmitterState["truth"];

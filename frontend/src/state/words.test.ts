@@ -61,6 +61,22 @@ describe("an event in words", () => {
   });
 });
 
+describe("a flight to a place", () => {
+  const flying = (sensor: Partial<ReturnType<typeof someSpec>["sensor"]>) => {
+    const spec = someSpec();
+    return doing({ kind: "mission_drafted", spec: { ...spec, sensor: { ...spec.sensor, ...sensor } } }, started(), phase("flying"));
+  };
+  const joint = { bearing_errors: "joint" } as const;
+
+  it("says that the nose swings, where it does", () => {
+    const swings = t("state.noseSwings");
+    expect(flying({ ...joint, listen_on_the_way: true, swing_on_the_way: true })).toContain(swings);
+    expect(flying({ ...joint, listen_on_the_way: false, swing_on_the_way: true })).not.toContain(swings);
+    expect(flying({ ...joint, listen_on_the_way: true, swing_on_the_way: false })).not.toContain(swings);
+    expect(flying({ bearing_errors: "independent", listen_on_the_way: true, swing_on_the_way: true })).not.toContain(swings);
+  });
+});
+
 describe("in each language", () => {
   afterEach(() => setLanguage("en"));
 

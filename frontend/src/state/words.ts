@@ -56,14 +56,22 @@ export function authorityWords(authority: Authority, mode: string): string {
   return whoFlies(authority.who, mode, authority.perhaps_failsafe);
 }
 
+/** Whether the nose swings on the way: what the server asks of it, too. */
+function noseSwings(spec: MissionView["spec"]): boolean {
+  if (!spec?.sensor.swing_on_the_way || !spec.sensor.listen_on_the_way) return false;
+  return spec.sensor.bearing_errors === "joint" && spec.emitters.some(({ movement }) => movement.kind === "still");
+}
+
 /** What the mission does, from its events alone: for review, for other languages, before the first status. */
 export function stateWords(mission: MissionView, etaS: number | null): string {
   const number = mission.placeNumber ?? mission.nextPlaceNumber;
   const because = isOver(mission.phase) ? mission.ended?.fact.reason : mission.phaseReason;
   const reason = because ? reasonText(because) : phaseName(mission.phase);
   switch (mission.phase) {
-    case "flying":
-      return etaS === null ? t("state.flying", { number }) : t("state.flyingEta", { number, time: formatDuration(etaS) });
+    case "flying": {
+      const flies = etaS === null ? t("state.flying", { number }) : t("state.flyingEta", { number, time: formatDuration(etaS) });
+      return noseSwings(mission.spec) ? `${flies} · ${t("state.noseSwings")}` : flies;
+    }
     case "planning":
       return t("state.planning", { number: mission.nextPlaceNumber });
     case "measuring":

@@ -116,6 +116,27 @@ export const ended = (outcome: EventOf<"mission_ended">["outcome"], reason: Reas
   mission_time_s: 1,
 });
 
+/** Two stretches of way northward, of which something was heard. */
+export const someLeg = (changes: Partial<EventOf<"heard_on_the_way">> = {}): EventOf<"heard_on_the_way"> => ({
+  kind: "heard_on_the_way",
+  emitter_id: EMITTER,
+  source: { kind: "craft", craft_id: CRAFT },
+  leg_id: "leg",
+  place_number: 2,
+  counted: 120,
+  left_out: [{ code: "readings_left_out", why: "beside_a_turn", readings: 30 }],
+  nose: [],
+  stretches: [
+    { begin: { lat: 50, lon: 7 }, end: { lat: 50.0002, lon: 7 }, turned_deg: 70 },
+    { begin: { lat: 50.0002, lon: 7 }, end: { lat: 50.0004, lon: 7 }, turned_deg: 50.4 },
+  ],
+  origin: { lat: 50, lon: 7 },
+  readings: "packed",
+  gain_db: [0],
+  sigma_deg: 7,
+  ...changes,
+});
+
 export const excluded = (bearingId: string): EventOf<"bearing_excluded"> => ({
   kind: "bearing_excluded",
   emitter_id: EMITTER,
@@ -123,6 +144,7 @@ export const excluded = (bearingId: string): EventOf<"bearing_excluded"> => ({
   by: "operator",
   reason: "",
   heard: true,
+  on_the_way: false,
 });
 
 export const included = (bearingId: string): EventOf<"bearing_included"> => ({

@@ -27,6 +27,7 @@ export type CandidateFact = Schemas["CandidateFact"];
 export type CheckFact = Schemas["CheckFact"];
 export type BearingMeasured = Schemas["BearingMeasured"];
 export type BearingSource = BearingMeasured["source"];
+export type HeardOnTheWay = Schemas["HeardOnTheWay"];
 export type SweepRejected = Schemas["SweepRejected"];
 export type BeliefUpdated = Schemas["BeliefUpdated"];
 export type EstimateFact = Schemas["EstimateFact"];

@@ -8,11 +8,15 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from backend.cli.field_legs import LISTENED_HZ, flown, listened
 from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldMission, FieldOptions, FieldStudy, summary
 from backend.cli.main import app
 from backend.search.sector import planned_turn, whole_turn
 from backend.simulation.field_world import drawn_field
+from hardware.yaw_swings import Swinging, SwingPlan
 from planner.geometry import bounds
+from planner.motion import flight_time, turn_between
+from planner.types import FullMotion
 
 
 def run(*arguments):
@@ -60,6 +64,26 @@ def test_a_sector_is_turned_as_far_as_the_machine_says_and_takes_that_long():
     assert (whole_deg, once) == (360.0, 1)
 
 
+def test_a_leg_is_flown_as_the_movement_model_has_it_and_only_a_turning_antenna_tells():
+    study = FieldStudy.of(FieldOptions(listens="way_swinging"), 4.0)
+    field = drawn_field(5, study.task.frame, bounds(study.task.problem.area), 4.0)
+    here, place = (-100.0, 20.0), (20.0, 80.0)
+    for swings in (False, True):
+        swinging = Swinging(SwingPlan(30.0, 75.0, 30.0), lambda _: 500.0) if swings else None
+        leg = flown(here, place, 0.0, swinging)
+        turning = turn_between(0.0, math.atan2(60.0, 120.0))
+        motion = FullMotion()
+        took_s = float(flight_time(motion, math.dist(here, place), turning)) - motion.constant
+        assert len(leg.x) / LISTENED_HZ == pytest.approx(took_s, abs=0.2)
+        assert (leg.x[0], leg.y[0]) == pytest.approx(here, abs=0.1)
+        assert (leg.x[-1], leg.y[-1]) == pytest.approx(place, abs=1.0)
+        told = listened(field, leg, [here, place], 0, study.spec.sensor, study.pattern)
+        again = listened(field, leg, [here, place], 0, study.spec.sensor, study.pattern)
+        assert told.model_copy(update={"leg_id": again.leg_id}) == again
+        assert told.tells is swings
+        assert swinging is None or (swinging.swings.swung >= 2 and swinging.swings.end == "near_place")
+
+
 def test_a_row_counts_claims_and_bearings_from_afar():
     missions = [
         FLOWN,
@@ -97,6 +121,7 @@ def test_the_command_flies_a_row_a_planner():
         (("--runs", "0"), "--runs"),
         (("--turn-rate", "1"), "--turn-rate"),
         (("--turns", "half"), "--turns"),
+        (("--listens", "never"), "--listens"),
         (("--compass-sd", "-1"), "--compass-sd"),
     ],
 )

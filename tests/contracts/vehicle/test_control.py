@@ -11,6 +11,7 @@ from rig import DEAD_STATION, FLIGHT_COMMANDS, HEIGHT, Rig, ends_with
 from hardware.autopilot.connect import connect_vehicle
 from hardware.ports import NotInControl
 from hardware.reasons.vehicle_news import TakenOver, TakenOverBySticks
+from hardware.yaw_swings import Swinging, SwingPlan
 
 
 async def test_a_pilot_ends_automatic_flight_and_nothing_passes_until_released(rig: Rig) -> None:
@@ -75,6 +76,30 @@ async def test_a_pilots_switch_that_meets_commands_under_way_is_never_undone(rig
         assert (await sim.order("truth"))["mode"] == pilots
         assert vehicle.telemetry().authority.who == "pilot"
         await sim.order("pilot_mode", mode=steered)
+        async with asyncio.timeout(60):
+            while not vehicle.telemetry().authority.given_back:  # noqa: ASYNC110 (heard a moment later)
+                await asyncio.sleep(0.02)
+
+
+async def test_a_pilots_switch_that_meets_swings_of_the_nose_is_never_undone(rig: Rig) -> None:
+    """On a link of half a second each way an order of the nose is nearly always under way."""
+    vehicle, sim = rig.vehicle, rig.sim
+    await rig.airborne()
+    await sim.order("link_delay", seconds=0.5)
+    for after_s, place in ((0.3, rig.place(0.0, 120.0)), (0.8, rig.place(120.0, 0.0)), (1.4, rig.place(0.0, -120.0))):
+        vehicle.take_control()
+        swinging = Swinging(SwingPlan(45.0, 75.0, 30.0), lambda _: 500.0)
+        flight = asyncio.create_task(vehicle.goto(place, rig.amsl(), 5.0, None, swinging))
+        await rig.until(lambda swinging=swinging: swinging.swings.stage == "swinging", 60, "swinging")
+        await rig.clock.sleep(after_s)
+        taken = await sim.order("pilot_mode")
+        await ends_with(flight, NotInControl)
+        assert swinging.swings.end == "not_ours"
+        await rig.clock.sleep(3.0)
+        assert (await sim.order("truth"))["mode"] == taken["mode"]
+        received = (await sim.order("commands", since_s=taken["time_s"] + 2.5))["commands"]
+        assert [number for _, number in received if number in FLIGHT_COMMANDS] == []
+        await sim.order("pilot_mode", mode={"sim-px4": "HOLD", "sim-ardupilot": "GUIDED"}[rig.name])
         async with asyncio.timeout(60):
             while not vehicle.telemetry().authority.given_back:  # noqa: ASYNC110 (heard a moment later)
                 await asyncio.sleep(0.02)

@@ -17,6 +17,7 @@ from hardware.ports import VehicleError, VehicleUnreachable
 from hardware.readings import Place, ReturnAltitude
 from hardware.reasons.preflight import FailsafeParameter
 from hardware.reasons.vehicle_news import TakenOver, TakenOverBySticks
+from hardware.yaw_swings import Swinging, SwingPlan
 
 
 async def test_the_snapshot_says_where_and_how_the_vehicle_is(rig: Rig) -> None:
@@ -141,6 +142,66 @@ async def test_hold_stops_a_flight_and_a_turn_at_any_moment(rig: Rig) -> None:
     assert vehicle.telemetry().mode == "LAND"
     await rig.until(lambda: not vehicle.telemetry().armed, 90, "the landing")
     assert rig.off_by(rig.place(0.0, 20.0)) < 4.0
+
+
+def swings_by(*headings: float, middle_deg: float) -> tuple[float, float]:
+    """The furthest to either side of the middle."""
+    off = [math.remainder(heading - middle_deg, 360.0) for heading in headings]
+    return min(off), max(off)
+
+
+async def test_the_nose_swings_on_the_way_and_the_flight_arrives_as_ever(rig: Rig) -> None:
+    vehicle = rig.vehicle
+    await rig.airborne()
+    place = rig.place(east=0.0, north=140.0)
+    swinging = Swinging(SwingPlan(middle_deg=60.0, amplitude_deg=60.0, rate_deg_s=30.0), lambda _: 500.0)
+    began = rig.clock.now()
+    await vehicle.goto(place, rig.amsl(), 5.0, None, swinging)
+    took = rig.clock.now() - began
+    assert rig.off_by(place) < 2.5
+    assert took < 28.0 + 20.0
+    swings = swinging.swings
+    assert swings.end == "near_place"
+    assert swings.swung >= 3
+    assert 10.0 < swings.rate_deg_s < 60.0
+    assert swings.lag_deg <= 30.0
+    frame = LocalFrame(place)
+    samples = [(s.heading_deg, frame.to_enu(s.position)) for s in vehicle.headings(began) if s.position is not None]
+    on_the_way = [heading for heading, (_, north) in samples if 60.0 < north + 140.0 < 120.0]
+    low, high = swings_by(*on_the_way, middle_deg=60.0)
+    assert -85.0 < low < -40.0
+    assert 40.0 < high < 85.0
+    assert max(abs(east) for _, (east, _) in samples) < 4.0
+    assert vehicle.telemetry().authority.who == "ours"
+    if rig.autopilot is not None:
+        received = (await rig.sim.order("commands", since_s=0.0))["commands"]
+        assert sum(number in (115, 192) for _, number in received) >= 8
+
+
+async def test_hold_stops_the_swings_with_the_flight(rig: Rig) -> None:
+    vehicle = rig.vehicle
+    await rig.airborne()
+    swinging = Swinging(SwingPlan(middle_deg=0.0, amplitude_deg=90.0, rate_deg_s=30.0), lambda _: 500.0)
+    flight = asyncio.create_task(vehicle.goto(rig.place(0.0, 400.0), rig.amsl(), 7.0, None, swinging))
+    await rig.until(lambda: swinging.swings.swung > 0, 60, "swinging")
+    await vehicle.hold()
+    await ends_with(flight, VehicleError, "replaced by the hold")
+    assert swinging.swings.end == "not_ours"
+    since = rig.clock.now() + 1.0
+    await rig.until(lambda: len(vehicle.headings(since)) >= 20, 60, "headings while it hovers")
+    headings = [sample.heading_deg for sample in vehicle.headings(since)]
+    assert max(abs(math.remainder(heading - headings[0], 360.0)) for heading in headings) < 5.0
+
+
+async def test_an_autopilot_that_does_not_turn_its_nose_flies_on_all_the_same(rig: Rig) -> None:
+    vehicle = rig.vehicle
+    await rig.airborne()
+    await rig.sim.order("fault", kind="ignore_yaw", count=1000)
+    place = rig.place(0.0, 120.0)
+    swinging = Swinging(SwingPlan(middle_deg=90.0, amplitude_deg=60.0, rate_deg_s=30.0), lambda _: 500.0)
+    await vehicle.goto(place, rig.amsl(), 5.0, None, swinging)
+    assert rig.off_by(place) < 2.5
+    assert swinging.swings.end == "lags"
 
 
 async def test_on_the_ground_flight_orders_are_refused_in_words(rig: Rig) -> None:

@@ -8,10 +8,11 @@ import pytest
 from planner.belief import compiled_evidence, evidence
 from planner.belief.evidence import sightings
 from planner.belief.grid import digest
-from planner.belief.joint import JointBelief, joint_prior, log_prior, update_joint
+from planner.belief.joint import JointBelief, joint_prior, log_prior, places_besides, update_joint
 from planner.belief.shared_source import common_nodes, common_source, node_evidence, told_by_others, with_shared_errors
 from planner.detection import Silence
 from planner.observation import wrap
+from planner.on_the_way import Stretch
 from planner.types import Bearing, LinearMotion, Peak, Problem
 
 SIGMA = np.deg2rad(5.0)
@@ -226,3 +227,37 @@ def test_silence_about_one_emitter_is_part_of_what_it_tells():
     told = node_evidence(with_it, "craft", grid)
     assert told == pytest.approx(np.log(each_by_node(with_it, "craft", grid).sum(axis=0)), abs=5e-3)
     assert not np.allclose(told, node_evidence(beliefs[0], "craft", grid), atol=1e-3)
+
+
+def stretch(seed, source="craft"):
+    """Readings eastward, the antenna turning by 150 degrees meanwhile, whatever the emitter's direction."""
+    rng = np.random.default_rng(seed)
+    along, turned = np.linspace(0.0, 20.0, 14), np.deg2rad(np.linspace(10.0, 160.0, 14))
+    gain = tuple((-np.minimum(12.0 * (((np.arange(36) + 18) % 36 - 18) / 6.5) ** 2, 15.0)).tolist())
+    power = tuple((-60.0 + 6.0 * np.cos(turned - 1.0 - seed) + rng.standard_normal(14)).tolist())
+    return Stretch(source, tuple(along + 150.0), (-40.0,) * 14, tuple(turned), power, gain, SIGMA)
+
+
+def test_stretches_of_way_tell_of_the_compass_as_bearings_do():
+    rng = np.random.default_rng(3)
+    belief = replace(few_cells(heard(TARGETS[0], rng, 1)), stretches=(stretch(1), stretch(2)))
+    grid = common_nodes([belief], "craft")
+    rows, columns = np.nonzero(belief.prior)
+    x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
+    log = log_prior(belief, rows, columns, x, y)
+    seen = sightings(belief.folded)
+    fast = node_evidence(belief, "craft", grid)
+    plain = evidence.node_evidence(x, y, log, seen, grid, belief.stretches)
+    without = evidence.node_evidence(x, y, log, seen, grid)
+    weight = grid.weight > 1e-6
+    assert (fast - fast.max())[weight] == pytest.approx((plain - plain.max())[weight], abs=0.05)
+    assert np.ptp((plain - without)[weight]) > 0.1
+
+
+def test_a_source_that_was_only_heard_on_the_way_still_tells_of_the_place():
+    rng = np.random.default_rng(4)
+    belief = replace(few_cells(heard(TARGETS[0], rng, 1, source="other")), stretches=(stretch(1),))
+    x, y, log = places_besides(belief, "other")
+    *_, bare = places_besides(replace(belief, stretches=()), "other")
+    assert len(x) == len(y) == len(log)
+    assert np.ptp(log - bare) > 0.1

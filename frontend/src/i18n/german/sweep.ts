@@ -6,6 +6,22 @@ export const sweep = {
     text: "In keiner Richtung war ein Puls des Senders zu hören.",
     remedy: "Ihn einschalten oder näher bei ihm messen.",
   },
+  readings_left_out: {
+    text:
+      "{readings|Messwert|Messwerte} weggelassen: {why?heading_unknown=keine Richtung nahe genug in der Zeit" +
+      "|place_unknown=der Ort des Fluggeräts war nicht sicher|overdriven=der Empfänger war übersteuert" +
+      "|at_noise=kaum über dem Rauschen|beside_a_turn=neben einem Ort, an dem es ohnehin gedreht und gehört hat" +
+      "|pointed_one_way=die Antenne zeigte in eine Richtung, die Leistung sagt dann keine Peilung" +
+      "|too_many=andere Abschnitte des Wegs wurden weiter gedreht}.",
+    remedy: "",
+  },
+  nose_swung: {
+    text:
+      "Die Nase pendelte {swung|Mal|Mal} um {amplitude_deg} nach jeder Seite, mit {rate_deg_s} und höchstens {lag_deg} zurück" +
+      "{end?near_place=, bis der Ort nahe war|not_ours=, bis ein anderer Befehl kam oder jemand anderes flog" +
+      "|lags=. Dann folgte sie nicht und wurde in Ruhe gelassen|refused=. Dann lehnte der Autopilot ab, und sie wurde in Ruhe gelassen}.",
+    remedy: "",
+  },
   no_heading_heard: {
     text: "Das Fluggerät meldete während der Drehung keine Richtung.",
     remedy: "Seine Telemetrie und die Rate von ATTITUDE prüfen.",

@@ -1,0 +1,46 @@
+"""What the field world's rows say of pairs, and that what was flown is kept to the last digit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from backend.cli.field_missions import FieldMission
+from tests.benchmarks import field_world
+
+FLOWN = FieldMission(
+    seed=1,
+    localized=True,
+    time_s=200.0,
+    in_c95=True,
+    error_m=5.0,
+    stated_m=8.0,
+    bearings=4,
+    rejected=0,
+    turned_deg=1440.0,
+    off_deg=(1.0, -2.0),
+)
+
+
+def row(*times: float) -> dict[int, FieldMission]:
+    return {seed: replace(FLOWN, seed=seed, time_s=time_s) for seed, time_s in enumerate(times)}
+
+
+def test_rows_are_compared_mission_by_mission() -> None:
+    found = {"whole": row(300.0, 100.0), "sector": row(280.0, 70.0)}
+    longer, half = field_world.paired(found["sector"], found["whole"])
+    assert longer == pytest.approx(-25.0)
+    assert half == pytest.approx(1.96 * 5.0)
+    assert dict(zip((c.name for c in field_world.COLUMNS), field_world.row("sector", found), strict=True))[
+        "localized in 400 s, %"
+    ] == pytest.approx(100.0)
+    judged = [figure for figure in field_world.figures(found) if figure.wanted is not None]
+    assert [(figure.value, figure.met) for figure in judged] == [(25.0, True)]
+
+
+def test_what_was_kept_is_not_flown_again(tmp_path: Path) -> None:
+    for mission in row(200.0, 300.0).values():
+        field_world._keep(tmp_path, "whole", mission)
+    assert field_world.flown(["whole"], range(2), tmp_path) == {"whole": row(200.0, 300.0)}
