@@ -183,7 +183,7 @@ __all__ = [
     "VariantKept",
 ]
 
-FORM = 3
+FORM = 4
 """Of these facts, as they are stored and exported; a field more is a form more. See backend.store.upgrade."""
 
 ReviewFact = TruthNoted | MissionLabelled | MissionDeleted | MissionRestored | VariantKept | VariantDropped
