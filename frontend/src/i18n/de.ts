@@ -859,7 +859,7 @@ export const de: Record<MessageKey, string> = {
   "problem.421": "Unbekannter Servername",
   "problem.422": "So geht es nicht",
   "problem.500": "Der Server hat einen Fehler gemacht",
-  "problem.503": "Die Datenbank hat nicht geantwortet",
+  "problem.503": "Zurzeit nicht verfügbar",
   "problem.507": "Die Platte ist voll",
   "problem.unreachable": "Der Server antwortet nicht",
   "problem.unreachable.remedy": "Prüfen, ob der Server läuft und dieses Gerät in seinem Netz ist; nichts Eingegebenes ist verloren.",
