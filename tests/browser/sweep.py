@@ -266,7 +266,7 @@ def keep_small(pictures: Path, folder: Path) -> None:
     for name, taken_as in README.items():
         picture = pictures / f"{taken_as}.png"
         if picture.exists():
-            Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(
+            Image.open(picture).convert("RGB").quantize(256, kmeans=8, dither=Image.Dither.NONE).save(
                 folder / f"{name}.png", optimize=True
             )
 
