@@ -146,8 +146,8 @@ battery-home: setup-dev ## a thousand simulated returns in wind: what was promis
 	$(BIN)/python -m tests.benchmarks.battery_home --flights 1000 --out $(MEASUREMENTS)
 
 SCREENS ?= test-results/screens
-screens: setup-dev build browser ## every screen in both themes and three sizes into SCREENS, and what is clipped there: ten minutes
-	$(BIN)/python -m tests.browser.sweep $(SCREENS)
+screens: setup-dev build browser ## every screen in both themes and three sizes into SCREENS, and what is clipped there: ten minutes; README=1 for its pictures
+	$(BIN)/python -m tests.browser.sweep $(SCREENS) $(if $(README),--readme docs/screens)
 
 codegen: setup-dev frontend/node_modules/.installed ## wire schema and TypeScript types from the pydantic models
 	$(BIN)/python -m backend.api.schema frontend/src/wire/openapi.json

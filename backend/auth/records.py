@@ -79,7 +79,7 @@ class Records:
             async with patience(self._timeout_s), self._engine.begin() as connection:
                 return await work(connection)
         except (DBAPIError, OSError, TimeoutError) as error:
-            raise unavailable(error) from error
+            raise unavailable(error, self._engine) from error
 
 
 def _itself(row: Row) -> tuple[Table, ColumnElement[bool]]:

@@ -178,12 +178,14 @@ class BearingExcluded(Fact):
 
 
 class BearingIncluded(Fact):
-    """A bearing, or a turn that heard nothing, that was left out counts again, in its old place in the order."""
+    """A bearing, or a turn that heard nothing, that was left out counts again, in its old place in the order. heard: as
+    in BearingExcluded; True in facts of before, which did not tell."""
 
     kind: Literal["bearing_included"] = "bearing_included"
     emitter_id: Id
     bearing_id: str
     by: str
+    heard: bool = True
 
 
 class SourceMuteChanged(Fact):

@@ -39,6 +39,29 @@ class MachineBusy:
 
 
 @dataclass(frozen=True, slots=True)
+class DatabaseTaken:
+    """It is there, and another transaction on its file has not ended in time."""
+
+    code: Literal["database_taken"] = "database_taken"
+    english: ClassVar[Words] = Words(
+        "Something else is writing to the database's file.",
+        "This passes by itself, as when a bundle is brought in; else end the other program. What happens meanwhile "
+        "is kept in the spool on the disk.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DiskBusy:
+    """SQLite is in the server itself: when it is late on a machine with time to spare, it waits for its disk."""
+
+    code: Literal["disk_busy"] = "disk_busy"
+    english: ClassVar[Words] = Words(
+        "The disk is so slow that the database's answers come late.",
+        "End what else uses this disk; what happens meanwhile is kept in the spool on it.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class DiskLow:
     free_bytes: int
     code: Literal["disk_low"] = "disk_low"
@@ -70,7 +93,7 @@ class NothingStores:
     spool: str
     code: Literal["nothing_stores"] = "nothing_stores"
     english: ClassVar[Words] = Words(
-        "The database is away ({database}) and the spool cannot be written ({spool}).",
+        "The database takes nothing ({database}) and the spool cannot be written ({spool}).",
         "Free space on the disk, and bring the database back.",
     )
 
@@ -133,6 +156,8 @@ StorageReason = (
     DatabaseSilent
     | DatabaseSlow
     | MachineBusy
+    | DatabaseTaken
+    | DiskBusy
     | DiskLow
     | StockFull
     | NothingStores

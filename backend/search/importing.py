@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
 
-from backend.events import BearingMeasured, Event, ImportSource, Recorded, RecordingImported
+from backend.events import AntennaFact, BearingMeasured, Event, ImportSource, Recorded, RecordingImported
 from backend.reasons import Reason, carried
 from backend.reasons import search as reasons
 from backend.reasons.refusals import NoSuchEmitter
@@ -79,36 +79,55 @@ def imported_before(recorded: Sequence[Recorded], recording_id: str) -> list[Rec
     return []
 
 
+def begun(state: SearchState, upload: Upload, pieces: int) -> tuple[EmitterSpec, list[Reason], int]:
+    """Whose recording it is, what was remarked when it was read, and the number of the last place before it. pieces:
+    its sweeps or bearings. Raises MissionInputError for too many, and for an emitter that is not sought."""
+    if pieces > MOST_SWEEPS:
+        raise MissionInputError(reasons.RecordingTooLong(pieces, MOST_SWEEPS), "file")
+    remarks: list[Reason] = [carried(remark) for remark in upload.recording.remarks]
+    last = max([state.place_number, *(bearing.place_number for bearing in state.measured)])
+    return _emitter_of(state.mission, upload.emitter_id), remarks, last
+
+
+def import_fact(
+    upload: Upload,
+    emitter: EmitterSpec,
+    by: str,
+    began_s: float | None,
+    remarks: list[Reason],
+    sweep_ids: list[str],
+    antenna: AntennaFact | None,
+) -> RecordingImported:
+    """The fact that stands before those of the sweeps or bearings. began_s: UTC epoch seconds of the first, None when
+    nobody knows. antenna: that of the sweeps, None for bearings."""
+    return RecordingImported(
+        emitter_id=emitter.emitter_id,
+        recording_id=upload.recording_id,
+        filename=upload.filename,
+        by=by,
+        recorded_at_utc=None if began_s is None else datetime.fromtimestamp(began_s, UTC),
+        sweep_ids=sweep_ids,
+        remarks=remarks,
+        antenna=antenna,
+    )
+
+
 def import_facts(
     mission_id: str, state: SearchState, upload: Upload, finder: DirectionFinder, pattern: AntennaPattern, by: str
 ) -> Import:
     """Bearing or rejection of every sweep, and the belief after each bearing. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
-    if len(recording.sweeps) > MOST_SWEEPS:
-        raise MissionInputError(reasons.RecordingTooLong(len(recording.sweeps), MOST_SWEEPS), "file")
-    emitter = emitter_of(mission, upload.emitter_id)
-    remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
+    emitter, remarks, number = begun(state, upload, len(recording.sweeps))
     first_s = float(recording.sweeps[0].sweep.at_s[0])
     began_s = upload.at_s if upload.at_s is not None else (first_s if first_s >= CLOCK_S else None)
     shift_s = 0.0 if began_s is None else began_s - first_s
     prepared = [_prepared(recorded, mission, emitter, upload, shift_s, remarks) for recorded in recording.sweeps]
     sweep_ids = [str(uuid5(NAMESPACE_URL, f"{mission_id}/{upload.recording_id}/{k}")) for k in range(len(prepared))]
-    facts: list[Event] = [
-        RecordingImported(
-            emitter_id=emitter.emitter_id,
-            recording_id=upload.recording_id,
-            filename=upload.filename,
-            by=by,
-            recorded_at_utc=None if began_s is None else datetime.fromtimestamp(began_s, UTC),
-            sweep_ids=sweep_ids,
-            remarks=remarks,
-            antenna=antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg)),
-        )
-    ]
+    antenna = antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg))
+    facts: list[Event] = [import_fact(upload, emitter, by, began_s, remarks, sweep_ids, antenna)]
     tasks = together(mission, state.home or corner_of(mission.area), emitter.emitter_id)
     source = ImportSource(recording_id=upload.recording_id)
     kept: list[KeptSweep] = []
-    number = max([state.place_number, *(b.place_number for b in state.measured)])
     for sweep_id, recorded, sweep in zip(sweep_ids, recording.sweeps, prepared, strict=True):
         number += 1
         kept.append(KeptSweep(sweep_id, emitter.emitter_id, number, sweep))
@@ -124,7 +143,7 @@ def import_facts(
     return Import(tuple(facts), tuple(kept))
 
 
-def emitter_of(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
+def _emitter_of(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:
     """None: the first. Raises MissionInputError."""
     try:
         return mission.emitters[0] if emitter_id is None else mission.emitter(emitter_id)

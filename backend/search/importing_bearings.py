@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from backend.events import BearingMeasured, Event, ImportSource, RecordingImported
-from backend.reasons import Reason, carried
+from backend.events import BearingMeasured, Event, ImportSource
 from backend.reasons import search as reasons
 from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
-from backend.search.importing import MOST_SWEEPS, Import, Upload, emitter_of, refuse_far
-from backend.search.localization import localization
+from backend.search.importing import Import, Upload, begun, import_fact, refuse_far
 from backend.search.reported import COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ, compass_share_deg
 from backend.search.state import SearchState, evolve
+from backend.search.together import together
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.bearing_scatter import bearing_scatter
 from hardware.direction_finding.bearings_file import RecordedBearing
@@ -31,41 +29,26 @@ LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
 def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) -> Import:
     """Every bearing of the emitter, and the belief after the last. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
-    if len(recording.bearings) > MOST_SWEEPS:
-        raise MissionInputError(reasons.RecordingTooLong(len(recording.bearings), MOST_SWEEPS), "file")
-    emitter = emitter_of(mission, upload.emitter_id)
+    emitter, remarks, number = begun(state, upload, len(recording.bearings))
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
-    remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
     others = (one.frequency_hz for one in recording.bearings if not _of(emitter, one))
     elsewhere = sorted({hz for hz in others if hz is not None})
     remarks += [reasons.OtherFrequency(upload.filename, hz, emitter.frequency_hz) for hz in elsewhere]
     times = [upload.at_s if upload.at_s is not None else one.at_s for one in heard]
     first_s = min((at_s for at_s in times if at_s is not None), default=None)
-    facts: list[Event] = [
-        RecordingImported(
-            emitter_id=emitter.emitter_id,
-            recording_id=upload.recording_id,
-            filename=upload.filename,
-            by=by,
-            recorded_at_utc=None if first_s is None else datetime.fromtimestamp(first_s, UTC),
-            sweep_ids=[],
-            remarks=remarks,
-        )
-    ]
+    facts: list[Event] = [import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)]
     for one in heard:
         refuse_far(one.place, mission)
     home = state.home or corner_of(mission.area)
-    number = max([state.place_number, *(b.place_number for b in state.measured)])
     for one, at_s in zip(_with_sigmas(heard, mission, home), times, strict=True):
         number += 1
         fact = _fact(mission_id, state, upload, emitter, one, number, at_s)
         facts.append(fact)
         state = evolve(state, fact, first_s or 0.0)
-    known = state.emitters[emitter.emitter_id]
-    task = localization(mission, home, emitter.emitter_id)
-    belief, _ = task.after(known.unheard, known.legs).belief_fact(known.bearings)
+    task = together(mission, home, emitter.emitter_id).about(state, emitter.emitter_id)
+    belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
     return Import((*facts, belief), ())
 
 

@@ -222,12 +222,19 @@ def _include(step: SearchStep, given: SearchOrdered, command: IncludeBearing) ->
     found = step.state.told(command.bearing_id)
     if found is None:
         raise Refused(refusals.NoSuchBearing())
-    emitter, _ = found
+    emitter, left_out = found
     if command.bearing_id not in emitter.excluded:
         raise Refused(refusals.BearingCountsAlready())
     if step.state.stage == "ended":
         raise Refused(refusals.MissionOver())
-    step.record(BearingIncluded(emitter_id=emitter.emitter_id, bearing_id=command.bearing_id, by=given.by))
+    step.record(
+        BearingIncluded(
+            emitter_id=emitter.emitter_id,
+            bearing_id=command.bearing_id,
+            by=given.by,
+            heard=isinstance(left_out, BearingMeasured),
+        )
+    )
     update_stale_beliefs(step)
 
 

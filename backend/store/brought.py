@@ -284,4 +284,4 @@ async def bring_in(engine: AsyncEngine, brought: Brought, at_utc: datetime, by: 
             for entry in (*brought.sweeps, *brought.tracks):
                 await connection.run_sync(entry.write)
     except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-        raise unavailable(error) from error
+        raise unavailable(error, engine) from error

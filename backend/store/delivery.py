@@ -23,12 +23,13 @@ from sqlalchemy import Connection, exc, text
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.ports import FactRefused, JournalUnavailable
-from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, MachineBusy, NothingStores
+from backend.reasons.storage import DatabaseSilent, DatabaseSlow, DiskLow, FactUnfit, NothingStores
 from backend.store.entries import Entry, EventsEntry, JournalConflict, decode
-from backend.store.patience import StarvedError, patience
-from backend.store.reading import why
+from backend.store.patience import patience
+from backend.store.reading import Unanswered, unanswered, why
 from backend.store.spool import Spool, SpoolFull
 from backend.store.transactions import transactions_of
+from planner.reason import text_of
 
 log = logging.getLogger("crossfix.store")
 
@@ -45,25 +46,25 @@ REFUSED = (JournalConflict, exc.IntegrityError, exc.DataError, exc.ProgrammingEr
 
 
 class DatabaseAway(RuntimeError):
-    """The database did not answer; nothing is known about the last transaction. busy: on a machine that is too busy to
-    say that it is away."""
+    """The database did not answer; nothing is known about the last transaction."""
 
-    def __init__(self, why: str, busy: bool = False) -> None:
-        super().__init__(why)
-        self.busy = busy
+    def __init__(self, reason: Unanswered) -> None:
+        super().__init__(_words(reason))
+        self.reason = reason
 
 
-def _away(error: BaseException) -> DatabaseAway:
-    return DatabaseAway(why(error), isinstance(error, StarvedError))
+def _words(fault: Unanswered) -> str:
+    return fault.detail if isinstance(fault, DatabaseSilent) else text_of(fault).rstrip(".")
 
 
 @dataclass(frozen=True, slots=True)
 class DatabaseReport:
-    """reason: None when all is well. spooled: entries on disk that wait for the database. refused: entries that it will
-    never take (kept in a file)."""
+    """lost: it is not reached. slow: it, its disk or this machine is, however long the spool must wait. reason: None
+    when all is well. spooled: entries on disk that wait for the database. refused: entries that it will never take
+    (kept in a file)."""
 
     state: Literal["ok", "slow", "lost"]
-    reason: DatabaseSilent | DatabaseSlow | MachineBusy | DiskLow | None
+    reason: Unanswered | DatabaseSlow | DiskLow | None
     spooled: int
     refused: int
 
@@ -90,9 +91,8 @@ class Delivery:
         self._disk_low_bytes = disk_low_bytes
         self._lock = asyncio.Lock()
         self._wake = asyncio.Event()
-        self._fault: str | None = None
+        self._fault: Unanswered | None = None
         self._answers = True
-        self._busy = False
         self._at_once = DRAIN_BATCH
         self._took_s = 0.0
         self._refused = 0
@@ -134,7 +134,7 @@ class Delivery:
             try:
                 await asyncio.to_thread(self._spool.append, entry.encode())
             except SpoolFull as error:
-                fault = self._fault or "it still takes what waited"
+                fault = "it still takes what waited" if self._fault is None else _words(self._fault)
                 raise JournalUnavailable(NothingStores(fault, str(error))) from error
             self.waiting.append(entry)
             self._wake.set()
@@ -148,7 +148,7 @@ class Delivery:
         except REFUSED:
             raise
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise _away(error) from error
+            raise DatabaseAway(unanswered(error, self._engine)) from error
         finally:
             self._took_s = time.monotonic() - began
 
@@ -165,13 +165,11 @@ class Delivery:
 
     def lost(self, error: Exception) -> None:
         """From now on entries go to the spool, until it is drained."""
-        fault = str(error) if isinstance(error, DatabaseAway) else why(error)
-        busy = isinstance(error, DatabaseAway) and error.busy
-        if busy and (self._fault is None or not self._busy):
-            log.warning("this machine is too busy to hear the database in time; events are spooled")
-        elif not busy and (self._fault is None or self._busy):
-            log.error("database away: %s; events are spooled", fault)
-        self._fault, self._answers, self._busy = fault, False, busy
+        fault = error.reason if isinstance(error, DatabaseAway) else DatabaseSilent(why(error))
+        if type(fault) is not type(self._fault):
+            level = logging.ERROR if isinstance(fault, DatabaseSilent) else logging.WARNING
+            log.log(level, "not stored: %s; events are spooled", _words(fault))
+        self._fault, self._answers = fault, False
         self._wake.set()
 
     async def run(self) -> None:
@@ -191,7 +189,7 @@ class Delivery:
                 log.exception("the watch over the database met what it did not foresee; it goes on")
                 self.lost(error)
             await asyncio.sleep(retry_s)
-            retry_s = min(2 * retry_s, RETRY_BUSY_S if self._busy else RETRY_LAST_S)
+            retry_s = min(2 * retry_s, RETRY_LAST_S if isinstance(self._fault, DatabaseSilent) else RETRY_BUSY_S)
 
     async def _look(self) -> None:
         """At the disk and, unless something happens first, at the database a while later."""
@@ -209,7 +207,7 @@ class Delivery:
             async with patience(self._timeout_s), self._engine.connect() as connection:
                 await connection.execute(text("SELECT 1"))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise _away(error) from error
+            raise DatabaseAway(unanswered(error, self._engine)) from error
         self._took_s = time.monotonic() - began
 
     async def drain(self) -> None:
@@ -240,7 +238,7 @@ class Delivery:
                 await asyncio.to_thread(self._spool.clear)
                 if self._fault is not None:
                     log.warning("%d spooled entries stored: nothing waits any more", drained)
-                self._fault, self._busy = None, False
+                self._fault = None
                 self._settled()
 
     async def _write_or_set_aside(self, entry: Entry) -> None:
@@ -268,10 +266,10 @@ class Delivery:
     def report(self) -> DatabaseReport:
         """From what the last attempts showed; asks nobody."""
         waiting = len(self.waiting)
-        if self._fault is not None and self._busy:
-            return DatabaseReport("slow", MachineBusy(), waiting, self._refused)
+        if self._fault is not None and not isinstance(self._fault, DatabaseSilent):
+            return DatabaseReport("slow", self._fault, waiting, self._refused)
         if self._fault is not None and not self._answers:
-            return DatabaseReport("lost", DatabaseSilent(self._fault), waiting, self._refused)
+            return DatabaseReport("lost", self._fault, waiting, self._refused)
         if waiting or self._fault is not None or self._took_s > self._slow_s:
             return DatabaseReport("slow", DatabaseSlow(self._took_s), waiting, self._refused)
         if self._disk_free_bytes is not None and self._disk_free_bytes < self._disk_low_bytes:

@@ -136,7 +136,7 @@ def _advance(digest: MissionDigest | None, record: Recorded) -> MissionDigest:
             return replace(digest, bearings=digest.bearings + 1)
         case BearingExcluded(heard=True):
             return replace(digest, bearings=digest.bearings - 1)
-        case BearingIncluded():
+        case BearingIncluded(heard=True):
             return replace(digest, bearings=digest.bearings + 1)
         case SweepRejected():
             return replace(digest, rejected_sweeps=digest.rejected_sweeps + 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import sqlite3
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
@@ -12,7 +13,7 @@ from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, Recorded
 from backend.ports import JournalUnavailable, Kept, TrackPoint
-from backend.reasons.storage import DatabaseSilent, MachineBusy
+from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
 from backend.store.paths import unpacked_path
@@ -183,7 +184,7 @@ class StoredFacts:
             async with patience(self._timeout_s), self._engine.connect() as connection:
                 return list(await connection.execute(query))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
-            raise unavailable(error) from error
+            raise unavailable(error, self._engine) from error
 
 
 async def _beside(count: int, work: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
@@ -203,9 +204,25 @@ def _in_time_order(rows: Iterable[Any], pieces: Iterable[Any]) -> dict[str, list
     return {craft_id: [by_time[at_us] for at_us in sorted(by_time)] for craft_id, by_time in sorted(found.items())}
 
 
-def unavailable(error: BaseException) -> JournalUnavailable:
+Unanswered = DatabaseSilent | DatabaseTaken | DiskBusy | MachineBusy
+
+
+def unanswered(error: BaseException, engine: AsyncEngine) -> Unanswered:
+    """What a driver's error says of its database: only one that is asked over a socket can be away."""
+    if isinstance(error, StarvedError):
+        return MachineBusy()
+    if engine.dialect.name == "sqlite":
+        orig = error.orig if isinstance(error, exc.DBAPIError) else None
+        if isinstance(orig, sqlite3.Error) and orig.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY:
+            return DatabaseTaken()
+        if isinstance(error, TimeoutError):
+            return DiskBusy()
+    return DatabaseSilent(why(error))
+
+
+def unavailable(error: BaseException, engine: AsyncEngine) -> JournalUnavailable:
     """The driver's error, as readers of the journal know it."""
-    return JournalUnavailable(MachineBusy() if isinstance(error, StarvedError) else DatabaseSilent(why(error)))
+    return JournalUnavailable(unanswered(error, engine))
 
 
 def why(error: BaseException) -> str:

@@ -40,7 +40,7 @@ TITLES = {
     422: "The request is not valid",
     429: "Too often",
     500: "The server made a mistake",
-    503: "The database did not answer",
+    503: "Not available at the moment",
     507: "The disk is full",
 }
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
@@ -104,6 +105,37 @@ def last_bearing(screen: Screen) -> None:
         screen.part("card-sweep").click()
 
 
+def sensor_opened(screen: Screen) -> None:
+    """What lies behind "more": the antenna's offset, the compass that emitters share."""
+    screen.map_ready("edit-map")
+    offset = screen.part("field-sensor-bearing_offset_deg")
+    screen.page.locator("details.more").filter(has=offset).locator("summary").click()
+    screen.part("field-sensor-shared_errors").evaluate("(field) => field.scrollIntoView({ block: 'center' })")
+
+
+def import_opened(screen: Screen) -> None:
+    screen.map_ready()
+    screen.part("recording").locator("summary").first.click()
+    screen.part("recording").locator("details.more summary").click()
+    screen.part("recording-send").scroll_into_view_if_needed()
+
+
+def on_its_way(screen: Screen) -> None:
+    """The example on the way to its second place."""
+    screen.map_ready()
+    screen.expect_belief(1)
+    screen.expect_phase("flying")
+
+
+def in_three_dimensions(screen: Screen) -> None:
+    last_bearing(screen)
+    screen.part("scene-switch").click()
+    screen.page.wait_for_timeout(SCENE_MS)
+    warning = screen.page.frame_locator("iframe").locator(".mantine-Notification-closeButton")
+    if warning.count() > 0:  # of drawing by software, as on every machine without a graphics card
+        warning.first.click()
+
+
 def from_menu(name: str) -> Callable[[Screen], None]:
     def show(screen: Screen) -> None:
         screen.part("menu").click()
@@ -141,7 +173,9 @@ def screens(at: Shown) -> dict[str, tuple[str, Prepare]]:
         "settings": ("#/", from_menu("settings")),
         "keys": ("#/", from_menu("keys")),
         "new": ("#/new", editor_drawn),
+        "sensor": ("#/new", sensor_opened),
         "preflight": (f"#/mission/{at.draft}", checked),
+        "import": (f"#/mission/{at.draft}", import_opened),
         "held": (f"#/mission/{at.held}", map_drawn),
         "resume": (f"#/mission/{at.held}", ready_to_resume),
         "proposal": (f"#/mission/{at.held}", proposing),
@@ -149,7 +183,8 @@ def screens(at: Shown) -> dict[str, tuple[str, Prepare]]:
         "alerts": (f"#/mission/{at.held}", pressed("alerts")),
         "area": (f"#/mission/{at.held}/area", editor_drawn),
         "bearings": (f"#/mission/{at.held}/bearings", nothing),
-        "example": ("#/mission/example", map_drawn),
+        "example": ("#/mission/example", on_its_way),
+        "scene": (f"#/mission/{at.flown}", in_three_dimensions),
         "review": (f"#/mission/{at.flown}", last_bearing),
         "report": (f"#/report/{at.flown}", report_ready),
         "compare": (f"#/compare/{at.flown}", compared),
@@ -196,6 +231,8 @@ def faults(page: Page) -> list[str]:
 
 
 SETTLED_MS = 700
+SCENE_MS = 8000
+"""Until software has drawn the first picture in 3D."""
 
 
 def taken(screen: Screen, address: str, prepare: Prepare, picture: Path | None) -> list[str]:
@@ -203,11 +240,35 @@ def taken(screen: Screen, address: str, prepare: Prepare, picture: Path | None) 
     screen.go("#/health")
     screen.go(address)
     prepare(screen)
+    screen.page.mouse.move(0, 0)
     screen.page.wait_for_timeout(SETTLED_MS)
     if picture is not None:
         picture.parent.mkdir(parents=True, exist_ok=True)
         screen.page.screenshot(path=picture)
     return faults(screen.page)
+
+
+README = {
+    "fly-outdoor": "laptop/example-outdoor",
+    "fly-indoor": "laptop/example-indoor",
+    "plan": "laptop/new-outdoor",
+    "preflight": "laptop/preflight-outdoor",
+    "area": "laptop/area-outdoor",
+    "scene": "laptop/scene-outdoor",
+    "review": "laptop/review-outdoor",
+    "tablet": "tablet/example-outdoor",
+}
+"""What the README shows, by the name of its file: size, screen and theme."""
+
+
+def keep_small(pictures: Path, folder: Path) -> None:
+    """Those of README that were taken, in 256 colours."""
+    for name, taken_as in README.items():
+        picture = pictures / f"{taken_as}.png"
+        if picture.exists():
+            Image.open(picture).convert("RGB").quantize(256, kmeans=8, dither=Image.Dither.NONE).save(
+                folder / f"{name}.png", optimize=True
+            )
 
 
 def main() -> None:
@@ -218,6 +279,7 @@ def main() -> None:
     parser.add_argument("--themes", default=",".join(THEMES))
     parser.add_argument("--language", default="en")
     parser.add_argument("--scale", type=float, default=1.0, help="of the text: 1.3 is 130 percent")
+    parser.add_argument("--readme", type=Path, help="folder for small copies of what the README shows")
     arguments = parser.parse_args()
     found = 0
     with (
@@ -246,6 +308,8 @@ def main() -> None:
                             print(f"{size} {theme} {name}: {one}")
                         found += len(wrong)
         browser.close()
+    if arguments.readme:
+        keep_small(arguments.out, arguments.readme)
     print(f"{found} faults")
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import gzip
 import json
 import math
+from datetime import timedelta
 from pathlib import Path
 
 import httpx
@@ -136,6 +137,66 @@ def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen
     part("filter-clear").click()
     expect(row(screen, here)).to_be_visible()
     expect(page.locator(".place-box")).to_have_count(0)
+
+
+def test_missions_are_found_by_date_vehicle_emitter_and_result(server: Server, open_screen: OpenScreen) -> None:
+    flown = bring_in(server, checked("found-by-words", 0.0))
+    spec = server.get(f"/api/missions/{server.draft()}")["spec"]
+    spec["emitters"][0]["label"] = "lynx 7"
+    drafted = httpx.post(server.url.rstrip("/") + "/api/missions", json=spec, timeout=20).json()["mission_id"]
+    flown_on = FLOWN[0].at_utc.date()
+    screen = open_screen(server)
+    part = screen.part
+    part("library-filter").locator("summary").click()
+    for field, value, found, left_out in (
+        ("until", flown_on.isoformat(), flown, drafted),
+        ("since", (flown_on + timedelta(days=1)).isoformat(), drafted, flown),
+        ("vehicle", "craft-1", flown, drafted),
+        ("emitter", "Lynx 7", drafted, flown),
+    ):
+        part(f"filter-{field}").fill(value)
+        expect(row(screen, left_out)).to_have_count(0)
+        expect(row(screen, found)).to_be_visible()
+        part("filter-clear").click()
+        expect(row(screen, left_out)).to_be_visible()
+    part("filter-outcome").select_option("localized")
+    expect(row(screen, drafted)).to_have_count(0)
+    expect(row(screen, flown)).to_be_visible()
+
+
+def test_two_missions_are_one_report_with_an_overview(server: Server, open_screen: OpenScreen) -> None:
+    first, second = (bring_in(server, checked(f"of-one-sequence-{n}", 0.0)) for n in (1, 2))
+    screen = open_screen(server, f"#/report/{first}/{second}")
+    expect(screen.part("report")).to_have_attribute("data-ready", "true")
+    expect(screen.part("report-mission")).to_have_count(2)
+    expect(screen.part("report-overview")).to_be_visible()
+
+
+def test_before_the_first_bearing_no_place_is_said_and_a_pointer_scrolls_nothing_away(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    screen = open_screen(server, f"#/mission/{bring_in(server, checked('looked-at', 0.0))}")
+    part = screen.part
+    screen.map_ready()
+    expect(part("estimate-coordinates")).to_be_visible()
+    screen.row("mission_started").click()
+    expect(part("estimate-coordinates")).to_have_count(0)
+    expect(part("sweep-bearing")).to_have_count(0)
+
+    screen.row("plan_chosen").last.click()
+    part("candidates").scroll_into_view_if_needed()
+    lit = screen.page.locator(".candidates tr.lit")
+    before = part("candidates").bounding_box()
+    for right, down in ((0.02 * n, 0.04 * m) for m in range(5, 20) for n in range(10, 40)):
+        screen.page.mouse.move(*screen.map_point(right, down))
+        if lit.count() == 1:
+            break
+    expect(lit).to_be_in_viewport()
+    after = part("candidates").bounding_box()
+    assert before is not None
+    assert after is not None
+    within = screen.evaluate("document.querySelector('.candidate-box').scrollTop")
+    assert after["y"] + within == pytest.approx(before["y"], abs=1), "only the table scrolls, not the panel"
 
 
 def test_an_emitter_that_was_not_found_counts_and_a_found_place_replaces_it(

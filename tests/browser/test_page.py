@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import gzip
+import sqlite3
 import time
 from collections.abc import Iterator
 from urllib.parse import urlsplit
 
+import httpx
 import pytest
 from playwright.sync_api import Browser, Response, Route, expect
 from screen import AUTOMATIC, OpenScreen, Screen
@@ -235,6 +237,28 @@ def _show(screen: Screen, sheet: str) -> None:
         screen.part("menu").click()
         screen.part(f"menu-{sheet}").click()
     expect(screen.part(SHOWN_AS.get(sheet, sheet))).to_be_visible()
+
+
+def test_a_database_that_waits_for_another_writer_is_not_said_to_be_away(
+    server: Server, open_screen: OpenScreen
+) -> None:
+    mission = server.draft()
+    screen = open_screen(server, "#/health")
+    database = screen.part("health-part").filter(has_text="Database")
+    expect(database).to_have_attribute("data-good", "true")
+    other = sqlite3.connect(server.data_dir / "crossfix.sqlite", isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    labels = {"name": "written meanwhile", "tags": [], "notes": ""}
+    address = f"{server.url.rstrip('/')}/api/missions/{mission}/labels"
+    assert httpx.put(address, json=labels, timeout=30).status_code == 200
+    expect(database).to_contain_text("Something else is writing to the database's file.")
+    expect(database).to_contain_text("wait on the disk")
+    expect(database).not_to_contain_text("does not answer")
+    other.execute("ROLLBACK")
+    other.close()
+    expect(database).to_contain_text("SQLite answers.")
+    expect(database).not_to_contain_text("wait on the disk")
+    assert server.get(f"/api/missions/{mission}")["name"] == "written meanwhile"
 
 
 def test_a_mission_is_flown_with_the_keyboard_alone(server: Server, open_screen: OpenScreen) -> None:

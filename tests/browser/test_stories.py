@@ -6,6 +6,7 @@ All tests share one mission; each begins and leaves it in hold.
 from __future__ import annotations
 
 import json
+import math
 import re
 import time
 from collections.abc import Iterator
@@ -174,6 +175,31 @@ def test_the_next_place_is_dragged_and_its_cost_seen_before_it_is_confirmed(flig
     expect(screen.part("proposal")).to_have_count(0)
 
 
+def test_the_map_stays_still_when_the_bar_grows(flight: Flight) -> None:
+    """In hold the bar has a row more: the ground under a resting pointer is the same, to two pixels."""
+    screen = flight.screen
+    bar = screen.page.locator("header.safety")
+    x, y = screen.map_point(0.5, 0.6)
+
+    def ground(down_px: float = 0.0) -> tuple[float, float]:
+        screen.page.mouse.move(x + 30, y)
+        screen.page.mouse.move(x, y + down_px)
+        north, east = re.findall(r"\d+\.\d+", screen.part("cursor-coordinates").inner_text())
+        return float(north), float(east)
+
+    screen.resume()
+    screen.expect_phase("flying", "measuring")
+    low, at, ten_px_on = bar.bounding_box(), ground(), ground(10.0)
+    screen.hold()
+    expect(screen.part("resume")).to_be_visible()
+    high = bar.bounding_box()
+    assert low is not None
+    assert high is not None
+    assert high["height"] > low["height"] + 10
+    pixel_deg = math.dist(at, ten_px_on) / 10
+    assert math.dist(at, ground()) < 2 * pixel_deg
+
+
 def test_a_place_outside_the_fence_cannot_be_slid_to(flight: Flight) -> None:
     screen = flight.screen
     screen.page.mouse.click(*screen.map_point(0.02, 0.5))
@@ -277,6 +303,7 @@ def test_the_pilot_takes_over_and_keeps_control_and_the_alert_sounds_where_it_is
         screen.expect_phase("manual")
         expect(screen.part("control")).to_contain_text("pilot has control")
         screen.page.wait_for_function(BANNER_COVERS_NO_TOOL)
+        expect(screen.part("hold")).to_have_class(re.compile("refused-now"))
     assert loud.evaluate("tones") == [660, 660]
     ((language, text),) = loud.evaluate("spoken")
     assert language == "en"
@@ -288,6 +315,7 @@ def test_the_pilot_takes_over_and_keeps_control_and_the_alert_sounds_where_it_is
     expect(loud.part("vehicle-link")).to_contain_text("POSCTL")
     flight.server.order("give_back")
     expect(loud.part("vehicle-link")).not_to_contain_text("POSCTL")
+    expect(loud.part("control")).not_to_contain_text("pilot has control")
     loud.resume()
     kinds = [event["kind"] for event in flight.events[before:]]
     flown = {"flight_started", "sweep_started", "plan_chosen"}

@@ -69,7 +69,7 @@ function NumberInput({ field, failed }: Properties<NumberField>) {
 function Choice({ field, failed }: Properties<ChoiceField>) {
   const id = idOf(field.path);
   return (
-    <div class="field">
+    <div class="field field-choice">
       <label for={id}>{t(field.label)}</label>
       <select
         id={id}

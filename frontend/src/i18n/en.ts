@@ -472,7 +472,7 @@ export const en = {
   "problem.421": "Unknown host",
   "problem.422": "The request is not valid",
   "problem.500": "The server made a mistake",
-  "problem.503": "The database did not answer",
+  "problem.503": "Not available at the moment",
   "problem.507": "The disk is full",
   "problem.unreachable": "The server does not answer",
   "problem.unreachable.remedy": "Check that the server runs and that this device is in its network; nothing you typed is lost.",

@@ -1653,6 +1653,15 @@ export const reasonsEn: ReasonTable = {
     text: "The server's machine is so busy that the database's answers come late.",
     remedy: "End what else runs on this machine; what happens meanwhile is kept in the spool on the disk.",
   },
+  database_taken: {
+    text: "Something else is writing to the database's file.",
+    remedy:
+      "This passes by itself, as when a bundle is brought in; else end the other program. What happens meanwhile is kept in the spool on the disk.",
+  },
+  disk_busy: {
+    text: "The disk is so slow that the database's answers come late.",
+    remedy: "End what else uses this disk; what happens meanwhile is kept in the spool on it.",
+  },
   disk_low: {
     text: "Only {free_bytes} are left on the disk.",
     remedy: "Free some space.",
@@ -1663,7 +1672,7 @@ export const reasonsEn: ReasonTable = {
       "{what?overlays=Delete overlays that are not needed, or raise CROSSFIX_OVERLAYS_MAX and CROSSFIX_OVERLAYS_MAX_BYTES|recordings=Let raw sweeps of old missions be taken (crossfix thin), or raise CROSSFIX_RECORDINGS_MAX_SWEEPS and CROSSFIX_RECORDINGS_MAX_BYTES}.",
   },
   nothing_stores: {
-    text: "The database is away ({database}) and the spool cannot be written ({spool}).",
+    text: "The database takes nothing ({database}) and the spool cannot be written ({spool}).",
     remedy: "Free space on the disk, and bring the database back.",
   },
   fact_unfit: {

@@ -13,6 +13,7 @@ describe("recordingForm", () => {
     const all = {
       place: "50.6 7.2",
       at: "2026-05-01T10:00:30",
+      emitter_id: "emitter-2",
       tag: " lynx 4 ",
       offset_deg: "-3,5",
       frequency_hz: "148.5",
@@ -25,6 +26,7 @@ describe("recordingForm", () => {
       lat: "50.6",
       lon: "7.2",
       at_utc: "2026-05-01T10:00:30Z",
+      emitter_id: "emitter-2",
       tag: "lynx 4",
       offset_deg: "-3.5",
       frequency_hz: "148500000",

@@ -1,10 +1,11 @@
-// Recorded sweeps into a mission that does not fly: files, where and when when they do not tell, and what came of it.
+// Recorded sweeps and bearings into a mission that does not fly: files, where and when when they do not tell, and what came of it.
 import { signal } from "@preact/signals";
 import { asProblem } from "../commands/send";
 import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
 import { source } from "../state/connection";
+import { emitterName } from "../state/emitterName";
 import { inFlight } from "../state/mission";
 import { mission } from "../state/shown";
 import { parsePlace } from "../units/parsePlace";
@@ -39,7 +40,7 @@ export function recordingForm(given: FormData): FormData | string {
   }
   // the input has no time zone: UTC is what its label says
   if (text("at")) form.append("at_utc", `${text("at")}Z`);
-  if (text("tag")) form.append("tag", text("tag"));
+  for (const name of ["emitter_id", "tag"]) if (text(name)) form.append(name, text(name));
   for (const { name, scale, label } of NUMBERS) {
     if (!text(name)) continue;
     const value = Number(text(name).replace(",", "."));
@@ -94,6 +95,26 @@ function Found({ found }: { found: RecordingImport }) {
   );
 }
 
+/** Whose bearings they are, where several emitters are sought; first, also when the form is empty again, the one looked at. */
+function WhichEmitter() {
+  const { spec, emitterId } = mission.value;
+  const emitters = spec?.emitters ?? [];
+  if (emitters.length < 2) return null;
+  const [others, shown] = [emitters.filter((e) => e.emitter_id !== emitterId), emitters.filter((e) => e.emitter_id === emitterId)];
+  return (
+    <label>
+      {t("report.emitter")}
+      <select name="emitter_id" data-testid="recording-emitter" key={emitterId}>
+        {[...shown, ...others].map(({ emitter_id: id, frequency_hz }) => (
+          <option value={id} key={id}>
+            {emitterName(emitters, id)} {t("emitters.mhz", { mhz: Number((frequency_hz / 1e6).toFixed(4)) })}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
 export function ImportRecording() {
   const { missionId, phase } = mission.value;
   if (!missionId || inFlight(phase) || !source.value?.keptByServer) return null;
@@ -115,6 +136,7 @@ export function ImportRecording() {
             {t("recording.files")}
             <input type="file" name="files" multiple data-testid="recording-files" />
           </label>
+          <WhichEmitter />
           <label>
             {t("recording.place")}
             <input name="place" placeholder="50.6123, 7.2046" data-testid="recording-place" />

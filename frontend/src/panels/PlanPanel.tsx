@@ -55,6 +55,12 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
   const lit = useRef<HTMLTableRowElement>(null);
   const box = useRef<HTMLDivElement>(null);
   useEffect(() => showRow(box.current, lit.current), [highlighted.value]);
+  useEffect(
+    () => () => {
+      highlighted.value = null; // a number of this decision means another place in the next
+    },
+    [plan],
+  );
   const canPropose = cursor.value === null && !mission.value.ended;
   return (
     <div class="candidate-box" ref={box}>

@@ -151,6 +151,7 @@ export const included = (bearingId: string): EventOf<"bearing_included"> => ({
   kind: "bearing_included",
   emitter_id: EMITTER,
   bearing_id: bearingId,
+  heard: true,
   by: "operator",
 });
 

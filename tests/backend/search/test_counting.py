@@ -17,6 +17,7 @@ from search_walk import SearchWalk, facts_of, muting, refusal
 from backend import commands
 from backend.events import (
     BearingExcluded,
+    BearingIncluded,
     PersonSource,
 )
 from backend.reasons import refusals
@@ -57,6 +58,8 @@ def test_a_turn_that_heard_nothing_outruns_the_belief_and_can_be_left_out_like_a
     assert refusal(walk.order(commands.ExcludeBearing(bearing_id="r2-1"))) == refusals.NoSuchBearing()
     assert walk.order(commands.IncludeBearing(bearing_id="r3-1"))[-1] == UpdateBelief(FIRST_EMITTER)
     assert walk.state.emitters[FIRST_EMITTER].bearing_ids == ("b1", "r3-1")
+    (back,) = [fact for fact in walk.recorded if isinstance(fact, BearingIncluded)]
+    assert not back.heard
 
 
 def test_a_bearing_counts_again_in_its_old_place_and_the_belief_is_the_same() -> None:

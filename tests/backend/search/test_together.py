@@ -14,6 +14,8 @@ from backend.api.beliefs import belief_frame
 from backend.api.what_if import what_if
 from backend.events import BearingExcluded, BearingMeasured, BeliefUpdated, CraftSource, MissionDrafted, Recorded
 from backend.search.area import corner_of
+from backend.search.importing import Upload
+from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, BeliefReady
 from backend.search.localization import localization
 from backend.search.state import SearchState, evolve
@@ -21,6 +23,8 @@ from backend.search.task import search_task
 from backend.search.together import together
 from backend.spec import EmitterSpec, MissionSpec, MovementSpec, Polygon, SensorSpec
 from backend.wire.resources import WhatIfRequest
+from hardware.direction_finding.bearings_file import RecordedBearing
+from hardware.direction_finding.recordings import Recording
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 from planner.belief.joint import JointBelief
@@ -142,6 +146,18 @@ def test_the_facts_retell_each_belief_as_it_was_flown() -> None:
     assert without is not None
     assert without.belief.digest not in (told.belief.digest, digests(flown(ALONE, 3)[1], "b")[-1])
     assert belief_frame("m", records, True, "b") != belief_frame("m", records[: 1 + 2 * 6], True, "b")
+
+
+def test_bearings_from_a_file_are_believed_with_what_the_other_emitters_tell() -> None:
+    state, _ = flown(SPEC, 2)
+    read = RecordedBearing(line=1, place=FRAME.to_geo(140.0, 190.0), bearing_deg=240.0, sigma_deg=5.0)
+    given = Upload("r", "station.csv", Recording((), (), (read,)), emitter_id="a")
+    *facts, belief = bearing_facts("m", state, given, "anna").facts
+    for fact in facts:
+        state = evolve(state, fact, 0.0)
+    counted = state.emitters["a"].bearings
+    assert belief == together(SPEC, corner_of(SPEC.area), "a").about(state, "a").belief_fact(counted)[0]
+    assert belief != localization(SPEC, corner_of(SPEC.area), "a").belief_fact(counted)[0]
 
 
 def test_a_bearing_of_one_outruns_what_is_believed_of_all() -> None:

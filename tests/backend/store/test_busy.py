@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import asyncio
+import sqlite3
+import threading
+from collections.abc import Sequence
 from contextlib import suppress
 
 import pytest
+from sqlalchemy import Connection, make_url
 
 from backend.events import HoldOrdered, MissionDrafted
 from backend.ports import JournalUnavailable
-from backend.reasons.storage import DatabaseSilent, MachineBusy
+from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy
 from backend.spec import MissionSpec, Polygon
-from backend.store import delivery
+from backend.store import delivery, patience
+from backend.store.delivery import DatabaseAway
+from backend.store.entries import Entry
 from backend.store.journal import SqlJournal
 from backend.store.patience import StarvedError
+from backend.store.reading import unanswered
 
 SPEC = MissionSpec(name="s", area=Polygon(coordinates=[[(7.2, 50.6), (7.21, 50.6), (7.21, 50.61), (7.2, 50.6)]]))
 
@@ -30,7 +37,7 @@ class Starving:
         async def starved(this: delivery.Delivery, entries: list) -> None:
             self.tries.append(len(entries))
             if self.on and len(entries) > self.at_once:
-                raise delivery._away(StarvedError())
+                raise DatabaseAway(MachineBusy())
             await write(this, entries)
 
         monkeypatch.setattr(delivery.Delivery, "_write", starved)
@@ -81,10 +88,46 @@ async def test_a_database_that_refuses_is_away_however_busy_the_machine_was(benc
     journal = await bench.open()
     Starving(monkeypatch)
     await flown(journal, 1)
-    journal._delivery.lost(delivery._away(OSError(111, "Connection refused")))
+    journal._delivery.lost(DatabaseAway(unanswered(OSError(111, "Connection refused"), journal._engine)))
     report = journal.report()
     assert report.state == "lost"
     assert isinstance(report.reason, DatabaseSilent)
+
+
+async def test_a_file_that_another_program_writes_to_is_taken_and_not_away(bench, monkeypatch) -> None:
+    """As while a bundle is brought in: what is recorded meanwhile waits, and is stored when the other is done."""
+    monkeypatch.setattr(delivery, "RETRY_FIRST_S", 0.01)
+    bench.timeout_s = 3.0
+    journal = await bench.open()
+    await flown(journal, 0)
+    other = sqlite3.connect(make_url(bench.url).database or "", isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    await journal.append("m", [HoldOrdered(craft_id="craft-1", by="anna", reason=None)])
+    report = journal.report()
+    assert (report.state, report.reason, report.spooled) == ("slow", DatabaseTaken(), 1)
+    other.execute("ROLLBACK")
+    other.close()
+    await until_ok(journal)
+    assert len(await (await bench.open("other.spool")).read("m")) == 2
+
+
+async def test_sqlite_that_is_late_on_an_idle_machine_waits_for_its_disk(bench, monkeypatch) -> None:
+    monkeypatch.setattr(patience, "PROMPT_SHARE", 0.0)  # the machine of the tests may be busy itself
+    journal = await bench.open()
+    await flown(journal, 0)
+    held, write = threading.Event(), delivery._write
+
+    def late(entries: Sequence[Entry], connection: Connection) -> None:
+        held.wait(60)
+        write(entries, connection)
+
+    monkeypatch.setattr(delivery, "_write", late)
+    await journal.append("m", [HoldOrdered(craft_id="craft-1", by="anna", reason=None)])
+    report = journal.report()
+    assert (report.state, report.reason, report.spooled) == ("slow", DiskBusy(), 1)
+    held.set()
+    await until_ok(journal)
+    assert len(await (await bench.open("other.spool")).read("m")) == 2, "once, though it was written late as well"
 
 
 async def test_a_reader_is_told_the_same(bench, monkeypatch) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from backend.events import (
     BearingExcluded,
+    BearingIncluded,
     BearingMeasured,
     CraftSource,
     HoldOrdered,
@@ -97,6 +98,21 @@ async def test_a_second_writer_is_found_out(bench):
     await other.append("m", [hold("theirs")])
     with pytest.raises(JournalConflict):
         await one.append("m", [hold("ours")])
+
+
+async def test_the_list_counts_bearings_that_count_and_no_silences(journal):
+    def left_out(which: str, heard: bool) -> BearingExcluded:
+        return BearingExcluded(emitter_id="emitter-1", bearing_id=which, by="operator", reason="", heard=heard)
+
+    def back(which: str, heard: bool) -> BearingIncluded:
+        return BearingIncluded(emitter_id="emitter-1", bearing_id=which, by="operator", heard=heard)
+
+    counts: list[int] = []
+    await journal.append("m", [DRAFT, STARTED, bearing()])
+    for fact in (left_out("s2", False), back("s2", False), left_out("b1", True), back("b1", True)):
+        await journal.append("m", [fact])
+        counts.append((await journal.mission("m")).bearings)
+    assert counts == [1, 1, 0, 1]
 
 
 async def test_the_list_tells_phase_outcome_and_counts(bench):

@@ -100,9 +100,18 @@ export const server = {
     text: "Der Rechner des Servers ist so ausgelastet, dass Antworten der Datenbank zu spät ankommen.",
     remedy: "Anderes auf diesem Rechner beenden; was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
   },
+  database_taken: {
+    text: "Etwas anderes schreibt gerade in die Datei der Datenbank.",
+    remedy:
+      "Das geht von selbst vorüber, etwa wenn ein Bündel hereingeholt wird; sonst das andere Programm beenden. Was inzwischen geschieht, liegt in der Warteschlange auf der Platte.",
+  },
+  disk_busy: {
+    text: "Die Platte ist so langsam, dass Antworten der Datenbank zu spät kommen.",
+    remedy: "Anderes beenden, das diese Platte beschäftigt; was inzwischen geschieht, liegt dort in der Warteschlange.",
+  },
   disk_low: { text: "Auf der Platte sind nur noch {free_bytes} frei.", remedy: "Platz schaffen." },
   nothing_stores: {
-    text: "Die Datenbank ist weg ({database}), und die Warteschlange ist nicht beschreibbar ({spool}).",
+    text: "Die Datenbank nimmt nichts an ({database}), und die Warteschlange ist nicht beschreibbar ({spool}).",
     remedy: "Auf der Platte Platz schaffen und die Datenbank wieder starten.",
   },
   fact_unfit: {
