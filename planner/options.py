@@ -25,9 +25,10 @@ points (`planner.sampling`)."""
 Estimator = Literal["map", "expected_value", "geometric_median"]
 """Point estimate of a belief (`planner.belief.estimate`)."""
 
-CellLikelihood = Literal["centre", "mean"]
-"""What a cell's likelihood is: that of its centre, as in the thesis, or the mean over the cell. Near the sensor a wedge
-is narrower than a cell; the centres' belief is too sure there, and a planner that knows it measures from there."""
+CellLikelihood = Literal["centre", "resolved"]
+"""What a cell's likelihood is: that of its centre, as in the thesis, or of a wedge no narrower than cells can show
+(`planner.observation.resolved_likelihood`). Near the sensor a wedge is narrower than a cell; the centres' belief is too
+sure there, and a planner that knows it measures from there."""
 
 
 @dataclass(frozen=True, slots=True)
