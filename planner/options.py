@@ -52,7 +52,7 @@ STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 """What the simulation studies of the thesis use (ch. 4 and 5)."""
 
 CROSSFIX = PlannerOptions(
-    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
+    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=2400
 )
 """Ours (docs/decisions/0032): `crossfix` in studies, and what the suggested mission names. The specification's own
 defaults stay FIELD: a stored mission that names no planner was flown with it."""
