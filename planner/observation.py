@@ -14,8 +14,8 @@ WEDGE_SIGMAS = 4.0
 """A target lies within this many sigma of an honest bearing (spec 2)."""
 
 THINNEST = 0.5
-"""Standard deviation, in cells, of the thinnest Gaussian whose values at cell centres have its mass, mean and variance:
-to 1 % here, the rest of Poisson's sum being 2 exp(-2 pi^2 THINNEST^2)."""
+"""Standard deviation, in cells, of the thinnest Gaussian whose values at cell centres stand for it: its mass to
+2 exp(-2 pi^2 THINNEST^2) = 1.4 % (Poisson's sum), its variance to 15 %, more or less by where it lies between them."""
 
 FEWEST_DIRECTIONS = 8
 """Of a bearing's profile; a direction finder's has 360."""

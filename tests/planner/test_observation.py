@@ -53,7 +53,7 @@ def test_what_cells_show_of_a_wedge_has_its_mass_place_and_width(cells_away, off
     mass = found / found.sum()
     assert found.sum() * h == pytest.approx(np.sqrt(2 * np.pi) * SIGMA * r, rel=0.03)
     assert mass @ y == pytest.approx(0.0, abs=0.03 * h)
-    assert mass @ y**2 == pytest.approx(max(SIGMA * r, 0.5 * h) ** 2, rel=0.1)
+    assert mass @ y**2 == pytest.approx(max(SIGMA * r, 0.5 * h) ** 2, rel=0.2)
 
 
 def test_a_wedge_that_cells_show_is_that_of_their_centres():
