@@ -13,6 +13,10 @@ from planner.types import Bearing, BoolArray, FloatArray, PlannerError
 WEDGE_SIGMAS = 4.0
 """A target lies within this many sigma of an honest bearing (spec 2)."""
 
+THINNEST = 0.5
+"""Standard deviation, in cells, of the thinnest Gaussian whose values at cell centres stand for it: its mass to
+2 exp(-2 pi^2 THINNEST^2) = 1.4 % (Poisson's sum), its variance to 15 %, more or less by where it lies between them."""
+
 FEWEST_DIRECTIONS = 8
 """Of a bearing's profile; a direction finder's has 360."""
 
@@ -53,22 +57,23 @@ def hard_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, margin: floa
     return np.where(inside_wedge(bearing, x, y, margin), gaussian_likelihood(error, bearing.sigma), 0.0)
 
 
-def mean_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, h: float) -> FloatArray:
-    """Mean of the likelihood over the square cells of side h (m) about (x, y), zero for those that the wedge misses.
+def resolved_likelihood(bearing: Bearing, x: FloatArray, y: FloatArray, h: float) -> FloatArray:
+    """Likelihood at the centres (x, y) of cells of side h (m) of a wedge no narrower than they can show.
 
-    A cell's points differ by h^2 / 12 in variance across the line of sight, whatever its direction, so the mean is
+        sigma / sqrt(v) exp(-e^2 / (2 v)),   v = max(sigma^2, (THINNEST h / r)^2)
 
-        sigma / sqrt(v) exp(-e^2 / (2 v)),   v = sigma^2 + h^2 / (12 r^2),
-
-    with e the error at the centre and r the distance, of the nearest cells at least h / sqrt(6) (then a cell is about
-    a radian wide). No cell that the wedge touches has less than exp(-8) for its exponential, as at the wedge's edge.
+    with e the error at the centre and r the distance, of the nearest cells at least sqrt(2) THINNEST h (then v is half
+    a square radian): a wedge that is wider is taken as it is, a narrower one keeps its mass and is widened. Zero for
+    cells that the wedge misses; no cell that it touches has less than exp(-8) for its exponential, as at the edge.
     """
     error = wrap(expected_bearing(bearing.x, bearing.y, x, y) - bearing.angle)
-    square = h**2 / 12.0
-    variance = bearing.sigma**2 + square / np.maximum((x - bearing.x) ** 2 + (y - bearing.y) ** 2, 2.0 * square)
+    thinnest2 = (THINNEST * h) ** 2
+    variance = np.maximum(
+        bearing.sigma**2, thinnest2 / np.maximum((x - bearing.x) ** 2 + (y - bearing.y) ** 2, 2.0 * thinnest2)
+    )
     exponent = np.minimum(0.5 * error**2 / variance, 0.5 * WEDGE_SIGMAS**2)
-    mean = bearing.sigma / np.sqrt(variance) * np.exp(-exponent)
-    return np.where(inside_wedge(bearing, x, y, h / np.sqrt(2.0)), mean, 0.0)
+    weight = bearing.sigma / np.sqrt(variance) * np.exp(-exponent)
+    return np.where(inside_wedge(bearing, x, y, h / np.sqrt(2.0)), weight, 0.0)
 
 
 def inside_wedge(bearing: Bearing, x: FloatArray, y: FloatArray, margin: float) -> BoolArray:

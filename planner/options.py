@@ -25,9 +25,10 @@ points (`planner.sampling`)."""
 Estimator = Literal["map", "expected_value", "geometric_median"]
 """Point estimate of a belief (`planner.belief.estimate`)."""
 
-CellLikelihood = Literal["centre", "mean"]
-"""What a cell's likelihood is: that of its centre, as in the thesis, or the mean over the cell. Near the sensor a wedge
-is narrower than a cell; the centres' belief is too sure there, and a planner that knows it measures from there."""
+CellLikelihood = Literal["centre", "resolved"]
+"""What a cell's likelihood is: that of its centre, as in the thesis, or of a wedge no narrower than cells can show
+(`planner.observation.resolved_likelihood`). Near the sensor a wedge is narrower than a cell; the centres' belief is too
+sure there, and a planner that knows it measures from there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ STUDY = PlannerOptions(base_policy="ellipse", budget=3600)
 """What the simulation studies of the thesis use (ch. 4 and 5)."""
 
 CROSSFIX = PlannerOptions(
-    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=1200
+    base_policy="dynamic_program", sampling="quasi_random", estimator="geometric_median", budget=2400
 )
 """Ours (docs/decisions/0032): `crossfix` in studies, and what the suggested mission names. The specification's own
 defaults stay FIELD: a stored mission that names no planner was flown with it."""

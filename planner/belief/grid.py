@@ -28,8 +28,8 @@ from planner.observation import (
     WEDGE_SIGMAS,
     cuts,
     hard_likelihood,
-    mean_likelihood,
     mixture_likelihood,
+    resolved_likelihood,
     validate_bearing,
 )
 from planner.options import CellLikelihood
@@ -55,6 +55,10 @@ COARSE_CELLS = 40
 
 FEWEST_CELLS = 10
 """A likelihood is never evaluated on fewer cells than this on the longer axis: the grid is doubled before."""
+
+FINER = 2
+"""So many times as many cells has the first grid of a problem with resolved likelihoods; they are never evaluated on
+fewer than FINER COARSE_CELLS."""
 
 MOST_CELLS = 256 * 256
 """A grid that carries several hypotheses is not doubled beyond this many cells."""
@@ -118,7 +122,8 @@ def prior_belief(problem: Problem) -> GridBelief:
     if isinstance(prior, RingPrior):
         possible = _clip_to_disc(area, prior)
     x_min, y_min, x_max, y_max = bounds(possible)
-    h = max(x_max - x_min, y_max - y_min) / FIRST_CELLS
+    cells = FINER * FIRST_CELLS if problem.likelihood == "resolved" else FIRST_CELLS
+    h = max(x_max - x_min, y_max - y_min) / cells
     nx, ny = (max(1, int(np.ceil(extent / h - _ALIGN))) for extent in (x_max - x_min, y_max - y_min))
     density = cells_touching(area, x_min, y_min, h, nx, ny).astype(float)
     x, y = np.meshgrid(centres(x_min, h, nx), centres(y_min, h, ny))
@@ -137,7 +142,7 @@ def fold(problem: Problem, bearings: Iterable[Bearing]) -> GridBelief:
     """The belief after all bearings, in the order given. Raises InconsistentBearings like `update`."""
     belief = prior_belief(problem)
     for bearing in bearings:
-        belief = update(belief, bearing)
+        belief = update(belief, bearing, problem.likelihood)
     return belief
 
 
@@ -160,12 +165,13 @@ def _update_hard(belief: GridBelief, bearing: Bearing, likelihood: CellLikelihoo
     extent = bounds(possible)
     longer = max(extent[2] - extent[0], extent[3] - extent[1])
     doublings = 0
-    while max(belief.nx, belief.ny) < FEWEST_CELLS and longer > 0 and doublings < _DEEPEST_DOUBLING:
+    fewest = FINER * COARSE_CELLS if likelihood == "resolved" else FEWEST_CELLS
+    while max(belief.nx, belief.ny) < fewest and longer > 0 and doublings < _DEEPEST_DOUBLING:
         belief = _crop_to(_doubled(belief), extent)
         doublings += 1
     x, y = np.meshgrid(*belief.centres())
-    if likelihood == "mean":
-        density = belief.density * mean_likelihood(bearing, x, y, belief.h)
+    if likelihood == "resolved":
+        density = belief.density * resolved_likelihood(bearing, x, y, belief.h)
     else:
         density = belief.density * hard_likelihood(bearing, x, y, margin=belief.h / np.sqrt(2.0))
     mass = density.sum()

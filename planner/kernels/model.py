@@ -50,8 +50,8 @@ class Start(NamedTuple):
 class Rules(NamedTuple):
     """The problem as numbers.
 
-    likelihood: (6,) coefficients of p in L = p(sin^2 e)^8, lowest first. edge: sin^2 of 4 sigma. blur: 1 / (12 sigma^2)
-    for the mean over a cell, 0 for its centre. threshold: m.
+    likelihood: (6,) coefficients of p in L = p(sin^2 e)^8, lowest first. edge: sin^2 of 4 sigma. blur: (THINNEST /
+    sigma)^2 for wedges no narrower than cells can show, 0 for cell centres. threshold: m.
     motion: LINEAR or FULL. standoff: m, of a Fisher action to C95. places: (l, 2) m, the fixed lattice; with none the
     grid_x x grid_y cells of the tripled belief rectangle are used, cut with window (x_min, y_min, x_max, y_max).
     travel: (l, l) m between places, or (0, 0) for straight lines. ratios, distances: (n,) the ellipse policy's table.

@@ -40,7 +40,7 @@ from planner.types import Candidate, Decision, FloatArray, IntArray, PlannerErro
 
 SELECTIONS: Mapping[DiscreteSelection, Selection] = {"uniform": uniform, "sequential_halving": sequential_halving}
 
-PROGRAM_PLACES = 64
+PROGRAM_PLACES = 24
 """How many places rollouts on the dynamic program compare; it names them itself."""
 
 PROGRAM_HORIZON = 2

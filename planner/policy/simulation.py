@@ -16,7 +16,8 @@ from typing import Literal
 import numpy as np
 
 from planner.airspace import may_fly
-from planner.belief.grid import GridBelief
+from planner.belief.coarse import coarser
+from planner.belief.grid import FIRST_CELLS, GridBelief
 from planner.directions import turning_lead
 from planner.kernels import compiled, reference
 from planner.kernels.model import (
@@ -40,6 +41,7 @@ from planner.kernels.model import (
 )
 from planner.kernels.value.model import nodes
 from planner.motion import flight_time, turn_between, validate_motion
+from planner.observation import THINNEST
 from planner.options import BasePolicy
 from planner.policy.actions import flight_window, lattice
 from planner.policy.ellipse import table
@@ -160,9 +162,10 @@ def simulate(
     if threads < 1:
         raise PlannerError(UnusableNumber("threads", "at_least_one", str(threads)))
     graph = None if straight_suffices(problem) else visibility_graph(problem)
+    started = coarser(belief, FIRST_CELLS) if problem.likelihood == "resolved" else belief
     return Simulation(
         problem,
-        start_of(belief),
+        start_of(started),
         rules_of(problem, base_policy, horizon, graph, program, places),
         here,
         heading,
@@ -218,7 +221,7 @@ def rules_of(
         sigma=sigma,
         likelihood=coefficients,
         edge=edge,
-        blur=1.0 / (12.0 * sigma**2) if problem.likelihood == "mean" else 0.0,
+        blur=(THINNEST / sigma) ** 2 if problem.likelihood == "resolved" else 0.0,
         threshold=float(problem.threshold),
         measurement_time=float(problem.measurement_time),
         motion=motion,

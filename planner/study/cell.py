@@ -104,7 +104,7 @@ class Cell:
             estimator=self._estimator(),
             action_grid=grid,
             measurement_time=self.measurement_time,
-            likelihood="mean" if self.planner in TABLED else "centre",
+            likelihood="resolved" if self.planner in TABLED else "centre",
         )
 
     def _estimator(self) -> Estimator | None:

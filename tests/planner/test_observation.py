@@ -7,11 +7,10 @@ from hypothesis import strategies as st
 
 from planner.observation import (
     cuts,
-    gaussian_likelihood,
     hard_likelihood,
     inside_wedge,
-    mean_likelihood,
     mixture_likelihood,
+    resolved_likelihood,
     wrap,
 )
 from planner.types import Bearing, Peak
@@ -45,27 +44,27 @@ def test_outside_the_widened_wedge_nothing_and_in_its_margin_the_edge():
     assert not inside_wedge(bearing, np.array([-10.0]), np.array([0.0]), margin=2.0)[0]
 
 
-@pytest.mark.parametrize(("r", "good_to"), [(4.0, 0.3), (8.0, 0.15), (15.0, 0.05), (40.0, 0.01), (150.0, 0.01)])
-def test_the_mean_over_a_cell_is_that_of_its_points(r, good_to):
-    h, off = 3.0, (np.arange(60) + 0.5) / 60 - 0.5
-    for sigmas in (0.0, 1.0, 2.0):
-        angle = 0.3 + sigmas * SIGMA
-        x, y = r * np.cos(angle), r * np.sin(angle)
-        px, py = (x + h * off)[None, :], (y + h * off)[:, None]
-        exact = float(gaussian_likelihood(np.arctan2(py, px) - 0.3, SIGMA).mean())
-        found = float(mean_likelihood(Bearing(0.0, 0.0, 0.3, SIGMA), np.array([x]), np.array([y]), h)[0])
-        assert found == pytest.approx(exact, rel=good_to)
+@pytest.mark.parametrize("cells_away", [4, 8, 20, 50])
+@pytest.mark.parametrize("offset", [0.0, 0.25, 0.5])
+def test_what_cells_show_of_a_wedge_has_its_mass_place_and_width(cells_away, offset):
+    h = 3.0
+    r, y = cells_away * h, (np.arange(-40, 41) + offset) * h
+    found = resolved_likelihood(Bearing(0.0, 0.0, 0.0, SIGMA), np.full(81, r), y, h)
+    mass = found / found.sum()
+    assert found.sum() * h == pytest.approx(np.sqrt(2 * np.pi) * SIGMA * r, rel=0.03)
+    assert mass @ y == pytest.approx(0.0, abs=0.03 * h)
+    assert mass @ y**2 == pytest.approx(max(SIGMA * r, 0.5 * h) ** 2, rel=0.2)
 
 
-def test_far_from_the_sensor_and_on_a_fine_grid_the_mean_is_the_centres():
+def test_a_wedge_that_cells_show_is_that_of_their_centres():
     bearing, x, y = Bearing(0.0, 0.0, 0.0, SIGMA), np.full(5, 200.0), np.linspace(-20.0, 20.0, 5)
-    centre = hard_likelihood(bearing, x, y, margin=0.1 / np.sqrt(2.0))
-    assert mean_likelihood(bearing, x, y, 0.1) == pytest.approx(centre, rel=1e-4)
+    centre = hard_likelihood(bearing, x, y, margin=3.0 / np.sqrt(2.0))
+    assert resolved_likelihood(bearing, x, y, 3.0) == pytest.approx(centre, rel=1e-12)
 
 
 def test_cells_that_the_wedge_misses_and_the_sensors_own_cell_hold_little():
     bearing = Bearing(0.0, 0.0, 0.0, SIGMA)
-    found = mean_likelihood(bearing, np.array([-10.0, 50.0, 0.0]), np.array([0.0, 40.0, 0.0]), 3.0)
+    found = resolved_likelihood(bearing, np.array([-10.0, 50.0, 0.0]), np.array([0.0, 40.0, 0.0]), 3.0)
     assert (found[:2] == 0.0).all()
     assert 0.0 < found[2] < 0.2
 

@@ -10,6 +10,7 @@ from planner.compiling import inlined, jit
 from planner.kernels.compiled.cells import gather, gather_all
 from planner.kernels.compiled.lanes import bits
 from planner.kernels.reference.belief import DEEPEST_DOUBLING, NEARLY
+from planner.observation import THINNEST
 
 _INDEX_MASK = (1 << TIE_BITS) - 1
 _ALIGN = 1e-9
@@ -32,11 +33,12 @@ def measure(
             x_min, x_max = min(x_min, target[v, 0]), max(x_max, target[v, 0])
             y_min, y_max = min(y_min, target[v, 1]), max(y_max, target[v, 1])
         k = 1 if doubled else 0
+        fewest = COARSE_CELLS if rules.blur > 0.0 else FEWEST_CELLS
         while True:
             cell = h / (1 << k)
             i0, i1 = _aligned_range(x_min - x0, x_max - x0, cell, nx << k)
             j0, j1 = _aligned_range(y_min - y0, y_max - y0, cell, ny << k)
-            enough = max(i1 - i0, j1 - j0) >= FEWEST_CELLS or max(x_max - x_min, y_max - y_min) <= 0.0
+            enough = max(i1 - i0, j1 - j0) >= fewest or max(x_max - x_min, y_max - y_min) <= 0.0
             if enough or k >= DEEPEST_DOUBLING:
                 break
             k += 1
@@ -44,9 +46,9 @@ def measure(
             weight, offset, low, high, x0, y0, cell, k, i0, i1, j0, j1, px, py, c, s, rx, ry, lx, ly, work, now
         )
         if rules.blur > 0.0:
-            _weigh_means(
+            _weigh_resolved(
                 work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell,
-                rules.blur * cell * cell, cell * cell / 6.0,
+                rules.blur * cell * cell, 2.0 * (THINNEST * cell) ** 2,
             )  # fmt: skip
         else:
             _weigh(work.weight[now], work.along, work.across, cells, rules.likelihood, rules.edge, NEARLY * cell)
@@ -114,15 +116,16 @@ def _weigh(weight, along, across, cells, likelihood, edge, ahead):
 
 
 @jit
-def _weigh_means(weight, along, across, cells, likelihood, edge, ahead, blurred, nearest):
-    """The same for the mean over a cell, see reference.belief. blurred: h^2 / (12 sigma^2), nearest: h^2 / 6, m^2."""
+def _weigh_resolved(weight, along, across, cells, likelihood, edge, ahead, resolved, nearest):
+    """The same as far as cells can show it, see reference.belief. resolved: m^2 from which on they do."""
     p0, p1, p2, p3, p4, p5 = likelihood[0], likelihood[1], likelihood[2], likelihood[3], likelihood[4], likelihood[5]
     for i in range(cells):
         a, b = along[i], across[i]
         b2 = b * b
         r2 = a * a + b2
         far2 = r2 if r2 > nearest else nearest
-        share = far2 / (far2 + blurred)
+        share = far2 / resolved
+        share = share if share < 1.0 else 1.0
         sin2 = b2 / r2
         sin2 = sin2 if a > ahead else 1.0
         u = sin2 * share

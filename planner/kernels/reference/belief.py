@@ -10,7 +10,7 @@ from planner.belief.estimate import TIE_BITS
 from planner.belief.grid import COARSE_CELLS, FEWEST_CELLS, aligned_range
 from planner.geometry import cells_hull, centres, clip_half_plane
 from planner.kernels.model import GEOMETRIC_MEDIAN, LIKELIHOOD_POWER, MAP, Rules
-from planner.observation import WEDGE_SIGMAS
+from planner.observation import THINNEST, WEDGE_SIGMAS
 from planner.types import FloatArray
 
 NEARLY = 1e-9
@@ -61,7 +61,7 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
     unchanged = belief._replace(bearings=belief.bearings + 1)
     if len(hull) == 0:
         return unchanged
-    weight, x0, y0, h = _cropped(belief, hull)
+    weight, x0, y0, h = _cropped(belief, hull, COARSE_CELLS if rules.blur > 0.0 else FEWEST_CELLS)
     ny, nx = weight.shape
     rows, columns = np.arange(int(ny)), np.arange(int(nx))
     dy = y0 + (rows + 0.5) * h - place[1]
@@ -77,8 +77,8 @@ def measure(belief: Belief, rules: Rules, place: FloatArray, target: FloatArray,
     return Belief(weight, x0, y0, h, hull, belief.bearings + 1, doubled=max(nx, ny) < COARSE_CELLS)
 
 
-def _cropped(belief: Belief, hull: FloatArray) -> tuple[FloatArray, float, float, float]:
-    """The cells that touch the hull's rectangle, doubled when that is due or they are too few: weight, x0, y0, h."""
+def _cropped(belief: Belief, hull: FloatArray, fewest: int) -> tuple[FloatArray, float, float, float]:
+    """The cells that touch the hull's rectangle, doubled when due or when fewer than `fewest`: weight, x0, y0, h."""
     extent = hull.max(axis=0) - hull.min(axis=0)
     doublings = int(belief.doubled)
     while True:
@@ -87,7 +87,7 @@ def _cropped(belief: Belief, hull: FloatArray) -> tuple[FloatArray, float, float
         (x_min, y_min), (x_max, y_max) = hull.min(axis=0), hull.max(axis=0)
         i0, i1 = aligned_range(x_min - belief.x0, x_max - belief.x0, h, nx)
         j0, j1 = aligned_range(y_min - belief.y0, y_max - belief.y0, h, ny)
-        enough = max(i1 - i0, j1 - j0) >= FEWEST_CELLS or extent.max() <= 0
+        enough = max(i1 - i0, j1 - j0) >= fewest or extent.max() <= 0
         if enough or doublings >= DEEPEST_DOUBLING:
             break
         doublings += 1
@@ -108,11 +108,11 @@ def _narrowed(
 
 
 def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, h: float) -> FloatArray:
-    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing; its mean over a cell of side h with blur.
+    """exp(-e^2 / (2 sigma^2)), e the angle between (dx, dy) and the bearing; with blur as cells of side h can show it.
 
-    Beyond 4 sigma, and for places that are not ahead of the sensor, that of the wedge's edge. The mean is
-    observation.mean_likelihood's: with k = h^2 / (12 sigma^2) and r^2 at least h^2 / 6 it is
-    sqrt(r^2 / (r^2 + k)) times the likelihood of sin^2 e r^2 / (r^2 + k).
+    Beyond 4 sigma, and for places that are not ahead of the sensor, that of the wedge's edge. What cells show is
+    observation.resolved_likelihood: with s = min(1, r^2 / (blur h^2)) and r^2 at least 2 (THINNEST h)^2 it is
+    sqrt(s) times the likelihood of s sin^2 e.
     """
     along = np.cos(angle) * dx + np.sin(angle) * dy
     across = np.cos(angle) * dy - np.sin(angle) * dx
@@ -120,8 +120,8 @@ def likelihood(rules: Rules, dx: FloatArray, dy: FloatArray, angle: float, h: fl
     sin2 = np.where(along > NEARLY * h, across**2 / np.where(length2 > 0, length2, 1.0), 1.0)
     share = np.ones_like(length2)
     if rules.blur > 0.0:
-        distance2 = np.maximum(length2, h * h / 6.0)
-        share = distance2 / (distance2 + rules.blur * h * h)
+        distance2 = np.maximum(length2, 2.0 * (THINNEST * h) ** 2)
+        share = np.minimum(distance2 / (rules.blur * h * h), 1.0)
     series = np.polynomial.Polynomial(rules.likelihood)
     root = np.asarray(series(np.minimum(sin2 * share, rules.edge)), dtype=np.float64)
     return np.asarray(root**LIKELIHOOD_POWER * np.sqrt(share), dtype=np.float64)

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from refusals import refusing
 
+from planner.belief import grid
 from planner.belief.estimate import confidence_region, estimate
-from planner.belief.grid import FIRST_CELLS, MOST_CELLS, digest, fold, prior_belief, update
+from planner.belief.grid import COARSE_CELLS, FINER, FIRST_CELLS, MOST_CELLS, digest, fold, prior_belief, update
 from planner.geometry import contains
 from planner.reasons import (
     BearingMissesArea,
@@ -82,6 +83,31 @@ def test_first_grid_has_a_hundred_square_cells_on_the_longer_axis():
     assert (belief.nx, belief.ny) == (FIRST_CELLS, 39)
     assert belief.h == pytest.approx(3.13)
     assert (belief.x0, belief.y0) == (-10.0, 5.0)
+
+
+NEAR = ((150, 110), (125, 150), (155, 135))
+
+
+def resolved(bearings=NEAR, target=(150, 150)):
+    belief = prior_belief(problem(likelihood="resolved"))
+    for k, (x, y) in enumerate(bearings):
+        belief = update(belief, toward(x, y, target, error=(0.5 - k) * SIGMA), "resolved")
+    return belief
+
+
+def test_resolved_likelihoods_have_finer_cells_from_the_first_to_the_last():
+    assert resolved(bearings=()).nx == FINER * FIRST_CELLS
+    for count in (1, 2, 3):
+        belief = resolved(NEAR[:count])
+        assert max(belief.nx, belief.ny) >= FINER * COARSE_CELLS
+        assert belief.copies == 1
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_what_resolved_cells_state_is_what_four_times_finer_ones_do(monkeypatch, count):
+    stated = estimate(resolved(NEAR[:count]), "geometric_median").expected_rmse
+    monkeypatch.setattr(grid, "FINER", 4 * FINER)
+    assert stated == pytest.approx(estimate(resolved(NEAR[:count]), "geometric_median").expected_rmse, rel=0.03)
 
 
 def test_cells_outside_a_non_convex_area_hold_nothing():

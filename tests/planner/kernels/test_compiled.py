@@ -75,7 +75,7 @@ def random_case(seed: int):
     heading = None if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
     policy = str(rng.choice(["ellipse", "fisher", "dynamic_program"]))
     platform, horizon = tuple(rng.uniform(low, high)), int(rng.choice([1, 2, 24]))
-    problem = replace(problem, likelihood="mean" if rng.random() < 0.4 else "centre")
+    problem = replace(problem, likelihood="resolved" if rng.random() < 0.4 else "centre")
     return problem, bearings, platform, policy, horizon, heading
 
 

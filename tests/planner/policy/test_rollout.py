@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from refusals import refusing
 
-from planner.belief.grid import prior_belief
+from planner.belief.grid import FIRST_CELLS, prior_belief
 from planner.kernels.model import CLOSED_FEATURES
 from planner.policy.actions import SAME_PLACE_M
 from planner.policy.rollout import Rollout, RolloutSampler
@@ -53,6 +53,14 @@ def test_a_common_path_is_the_same_whoever_asks_first():
     pieces = [two.sample(np.array([k]), a, b) for a, b in ((0, 20), (20, 150)) for k in (2, 0, 1)]
     for k, order in enumerate((1, 2, 0)):
         assert (np.concatenate([pieces[order][0], pieces[order + 3][0]]) == whole[k]).all()
+
+
+def test_rollouts_begin_with_the_belief_on_no_more_cells_than_the_thesis_has():
+    problem = replace(PROBLEM, likelihood="resolved")
+    belief = prior_belief(problem)
+    start = simulate(problem, belief, HOME, base_policy="ellipse").start
+    assert belief.nx > start.density.shape[1] == FIRST_CELLS
+    assert start.density.sum() == pytest.approx(1.0)
 
 
 def test_independent_paths_are_drawn_afresh():

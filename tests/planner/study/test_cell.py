@@ -39,7 +39,7 @@ def test_planners_on_the_dynamic_program_bring_estimator_and_table_along(monkeyp
     assert Cell(planner="crossfix", estimator="map").case().problem.estimator == "map"
     policy = ours.policy()
     assert isinstance(policy, Rollout)
-    assert (policy.sampling, policy.budget, policy.base_policy) == ("quasi_random", 1200, "dynamic_program")
+    assert (policy.sampling, policy.budget, policy.base_policy) == ("quasi_random", 2400, "dynamic_program")
     assert callable(alone.policy())
     assert not ours.repeatable()
     assert alone.repeatable()
