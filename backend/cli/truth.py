@@ -12,6 +12,7 @@ from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import localization
 from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
+from planner.belief.source_errors import ErrorPrior
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
@@ -101,13 +102,13 @@ def study_row(
         raise StudyError(f"--planner goes with one emitter that stays where it is, not with {row}")
     if shared and (row not in TAGS or known != "joint"):
         raise StudyError("--shared-errors goes with the joint model of several tags")
-    if row in TAGS:
-        return _tags_row(row, count, known, first_seed, shared)
-    wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
+    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
+    if row in TAGS:
+        return _tags_row(row, count, known, first_seed, shared, prior)
+    wanted = None if row in SPEEDS else row_named(row)
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)
-    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     if told and wanted is None:
         raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
     if wanted is not None and told:
@@ -130,10 +131,10 @@ def study_row(
     return replace(truth_of(row, known, claims, knows), planner=places)
 
 
-def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool) -> Truth:
-    """Each tag is a claim; missions: how many were flown."""
+def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool, prior: ErrorPrior) -> Truth:
+    """Each tag is a claim; missions: how many were flown. prior: of the joint model."""
     claims: list[Claim] = []
-    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared)
+    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared, prior=prior)
     for number, found in enumerate(flown, start=1):
         claims.extend(found)
         if number % REMARK_EVERY == 0 and number < count:
