@@ -13,6 +13,7 @@ from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import localization
 from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
+from planner.belief.source_errors import ErrorPrior
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
@@ -97,7 +98,8 @@ def study_row(
         raise StudyError(f"--missions must be 1 or more, got {count}")
     if row in TAGS:
         _check(row, known, flights, told, planner, shared)
-        return _tags_row(row, count, known, first_seed, shared)
+        prior = unknown_errors(suggested_mission(HOME).sensor.outlier_probability)
+        return _tags_row(row, count, known, first_seed, shared, prior)
     claims, knows = row_claims(row, range(first_seed, first_seed + count), known, flights, told, planner, shared)
     return replace(truth_of(row, known, claims, knows), planner=truth_planner(planner))
 
@@ -116,9 +118,9 @@ def row_claims(
     places = _check(row, model, flights, told, planner, shared)
     wanted = None if row in SPEEDS else row_named(row)
     mission = suggested_mission(HOME)
+    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     task = localization(mission, HOME)
     search = Search(task.problem, task.rule, (0.0, 0.0), mission.localization.maximum_bearings, places)
-    prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     if told and wanted is None:
         raise StudyError(f"{row}: --told goes with an emitter that stays where it is")
     if wanted is not None and told:
@@ -152,10 +154,10 @@ def _check(row: str, model: Model, flights: int, told: bool, planner: str, share
     return places
 
 
-def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool) -> Truth:
-    """Each tag is a claim; missions: how many were flown."""
+def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool, prior: ErrorPrior) -> Truth:
+    """Each tag is a claim; missions: how many were flown. prior: of the joint model."""
     claims: list[Claim] = []
-    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared)
+    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared, prior=prior)
     for number, found in enumerate(flown, start=1):
         claims.extend(found)
         if number % REMARK_EVERY == 0 and number < count:

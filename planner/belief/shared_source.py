@@ -27,9 +27,12 @@ from planner.belief.joint import JointBelief, by_source, error_nodes, places_bes
 from planner.belief.source_errors import Nodes
 from planner.types import Bearing, FloatArray
 
+USED_UP = 2
+"""Bearings that an emitter's place takes."""
+
 
 def with_shared_errors(beliefs: Sequence[JointBelief]) -> tuple[JointBelief, ...]:
-    """The beliefs about each emitter, in their order, with what the others tell of the source that heard most of them.
+    """The beliefs about each emitter, in their order, with what the others tell of one source of bearings.
 
     beliefs: each with its own bearings alone, the same known before of a source's errors. One that the source did not
     hear stays as it is, and so do all when it heard one of them only.
@@ -47,14 +50,20 @@ def with_shared_errors(beliefs: Sequence[JointBelief]) -> tuple[JointBelief, ...
 
 
 def common_source(beliefs: Sequence[JointBelief]) -> str | None:
-    """Whose bearings are of most emitters; of equal ones who has more of them, then the first by name. None: nobody's
-    are of two."""
-    emitters, taken = Counter[str](), Counter[str]()
+    """Of those who heard two emitters or more, whose bearings tell most of their errors. None: nobody did.
+
+    Two bearings of an emitter are used up by its place, so the rest is counted: somebody who names every emitter once
+    does not put a craft's compass aside. Of equal ones who heard most emitters, then who has more bearings, then the
+    first by name.
+    """
+    emitters, taken, spare = Counter[str](), Counter[str](), Counter[str]()
     for belief in beliefs:
-        emitters.update({bearing.source for bearing in belief.folded})
-        taken.update(bearing.source for bearing in belief.folded)
-    found = min(emitters, key=lambda name: (-emitters[name], -taken[name], name), default=None)
-    return found if found is not None and emitters[found] > 1 else None
+        of_it = Counter(bearing.source for bearing in belief.folded)
+        emitters.update(of_it.keys())
+        taken.update(of_it)
+        spare.update({name: max(count - USED_UP, 0) for name, count in of_it.items()})
+    several = [name for name, count in emitters.items() if count > 1]
+    return min(several, key=lambda name: (-spare[name], -emitters[name], -taken[name], name), default=None)
 
 
 def common_nodes(beliefs: Sequence[JointBelief], source: str) -> Nodes:

@@ -55,6 +55,20 @@ class ErrorPrior:
         return float(np.sqrt(self.spread_weight @ self.spread**2))
 
 
+def evenly_spread(prior: ErrorPrior) -> ErrorPrior:
+    """The prior with each standard deviation of the bias weighed by the range that it stands for, to its neighbours'
+    middles.
+
+    Weights that are equal for values which stand twice as far apart each time are even in log tau and pile up at a
+    right compass; even in tau is what is recommended where few groups tell of tau (Gelman 2006). What was learned of
+    tau stays: its evidence is multiplied by the other weights.
+    """
+    middles = 0.5 * (prior.spread[1:] + prior.spread[:-1])
+    top = 2.0 * prior.spread[-1] - middles[-1] if len(middles) else 2.0 * prior.spread[-1]
+    weight = prior.spread_weight * np.diff(np.concatenate([[0.0], middles, [top]]))
+    return replace(prior, spread_weight=weight / weight.sum())
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Nodes:
     """The grid on which a source's errors are marginalized: values and weights of bias (b,), scale (k,), rate (e,).

@@ -1,4 +1,5 @@
-"""How often a claim follows the next bearing from each of many places: readable and compiled.
+"""How often a claim follows the next bearing from each of many places, and what it leaves of the tail: readable and
+compiled.
 
 `claim_chances_reference` is the specification in numpy, `claim_chances` its compiled twin.
 """
@@ -36,6 +37,14 @@ class Draws(NamedTuple):
     noise: FloatArray
 
 
+class Claims(NamedTuple):
+    """Of n places. chance: (n,) that the rule is met after the bearing. tail: (n,) expected logarithm of the mass that
+    is still too far then, not counted below what the rule allows."""
+
+    chance: FloatArray
+    tail: FloatArray
+
+
 class ClaimRule(NamedTuple):
     """threshold: m, of the expected error. far: times the expected error. beyond: the most mass that may be so far."""
 
@@ -46,12 +55,12 @@ class ClaimRule(NamedTuple):
 
 def claim_chances_reference(
     cells: BiasedCells, places: FloatArray, draws: Draws, rate: float, rule: ClaimRule
-) -> FloatArray:
-    """(n,) of the places (n, 2), m: share of the draws after which the rule is met, times that of honest bearings.
+) -> Claims:
+    """Of the places (n, 2), m: share of the draws after which the rule is met, times that of honest bearings.
 
     p(z | x) = (1 - rate) N(z; dir(x) + bias(x), v(x)) + rate / (2 pi),  v(x) = variance(x) + blur(x) / r^2.
     """
-    chances = np.empty(len(places))
+    found = Claims(np.empty(len(places)), np.empty(len(places)))
     for index, place in enumerate(places):
         dx, dy = cells.x - place[0], cells.y - place[1]
         towards = np.arctan2(dy, dx) + cells.bias
@@ -65,16 +74,17 @@ def claim_chances_reference(
         off = np.hypot(cells.x - x[:, None], cells.y - y[:, None])
         expected = (after * off).sum(axis=1)
         beyond = (after * (off > rule.far * expected[:, None])).sum(axis=1)
-        chances[index] = (1.0 - rate) * ((expected < rule.threshold) & (beyond <= rule.beyond)).mean()
-    return chances
+        found.chance[index] = (1.0 - rate) * ((expected < rule.threshold) & (beyond <= rule.beyond)).mean()
+        found.tail[index] = np.log(np.maximum(beyond, rule.beyond)).mean()
+    return found
 
 
 @entry
-def claim_chances(cells: BiasedCells, places: FloatArray, draws: Draws, rate: float, rule: ClaimRule) -> FloatArray:
+def claim_chances(cells: BiasedCells, places: FloatArray, draws: Draws, rate: float, rule: ClaimRule) -> Claims:
     """See claim_chances_reference."""
     count, drawn = len(cells.x), len(draws.cell)
     towards, sd, peak, after, off = np.empty((5, count))
-    chances = np.empty(len(places))
+    chance, tail = np.empty(len(places)), np.empty(len(places))
     for p in range(len(places)):
         for c in range(count):
             dx, dy = cells.x[c] - places[p, 0], cells.y[c] - places[p, 1]
@@ -82,7 +92,7 @@ def claim_chances(cells: BiasedCells, places: FloatArray, draws: Draws, rate: fl
             near = max(dx * dx + dy * dy, cells.blur[c], 1e-6)
             sd[c] = math.sqrt(cells.variance[c] + cells.blur[c] / near)
             peak[c] = (1.0 - rate) / (math.sqrt(2.0 * math.pi) * sd[c])
-        met = 0
+        met, left = 0, 0.0
         for d in range(drawn):
             z = towards[draws.cell[d]] + sd[draws.cell[d]] * draws.noise[d]
             whole = x = y = 0.0
@@ -101,12 +111,12 @@ def claim_chances(cells: BiasedCells, places: FloatArray, draws: Draws, rate: fl
                 off[c] = math.sqrt((cells.x[c] - x) ** 2 + (cells.y[c] - y) ** 2)
                 expected += after[c] * off[c]
             expected /= whole
-            if expected >= rule.threshold:
-                continue
             beyond = 0.0
             for c in range(count):
                 if off[c] > rule.far * expected:
                     beyond += after[c]
-            met += beyond <= rule.beyond * whole
-        chances[p] = (1.0 - rate) * met / drawn
-    return chances
+            met += expected < rule.threshold and beyond <= rule.beyond * whole
+            left += math.log(max(beyond / whole, rule.beyond))
+        chance[p] = (1.0 - rate) * met / drawn
+        tail[p] = left / drawn
+    return Claims(chance, tail)

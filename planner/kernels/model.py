@@ -5,6 +5,7 @@ Frame: local ENU metres; angles rad ccw from east; times s.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -138,9 +139,20 @@ def likelihood_polynomial(sigma: float) -> tuple[FloatArray, float]:
     The eighth root is nearly straight, so that a low degree fits it; three squarings bring the likelihood back.
     """
     edge = float(np.sin(WEDGE_SIGMAS * sigma) ** 2)
-    nodes = np.cos(np.pi * (np.arange(64) + 0.5) / 64)
-    error = np.arcsin(np.sqrt(0.5 * (nodes + 1.0) * edge))
-    fitted = chebyshev.chebfit(nodes, np.exp(-(error**2) / (2.0 * LIKELIHOOD_POWER * sigma**2)), LIKELIHOOD_DEGREE)
-    in_nodes = np.polynomial.Polynomial(chebyshev.cheb2poly(fitted))
-    coefficients = in_nodes(np.polynomial.Polynomial([-1.0, 2.0 / edge])).coef
-    return np.resize(np.asarray(coefficients, dtype=np.float64), LIKELIHOOD_DEGREE + 1), edge
+    error = np.arcsin(np.sqrt(0.5 * (_FIT_AT + 1.0) * edge))
+    in_nodes = _FIT @ np.exp(-(error**2) / (2.0 * LIKELIHOOD_POWER * sigma**2))
+    return in_nodes * (2.0 / edge) ** np.arange(LIKELIHOOD_DEGREE + 1), edge
+
+
+def _fit(nodes: FloatArray) -> FloatArray:
+    """(6, n) from values at n Chebyshev nodes to the coefficients in nodes + 1 of their least squares polynomial: the
+    Chebyshev polynomials are orthogonal there, and a plan for many emitters fits one for each."""
+    degrees = np.arange(LIKELIHOOD_DEGREE + 1)
+    projected = chebyshev.chebvander(nodes, LIKELIHOOD_DEGREE).T * np.where(degrees > 0, 2.0, 1.0)[:, None] / len(nodes)
+    powers = np.array([np.resize([*chebyshev.cheb2poly(row), *np.zeros(6)], 6) for row in np.eye(6)]).T
+    moved = np.array([[math.comb(j, k) * (-1.0) ** (j - k) if j >= k else 0.0 for j in degrees] for k in degrees])
+    return moved @ powers @ projected
+
+
+_FIT_AT = np.cos(np.pi * (np.arange(64) + 0.5) / 64)
+_FIT = _fit(_FIT_AT)

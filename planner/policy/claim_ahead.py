@@ -6,9 +6,11 @@ away. To rollouts any bearing will do then, and they choose the nearest place, w
 drawn from the belief, place and bias together, and the belief after it is judged as the verdict will judge it
 (planner.kernels.claim), so that a place on the other side of the estimate counts for what it tells of the bias:
 
-    value(a) = t(a) + (1 - P(a)) t_again
+    value(a) = t(a) + (1 - P(a)) t_failed,    t_failed = max(mean t, min t / P)
 
-with P(a) the chance of a claim after the bearing from a, and t_again the mean t of the places compared.
+with P(a) the chance of a claim after the bearing from a: a bearing that fails costs another one, or as many as the best
+place needs. Where hardly any bearing makes a claim, P(a) is what the bearing does towards one: of the logarithm by
+which the mass too far away is still too large, the share that it takes off in the mean.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
 from planner.belief.source_errors import SourceErrors
 from planner.belief.verdict import FAR_ERRORS, MOST_BEYOND
-from planner.kernels.claim import BiasedCells, ClaimRule, Draws, claim_chances
+from planner.kernels.claim import BiasedCells, ClaimRule, Claims, Draws, claim_chances
 from planner.motion import flight_time
 from planner.policy.fisher import gain_beside_bias
 from planner.reasons import QuickestPlace
@@ -34,7 +36,10 @@ from planner.types import Candidate, Decision, Estimate, FloatArray, Problem
 PLACES_JUDGED = 48
 BEARINGS_DRAWN = 32
 LEAST_CHANCE = 0.2
-"""Of a claim after the best place's bearing; below, more than one bearing has to be planned."""
+"""Of a claim after the best place's bearing; below, more than one bearing has to be planned. Rollouts, which would end
+with any of them, plan those only as long as the expected error is what is missing."""
+LEAST_SHARE = 1e-3
+"""Of the way to a claim that a bearing is taken to cover."""
 HOPELESS = 3.0
 """Times the threshold: no bearing makes a claim of a belief whose expected error is larger than that."""
 CERTAIN = 0.5
@@ -52,7 +57,7 @@ FORECAST_TIMES = 128
 @dataclass(frozen=True, slots=True)
 class ClaimAhead:
     """Of the most telling places (n, 2), m. costs: (n,) s, of flying there and measuring. chance: (n,) that a claim
-    follows; chance_from: the same of any places (k, 2), by the same draws."""
+    follows, or the share of the way to one; chance_from: the same of any places (k, 2), by the same draws."""
 
     places: FloatArray
     costs: FloatArray
@@ -65,9 +70,14 @@ class ClaimAhead:
         return float(self.costs.mean())
 
     @property
+    def failed(self) -> float:
+        """s, after a bearing that led to no claim: one more, or as many as it takes from the best place."""
+        return max(self.again, float((self.costs / np.maximum(self.chance, LEAST_SHARE)).min()))
+
+    @property
     def values(self) -> FloatArray:
         """(n,) s."""
-        return self.costs + (1.0 - self.chance) * self.again
+        return self.costs + (1.0 - self.chance) * self.failed
 
     @property
     def best(self) -> int:
@@ -77,19 +87,20 @@ class ClaimAhead:
     def times(self, cost: float, chance: float, paths: int) -> FloatArray:
         """(paths,) s until a claim by way of a place with this cost (s) and chance, the same paths for every place.
 
-        Path u in (0, 1): the place's own bearing fails where u >= chance, and costs one bearing more; what the best
-        place would need after its second bearing is needed here too. Means therefore differ as the values do:
+        Path u in (0, 1): the place's own bearing fails where u >= chance, and costs t_failed; what the best place would
+        need beyond that is needed here too. Means therefore differ as the values do:
 
-            mean = t(a) + (1 - P(a)) t_again + t_again (1 - P*)^2 / P*
+            mean = t(a) + (1 - P(a)) t_failed + max(0, (t_again / P* - t_failed) (1 - P*))
         """
         share = (0.5 + np.arange(paths)) / paths
         failing = min(max(1.0 - float(self.chance[self.best]), 1e-9), 1.0 - 1.0 / BEARINGS_DRAWN)
         later = np.maximum(np.floor(np.log(1.0 - share) / np.log(failing)) - 1.0, 0.0)
-        return cost + self.again * ((share >= chance) + later)
+        beyond = max(self.again - self.failed * (1.0 - failing), 0.0) / failing
+        return cost + self.failed * (share >= chance) + beyond * later
 
     def std_errors(self, chance: FloatArray) -> FloatArray:
         """(n,) s, of the values of places with these chances."""
-        return self.again * np.sqrt(chance * (1.0 - chance) / BEARINGS_DRAWN)
+        return self.failed * np.sqrt(chance * (1.0 - chance) / BEARINGS_DRAWN)
 
 
 def claim_ahead(
@@ -125,13 +136,28 @@ def claim_ahead(
     rule = ClaimRule(problem.threshold, FAR_ERRORS, CERTAIN * MOST_BEYOND)
     draws = drawn(cells.mass, BEARINGS_DRAWN)
 
-    def chance_from(some: FloatArray) -> FloatArray:
+    def claims_from(some: FloatArray) -> Claims:
         return claim_chances(cells, np.ascontiguousarray(some), draws, errors.outlier_rate, rule)
 
-    chance = chance_from(judged)
-    if chance.max() < (LEAST_CHANCE if now.expected_rmse >= problem.threshold else np.finfo(float).tiny):
+    claims = claims_from(judged)
+    if claims.chance.max() >= LEAST_CHANCE:
+        return ClaimAhead(judged, costs, claims.chance, lambda some: claims_from(some).chance)
+    missing = _tail(cells, now, rule)
+    if now.expected_rmse >= problem.threshold or missing <= 0.0:
         return None
-    return ClaimAhead(judged, costs, chance, chance_from)
+
+    def share_of(tail: FloatArray) -> FloatArray:
+        """Of what is missing, in logarithms."""
+        return np.clip((missing + np.log(rule.beyond) - tail) / missing, LEAST_SHARE, 1.0)
+
+    return ClaimAhead(judged, costs, share_of(claims.tail), lambda some: share_of(claims_from(some).tail))
+
+
+def _tail(cells: BiasedCells, now: Estimate, rule: ClaimRule) -> float:
+    """Logarithm of the mass that is too far from the estimate over what the rule allows."""
+    off = np.hypot(cells.x - now.x, cells.y - now.y)
+    beyond = float(cells.mass[off > rule.far * now.expected_rmse].sum())
+    return float(np.log(max(beyond, np.finfo(float).tiny) / rule.beyond))
 
 
 def choice(ahead: ClaimAhead) -> Decision:

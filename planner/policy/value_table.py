@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -73,8 +73,14 @@ class ProgramTable:
     after: FloatArray
 
     def adapted(self, problem: Problem) -> FloatArray:
-        """G with the problem's own measuring time for the first bearing."""
-        return self.after + (problem.measurement_time - self.key.measurement_time)
+        """G with the problem's own measuring time for the first bearing; not to be written to."""
+        return _adapted(self, problem.measurement_time)
+
+
+@lru_cache(8)
+def _adapted(table: ProgramTable, measurement_time: float) -> FloatArray:
+    """A plan for several emitters asks once for each."""
+    return table.after + (measurement_time - table.key.measurement_time)
 
 
 def key_of(problem: Problem) -> ProgramKey:

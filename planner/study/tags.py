@@ -14,6 +14,7 @@ import numpy as np
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief
 from planner.belief.shared_source import with_shared_errors
+from planner.belief.source_errors import ErrorPrior, evenly_spread
 from planner.belief.verdict import verdict
 from planner.motion import flight_time
 from planner.options import FIELD, PlannerOptions
@@ -48,14 +49,32 @@ class _Tag:
 
 
 def tags_missions(
-    row: str, seeds: Sequence[int], model: Model, options: PlannerOptions = OPTIONS, *, shared: bool = False
+    row: str,
+    seeds: Sequence[int],
+    model: Model,
+    options: PlannerOptions = OPTIONS,
+    *,
+    shared: bool = False,
+    prior: ErrorPrior | None = None,
 ) -> Iterator[list[Claim]]:
     """Mission by mission: a claim a tag, those that were never claimed too, all with the mission's time. shared: what
-    one tag's bearings tell of the compass counts for all, of the joint model."""
+    one tag's bearings tell of the compass counts for all, of the joint model. prior: of the joint model, None: of a
+    sensor of which nothing is known."""
     if row not in TAGS:
         raise StudyError(f"there is no row {row!r}: choose one of {', '.join(TAGS)}")
+    known = prior or ErrorPrior()
+    known = evenly_spread(known) if shared else known
     for seed in seeds:
-        yield fly_tags(scenario("field"), TAGS[row], seed, model, options, shared=shared, bias_sd=BIAS_SD.get(row, 0.0))
+        yield fly_tags(
+            scenario("field"),
+            TAGS[row],
+            seed,
+            model,
+            options,
+            shared=shared,
+            bias_sd=BIAS_SD.get(row, 0.0),
+            prior=known,
+        )
 
 
 def fly_tags(
@@ -67,15 +86,16 @@ def fly_tags(
     *,
     shared: bool = False,
     bias_sd: float = 0.0,
+    prior: ErrorPrior | None = None,
 ) -> list[Claim]:
     """One mission from the scenario's place, its first bearing taken there. bias_sd: rad, of the compass, which hears
-    all tags."""
+    all tags. prior: of the joint model, as it is."""
     problem, rng = world.problem, np.random.default_rng([seed, TAGS_SEED])
     rule = LocalizationRule(threshold=problem.threshold)
     row = Row("tags", bias_sd=bias_sd, own_sd=problem.sigma, stated_sd=problem.sigma, heading_sigma=0.0)
     one = row.sensor(world.target(seed, rng), rng)
     sensors = [one, *(replace(one, target=world.target(seed, rng)) for _ in range(count - 1))]
-    unknown = prior_of(problem, model, None)
+    unknown = prior_of(problem, model, prior)
     tags = [_Tag(sensor, unknown, unknown, []) for sensor in sensors]
     here, time, place = np.array(world.platform), 0.0, np.array(world.platform)
     for number in range(MOST_BEARINGS):

@@ -1,6 +1,8 @@
 """What a plan for several emitters costs, from the beliefs of a flight that heard all of them once, twice, three times.
 
-python -m tests.benchmarks.several_speed --emitters 8 --repeats 5
+What each emitter tells of the compass counts for all of them, as in a new mission.
+
+python -m tests.benchmarks.several_speed --emitters 8 --budget 1000 --repeats 5
 """
 
 from __future__ import annotations
@@ -19,9 +21,11 @@ from backend.cli.demo import CARRIER, simulated, sought
 from backend.cli.truth import HOME
 from backend.search.localization import localization
 from backend.simulation.emitters import emitter_places
+from planner.belief.joint import JointBelief
+from planner.belief.shared_source import with_shared_errors
 from planner.options import PlannerOptions
 from planner.policy.several import Wanted, paths_among, plan_several
-from planner.types import Bearing
+from planner.types import Bearing, Problem
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Figure
 from tests.benchmarks.figures.writer import add_out, plain, write
@@ -32,21 +36,25 @@ OWN = math.radians(1.2)
 
 
 def flown(emitters: int) -> tuple[list[list[Wanted]], PlannerOptions]:
-    """After each of the places: every emitter with its belief, folded with joint errors as a new mission does."""
+    """After each of the places: every emitter with its belief, folded with joint and shared errors as a new mission
+    does."""
     mission = suggested_mission(HOME).model_copy(update={"emitters": sought(CARRIER, emitters)})
     truth, rng = emitter_places(1, HOME, simulated(mission.emitters)), np.random.default_rng(1)
     tasks = [localization(mission, HOME, emitter.emitter_id) for emitter in mission.emitters]
     heard: list[list[Bearing]] = [[] for _ in tasks]
     after: list[list[Wanted]] = []
     for x, y in PLACES:
-        wanted: list[Wanted] = []
+        problems: list[Problem] = []
+        beliefs: list[JointBelief] = []
         for task, emitter, bearings in zip(tasks, mission.emitters, heard, strict=True):
             east, north = task.frame.to_enu(truth[emitter.frequency_hz])
             angle = math.atan2(north - y, east - x) + OWN * float(rng.standard_normal())
             bearings.append(Bearing(x, y, angle, OWN, source="craft:craft-1"))
-            problem = replace(task.problem, sigma=math.hypot(OWN, math.radians(4.0)))
-            wanted.append(Wanted(problem, task.planning_belief(bearings)))
-        after.append(wanted)
+            belief = task.belief(bearings)
+            assert isinstance(belief, JointBelief)
+            beliefs.append(belief)
+            problems.append(replace(task.problem, sigma=math.hypot(OWN, math.radians(4.0))))
+        after.append([Wanted(*one) for one in zip(problems, with_shared_errors(beliefs), strict=True)])
     return after, mission.planner.options
 
 
@@ -61,9 +69,10 @@ def milliseconds(wanted: Sequence[Wanted], here: tuple[float, float], options: P
     return median(taken)
 
 
-def figures(emitters: int, repeats: int) -> list[Figure]:
+def figures(emitters: int, budget: int, repeats: int) -> list[Figure]:
     """A plan after each of the places."""
-    after, options = flown(emitters)
+    after, suggested = flown(emitters)
+    options = replace(suggested, budget=budget)
     paths = paths_among(options.budget, emitters)
     return [
         plain(
@@ -79,11 +88,12 @@ def figures(emitters: int, repeats: int) -> list[Figure]:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Time a plan for several emitters.")
     parser.add_argument("--emitters", type=int, default=8)
+    parser.add_argument("--budget", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=5)
     add_out(parser)
     arguments = parser.parse_args()
     begun = begin(__file__)
-    made = figures(arguments.emitters, arguments.repeats)
+    made = figures(arguments.emitters, arguments.budget, arguments.repeats)
     for figure in made:
         print(f"{figure.name}: {figure.value} {figure.unit} ({figure.note})")
     write(arguments.out, "several_speed", "A plan for several emitters", begun, made, page="several-emitters.md")

@@ -12,11 +12,25 @@ from search_walk import SearchWalk
 
 from backend.api.beliefs import belief_frame
 from backend.api.what_if import what_if
-from backend.events import BearingExcluded, BearingMeasured, BeliefUpdated, CraftSource, MissionDrafted, Recorded
+from backend.events import (
+    BearingExcluded,
+    BearingIncluded,
+    BearingMeasured,
+    BeliefUpdated,
+    CraftSource,
+    Event,
+    MissionDrafted,
+    MissionEdited,
+    PersonSource,
+    Recorded,
+    ServerRestarted,
+    SourceMuteChanged,
+)
 from backend.search.area import corner_of
 from backend.search.importing import Upload
 from backend.search.importing_bearings import bearing_facts
 from backend.search.inputs import BearingsArrived, BeliefReady
+from backend.search.lessons import knowing
 from backend.search.localization import localization
 from backend.search.state import SearchState, evolve
 from backend.search.task import search_task
@@ -214,3 +228,113 @@ def test_a_task_that_was_told_of_others_does_not_teach_those_that_ask_later() ->
         replace(told, beside=None).belief_fact([bearing("a", 1)])[0]
         == (localization(SPEC, HOME, "a").belief_fact([bearing("a", 1)])[0])
     )
+
+
+def believed(state: SearchState, spec: MissionSpec = SPEC) -> dict[str, BeliefUpdated]:
+    """By emitter, by a server that begins with nothing but the state."""
+    task = search_task(spec, corner_of(SPEC.area), 0.0)
+    return {
+        name: task.together.about(state, name).belief_fact(emitter.bearings)[0]
+        for name, emitter in state.emitters.items()
+    }
+
+
+def digest_of_each(state: SearchState, spec: MissionSpec = SPEC) -> dict[str, str]:
+    return {name: fact.digest for name, fact in believed(state, spec).items()}
+
+
+def after(state: SearchState, *events: Event) -> SearchState:
+    for event in events:
+        state = evolve(state, event, 0.0)
+    return state
+
+
+def by_ada(name: str, number: int, off_deg: float) -> BearingMeasured:
+    """A person beside the place, whose hand compass is off."""
+    true = bearing(name, number)
+    wrong = {"bearing_deg": (true.bearing_deg - BIAS_DEG + off_deg) % 360.0, "heading_sigma_deg": 5.0}
+    return true.model_copy(
+        update={"source": PersonSource(name="Ada"), "bearing_id": f"ada-{name}{number}", "sigma_deg": 12.0, **wrong}
+    )
+
+
+def test_a_bearing_that_counts_again_brings_every_belief_back_bit_for_bit() -> None:
+    state, _ = flown(SPEC, 3)
+    before = digest_of_each(state)
+    out = after(state, BearingExcluded(emitter_id="a", bearing_id="a2", by="anna", reason="", heard=True))
+    left_out = digest_of_each(out)
+    assert all(left_out[name] != before[name] for name in before)
+    assert digest_of_each(after(out, BearingIncluded(emitter_id="a", bearing_id="a2", by="anna"))) == before
+
+
+def test_a_wrong_bearing_that_is_muted_is_as_if_it_had_never_come() -> None:
+    state, _ = flown(SPEC, 3)
+    before, ada = digest_of_each(state), PersonSource(name="Ada")
+    heard = after(state, by_ada("a", 4, 100.0), by_ada("b", 4, 100.0))
+    muted = SourceMuteChanged(source=ada, muted=True, by="anna")
+    assert digest_of_each(heard)["a"] != before["a"]
+    assert digest_of_each(after(heard, muted)) == before
+    # what the muted person sends later does not count either
+    assert digest_of_each(after(heard, muted, by_ada("c", 4, 100.0))) == before
+    back = after(heard, muted, SourceMuteChanged(source=ada, muted=False, by="anna"))
+    assert digest_of_each(back) == digest_of_each(heard)
+
+
+def test_somebody_elses_wrong_compass_is_not_taken_for_the_crafts() -> None:
+    state, _ = flown(SPEC, 3)
+    wrong = after(state, *(by_ada(name, number, 40.0) for name in TARGETS for number in (1, 2)))
+    for fact in believed(wrong).values():
+        craft, person = sorted(fact.sources, key=lambda one: one.source.kind)
+        assert abs(craft.bias_deg - BIAS_DEG) < 3.0 * craft.bias_std_error_deg
+        assert (craft.bearings, person.bearings) == (3, 2)
+
+
+def test_a_search_that_leaves_an_emitter_leaves_what_it_told() -> None:
+    state, _ = flown(SPEC, 3)
+    fewer = SPEC.model_copy(update={"emitters": EMITTERS[:2]})
+    left = after(state, MissionEdited(spec=fewer))
+    assert set(left.emitters) == {"a", "b"}
+    assert not any(emitter.belief_current for emitter in left.emitters.values())
+    never = after(
+        SearchState(), MissionDrafted(spec=fewer), *(bearing(name, k) for k in (1, 2, 3) for name in ("a", "b"))
+    )
+    assert digest_of_each(left, fewer) == digest_of_each(never, fewer)
+
+
+def test_a_server_that_restarts_believes_what_it_did() -> None:
+    state, records = flown(SPEC, 3)
+    again = after(state, ServerRestarted())
+    assert not any(emitter.belief_current for emitter in again.emitters.values())
+    assert digest_of_each(again) == {name: digests(records, name)[-1] for name in TARGETS}
+    told_back_to_front = {name: again.emitters[name] for name in reversed(TARGETS)}
+    assert digest_of_each(replace(again, emitters=told_back_to_front)) == digest_of_each(state)
+
+
+def test_an_emitter_first_heard_late_knows_the_compass_at_once() -> None:
+    early = {name: [bearing(name, number) for number in (1, 2, 3)] for name in ("a", "b")}
+    state = after(SearchState(), MissionDrafted(spec=SPEC), *early["a"], *early["b"], bearing("c", 4))
+    (told,) = believed(state)["c"].sources
+    assert told.bearings == 1
+    assert abs(told.bias_deg - BIAS_DEG) < 3.0 * told.bias_std_error_deg
+    alone = after(SearchState(), MissionDrafted(spec=SPEC), bearing("c", 4))
+    assert told.bias_std_error_deg < 0.7 * believed(alone)["c"].sources[0].bias_std_error_deg
+    # one bearing tells nothing of the compass that it was heard by: the others know what they did
+    without = after(SearchState(), MissionDrafted(spec=SPEC), *early["a"], *early["b"])
+    for name in ("a", "b"):
+        (now,), (then,) = believed(state)[name].sources, believed(without)[name].sources
+        assert now.bias_deg == pytest.approx(then.bias_deg, abs=0.5)
+        assert now.bias_std_error_deg == pytest.approx(then.bias_std_error_deg, abs=0.3)
+
+
+def test_what_flights_taught_is_told_of_the_compass_evenly_where_it_is_shared() -> None:
+    """Of one emitter as it was: only a compass that is measured well asks how the prior is shaped."""
+    one = SPEC.model_copy(update={"emitters": EMITTERS[:1]})
+    several, single = (knowing(spec, [], "craft-1", "yagi").sensor.learned for spec in (SPEC, one))
+    assert several is not None
+    assert single is not None
+    assert single.spread_weight == pytest.approx([1.0 / 6.0] * 6)
+    assert several.spread_weight == pytest.approx(np.array([0.75, 0.75, 1.25, 2.0, 3.25, 4.0]) / 12.0)
+    assert (several.scale_weight, several.rate_weight) == (single.scale_weight, single.rate_weight)
+    # a mission keeps the weights that it was drafted with
+    stored = SPEC.having_learned(single)
+    assert MissionSpec.model_validate_json(stored.model_dump_json()).sensor.learned == single

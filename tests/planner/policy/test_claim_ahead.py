@@ -11,11 +11,13 @@ from planner.belief.joint import joint_prior, update_joint
 from planner.belief.source_errors import ErrorPrior
 from planner.belief.verdict import verdict
 from planner.comparison import difference_between, rules_against
+from planner.observation import wrap
 from planner.options import FIELD
 from planner.plan import expected_time_from, plan
 from planner.policy.actions import constrained_actions
 from planner.policy.claim_ahead import biased_cells, choice, claim_ahead, drawn
 from planner.reasons import BetweenPlaces, ErrorMayBeFarLarger, NearerThanStandoff, QuickestPlace
+from planner.study.scenarios import scenario
 from planner.types import Bearing, LinearConstantMotion, LocalizationRule, Problem
 
 AREA = np.array([[-156.0, 0.0], [156.0, 0.0], [156.0, 200.0], [-156.0, 200.0]])
@@ -204,3 +206,31 @@ def test_cells_together_hold_the_belief():
     spread = cells.mass @ ((cells.x - now.x) ** 2 + (cells.y - now.y) ** 2 + 2.0 * cells.blur)
     assert spread == pytest.approx(np.trace(now.covariance), rel=0.06)
     assert len(cells.x) < 1000
+
+
+@pytest.mark.parametrize("seed", [2, 5, 6])
+def test_an_emitter_beside_a_place_of_measurement_is_claimed_in_the_end(seed):
+    """The tail stood against it, hardly any bearing led to a claim, and the nearest place was chosen up to 25 times."""
+    world = scenario("field")
+    rng = np.random.default_rng(seed)
+    angle, beside_m = rng.uniform(0.0, np.pi), rng.uniform(1.0, 6.0)
+    target = np.array(world.platform) + beside_m * np.array([np.cos(angle), np.sin(angle)])
+    rng = np.random.default_rng([seed, 5])
+    bias, belief, here, bearings = (
+        np.deg2rad(5.3) * rng.standard_normal(),
+        joint_prior(world.problem),
+        world.platform,
+        [],
+    )
+    while len(bearings) < 16:
+        off = np.arctan2(target[1] - here[1], target[0] - here[0]) + bias
+        bearings.append(
+            Bearing(*here, float(wrap(off + world.problem.sigma * rng.standard_normal())), world.problem.sigma)
+        )
+        belief = update_joint(belief, bearings[-1])
+        if verdict(world.problem, RULE, bearings, belief).localized:
+            break
+        chosen = plan(world.problem, belief, bearings, here, replace(FIELD, budget=250), threads=1)
+        here = (chosen.x, chosen.y)
+    else:
+        pytest.fail(f"not claimed after {len(bearings)} bearings")
