@@ -39,6 +39,10 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
       setMade((before) => [...before, one]);
     }
   };
+  const takeBack = async (id: string) => {
+    await access.takeBackInvitation(id);
+    setMade((before) => before.filter((other) => other.invitation.invitation_id !== id));
+  };
   return (
     <section>
       <div class="page-head">
@@ -94,7 +98,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
                 })}
               </span>
             </span>
-            <button type="button" onClick={() => attempt(access.takeBackInvitation(one.invitation_id).then(() => setMade([])))}>
+            <button type="button" onClick={() => attempt(takeBack(one.invitation_id))}>
               {t("people.takeBack")}
             </button>
           </li>
