@@ -1248,6 +1248,10 @@ export const reasonsEn: ReasonTable = {
     text: "The search area can only be changed in hold.",
     remedy: "Hold, then change it.",
   },
+  nets_changing: {
+    text: "The autopilot is still being given the fence of the new search area.",
+    remedy: "Go on when it has it, in some seconds.",
+  },
   no_proposed_place: {
     text: "No place is proposed.",
     remedy: "Wait for the planner's next place.",
