@@ -34,6 +34,7 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
+from backend.ports import JournalDamaged
 from backend.reasons import Interrupted, Reason
 from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
@@ -275,10 +276,14 @@ class Flights:
         await self.nets.recall()
         self._tasks.append(asyncio.create_task(self.nets.run(self.starting, lambda: self.active is not None)))
         unfinished = await self.equipment.journal.unfinished()
-        for mission_id in unfinished[:-1]:
-            await self._close_interrupted(mission_id, Interrupted("later_mission"))
-        if unfinished:
-            await self._recover(unfinished[-1])
+        for mission_id in unfinished:
+            try:
+                if mission_id == unfinished[-1]:
+                    await self._recover(mission_id)
+                else:
+                    await self._close_interrupted(mission_id, Interrupted("later_mission"))
+            except JournalDamaged as error:
+                log.error("mission %s does not come back, and its craft fly for none: %s", mission_id, error)
         for craft_id, craft in self.equipment.crafts.items():
             if self.craft(craft_id) is None:
                 craft.vehicle.restore(NOBODY)  # its failsafe may be acting on the silence before this server

@@ -1670,9 +1670,17 @@ export const reasonsEn: ReasonTable = {
     text: "Event {seq} of mission {mission_id} does not follow what is stored: another server writes to it.",
     remedy: "Let only one server use this database.",
   },
+  mission_damaged: {
+    text: "What is stored of mission {mission_id} is damaged and cannot be read: {detail}.",
+    remedy: "The other missions are not touched by that; a backup may hold this one whole.",
+  },
   database_unfit: {
     text: "The database {database} cannot be used: {detail}.",
     remedy: "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+  },
+  database_later: {
+    text: "A later Crossfix has written the database {database} (schema {revision}).",
+    remedy: "Update this one, or restore a backup from before the update.",
   },
   another_server: {
     text: "Another server uses {path}.",
