@@ -14,7 +14,7 @@ from backend.search.importing import MOST_SWEEPS, Import, Upload, emitter_of, re
 from backend.search.localization import localization
 from backend.search.reported import COMPASS_SHARE, COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ
 from backend.search.state import SearchState, evolve
-from backend.spec import EmitterSpec
+from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.bearings_file import RecordedBearing
 
 LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
@@ -25,11 +25,13 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     mission, recording = state.mission, upload.recording
     if len(recording.bearings) > MOST_SWEEPS:
         raise MissionInputError(reasons.RecordingTooLong(len(recording.bearings), MOST_SWEEPS), "file")
-    emitter = emitter_of(mission, upload.emitter_id)
+    emitter = _emitter(mission, upload)
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
     remarks: list[Reason] = [carried(remark) for remark in recording.remarks]
+    if upload.place is not None or upload.offset_deg is not None:
+        remarks.append(reasons.ImportRemark(upload.filename, "bearings_stand"))
     others = (one.frequency_hz for one in recording.bearings if not _of(emitter, one))
     elsewhere = sorted({hz for hz in others if hz is not None})
     remarks += [reasons.OtherFrequency(upload.filename, hz, emitter.frequency_hz) for hz in elsewhere]
@@ -57,6 +59,19 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     task = localization(mission, state.home or corner_of(mission.area), emitter.emitter_id)
     belief, _ = task.after(known.unheard).belief_fact(known.bearings)
     return Import((*facts, belief), ())
+
+
+def _emitter(mission: MissionSpec, upload: Upload) -> EmitterSpec:
+    """Who is named, else the only one, else the only one on a frequency that the file tells."""
+    bearings = upload.recording.bearings
+    if upload.emitter_id is None and len(mission.emitters) > 1:
+        told = [one for one in bearings if one.frequency_hz is not None]
+        heard = [emitter for emitter in mission.emitters if any(_of(emitter, one) for one in told)]
+        if len(heard) == 1:
+            return heard[0]
+        if heard or len(told) < len(bearings):
+            raise MissionInputError(reasons.WhichEmitter(len(mission.emitters)), "emitter_id")
+    return emitter_of(mission, upload.emitter_id)
 
 
 def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:

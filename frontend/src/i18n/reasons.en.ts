@@ -550,6 +550,10 @@ export const reasonsEn: ReasonTable = {
     text: "The file {file} does not state where it was recorded.",
     remedy: "Add columns lat and lon, or name the place beside it.",
   },
+  remarks_not_listed: {
+    text: "{remarks|more remark|more remarks} about {file}: not listed one by one.",
+    remedy: "",
+  },
   sigmf_field_missing: {
     text: "The recording {file} does not state {field}.",
     remedy:
@@ -1622,7 +1626,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   import_remark: {
-    text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}.",
+    text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in|bearings_stand=The place or antenna offset that was named changes nothing about the bearings in} {file}.",
     remedy: "",
   },
   other_frequency: {

@@ -5,6 +5,7 @@ import { type MessageKey, reasonText, t } from "../i18n";
 import * as api from "../sources/api";
 import { localProblem } from "../sources/problem";
 import { source } from "../state/connection";
+import { emitterName } from "../state/emitterName";
 import { inFlight } from "../state/mission";
 import { mission } from "../state/shown";
 import { parsePlace } from "../units/parsePlace";
@@ -39,7 +40,7 @@ export function recordingForm(given: FormData): FormData | string {
   }
   // the input has no time zone: UTC is what its label says
   if (text("at")) form.append("at_utc", `${text("at")}Z`);
-  if (text("tag")) form.append("tag", text("tag"));
+  for (const name of ["tag", "emitter_id"]) if (text(name)) form.append(name, text(name));
   for (const { name, scale, label } of NUMBERS) {
     if (!text(name)) continue;
     const value = Number(text(name).replace(",", "."));
@@ -95,7 +96,8 @@ function Found({ found }: { found: RecordingImport }) {
 }
 
 export function ImportRecording() {
-  const { missionId, phase } = mission.value;
+  const { missionId, phase, spec } = mission.value;
+  const emitters = spec?.emitters ?? [];
   if (!missionId || inFlight(phase) || !source.value?.keptByServer) return null;
   const now = outcome.value?.missionId === missionId ? outcome.value : null;
   const busy = now !== null && "busy" in now;
@@ -115,6 +117,18 @@ export function ImportRecording() {
             {t("recording.files")}
             <input type="file" name="files" multiple data-testid="recording-files" />
           </label>
+          {emitters.length > 1 && (
+            <label>
+              {t("report.emitter")}
+              <select name="emitter_id" data-testid="recording-emitter">
+                {emitters.map(({ emitter_id: id }) => (
+                  <option key={id} value={id}>
+                    {emitterName(emitters, id)}
+                  </option>
+                ))}
+              </select>
+            </label>
+          )}
           <label>
             {t("recording.place")}
             <input name="place" placeholder="50.6123, 7.2046" data-testid="recording-place" />
