@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from backend.search.reported import ReportedBearing
+from hardware.direction_finding.bearings_file import LATEST_S
 from hardware.readings import Place
 
 LARGEST_BYTES = 64 * 2**10
@@ -57,7 +58,7 @@ def read_kraken(data: bytes, now_s: float) -> ReportedBearing:
     if place == Place(0.0, 0.0):
         raise KrakenRefused("its place is 0, 0: the station has no GPS fix; set its place by hand")
     heading = _number(record.heading, "heading", -360.0, 720.0)
-    at_s = _number(record.at_ms, "time", 0.0, 1e14) / 1e3 if record.at_ms is not None else now_s
+    at_s = _number(record.at_ms, "time", 0.0, 1e3 * LATEST_S) / 1e3 if record.at_ms is not None else now_s
     by = _name(record.station)
     frequency_hz = _number(record.frequency_hz, "frequency", 1.0, 1e12)
     where = f"{round(place.lat, 4)}/{round(place.lon, 4)}"

@@ -53,6 +53,10 @@ class JournalUnavailable(ReasonedError, RuntimeError):
     """The database is away (reading), or the spool is full as well (writing). Nothing stored is lost."""
 
 
+class JournalDamaged(ReasonedError, ValueError):
+    """What is stored of one mission cannot be read. Those of the others can."""
+
+
 class FactRefused(ReasonedError, ValueError):
     """The journal will never take this: the fact makes no sense, or another writer has used its place."""
 

@@ -133,6 +133,17 @@ class Settings(BaseSettings):
             return url
         raise ValueError("the database URL must begin with sqlite:/// or postgresql://")
 
+    @field_validator("public_url")
+    @classmethod
+    def address_of_the_page(cls, url: str | None) -> str | None:
+        """What a link can be made of by adding to it; "" is None."""
+        if not url:
+            return None
+        parts = urlsplit(url)
+        if parts.scheme in {"http", "https"} and parts.hostname and not (parts.query or parts.fragment or "@" in url):
+            return url.rstrip("/")
+        raise ValueError("the page's public address must begin with https:// and name a host, and nothing behind it")
+
     @field_validator("oidc_issuer")
     @classmethod
     def encrypted_issuer(cls, issuer: str | None) -> str | None:
@@ -170,6 +181,12 @@ class Settings(BaseSettings):
             return not ip_address(self.host).is_loopback
         except ValueError:
             return self.host != "localhost"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Host names besides localhost under which a browser may reach the server: a link that it prints works."""
+        public = None if self.public_url is None else urlsplit(self.public_url).hostname
+        return (self.host, *self.allowed_hosts, *(() if public is None else (public,)))
 
     @property
     def people_expected(self) -> bool:

@@ -6,11 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from backend.api.services import Services
-from backend.events import BearingMeasured, MissionDrafted, MissionEdited, Recorded, Supposition, SweepRejected
+from backend.events import (
+    BearingMeasured,
+    ImportSource,
+    MissionDrafted,
+    MissionEdited,
+    MissionStarted,
+    Recorded,
+    Supposition,
+    SweepRejected,
+)
 from backend.reasons import carried
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.request import SamplesNotStored
-from backend.search.antenna import antenna_flown, corrected, correction_flown
+from backend.search.antenna import antenna_flown, corrected
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.spec import MissionSpec
@@ -23,10 +32,12 @@ from hardware.ports import DirectionFinder
 
 @dataclass(frozen=True, slots=True)
 class AnotherAntenna:
-    """sweeps: the stored ones by their id."""
+    """pattern: of what a craft of the mission turned. imported: of what came with recordings, which has no correction
+    of the mission in it. sweeps: the stored ones by their id."""
 
     finder: DirectionFinder
     pattern: AntennaPattern
+    imported: AntennaPattern
     sweeps: Mapping[str, SweepEntry]
 
     @property
@@ -42,7 +53,7 @@ class AnotherAntenna:
         if entry is None:
             raise MissionConflict(SamplesNotStored(flown.place_number))
         sweep = replace(entry.sweep(), partial=flown.turn is not None and flown.turn.partial)
-        reading = self.finder.estimate(sweep, self.pattern)
+        reading = self.finder.estimate(sweep, self.imported if isinstance(flown.source, ImportSource) else self.pattern)
         taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt, flown.turn)
         heard = sweep_fact(taken, mission.sensor, sweep, reading, None)
         if isinstance(heard, BearingMeasured) and isinstance(flown, BearingMeasured):
@@ -54,23 +65,31 @@ async def another_antenna(
     services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: Supposition
 ) -> AnotherAntenna | None:
     """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew, in the place of its
-    file's and the mission's correction together. Another pattern: with the mission's correction.
+    file's and the mission's correction together. Another pattern: with the mission's correction, where a craft flew.
 
     Raises MissionInputError for a pattern that cannot be used.
     """
     if wanted.pattern is None and wanted.offset_to_nose_deg is None:
         return None
     if wanted.pattern is None:
-        pattern = antenna_flown(recorded) or services.pattern
+        pattern = imported = antenna_flown(recorded) or services.pattern
     else:
-        in_file = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
-        pattern = corrected(in_file, correction_flown(recorded))
+        imported = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
+        pattern = corrected(imported, _taken_off_deg(recorded))
     if wanted.offset_to_nose_deg is not None:
-        pattern = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
+        pattern = imported = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
     heard = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
     ids = [sweep_id for sweep_id in heard if sweep_id is not None]
     stored = {sweep_id: await services.journal.sweep(mission_id, sweep_id) for sweep_id in ids}
-    return AnotherAntenna(services.finder, pattern, {id_: entry for id_, entry in stored.items() if entry is not None})
+    kept = {id_: entry for id_, entry in stored.items() if entry is not None}
+    return AnotherAntenna(services.finder, pattern, imported, kept)
+
+
+def _taken_off_deg(recorded: Sequence[Recorded]) -> float:
+    """Of the bearings of a craft, clockwise; nothing where none flew."""
+    flown = any(isinstance(record.event, MissionStarted) for record in recorded)
+    specs = [r.event.spec for r in recorded if isinstance(r.event, MissionDrafted | MissionEdited)]
+    return specs[-1].sensor.bearing_offset_deg if flown and specs else 0.0
 
 
 def _pattern(upload: PatternUpload, frequency_hz: float) -> AntennaPattern:

@@ -47,5 +47,5 @@ def make_application(settings: Settings, lifespan: Lifespan) -> FastAPI:
     app.add_middleware(Bodies)
     app.add_middleware(Metered, meters=app.state.meters)
     app.add_middleware(Gate)
-    app.add_middleware(Guard, allowed_hosts=(settings.host, *settings.allowed_hosts))
+    app.add_middleware(Guard, allowed_hosts=settings.names)
     return app

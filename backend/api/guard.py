@@ -66,7 +66,7 @@ class Guard:
             name, _ = parts.hostname, parts.port
         except ValueError:
             return False
-        if not name or parts.netloc != host:
+        if not name or parts.netloc != host or "@" in host:
             return False
         try:
             ipaddress.ip_address(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Annotated
 
@@ -11,6 +12,8 @@ from fastapi import APIRouter, Query
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.missions import get_mission
 from backend.api.problems import PROBLEM_RESPONSES
+from backend.events import Recorded
+from backend.ports import JournalDamaged
 from backend.search.calibration import FACTS_NEEDED, calibrate
 from backend.store.reading import Wanted
 from backend.wire.library import Calibration, MissionLabels, TruthTold
@@ -61,9 +64,9 @@ async def calibration(
 ) -> Calibration:
     """How right bearings, fixes and forecasts were where the truth is known; "" for every craft or antenna."""
     checked = await services.journal.page(MOST_CHECKED, wanted=Wanted(checked=True))
-    facts = {
-        digest.mission_id: (digest.name, await services.journal.read_kinds(digest.mission_id, FACTS_NEEDED))
-        for digest in checked
-    }
+    facts: dict[str, tuple[str, list[Recorded]]] = {}
+    for digest in checked:
+        with suppress(JournalDamaged):  # it is in the log, and says so itself when it is opened
+            facts[digest.mission_id] = digest.name, await services.journal.read_kinds(digest.mission_id, FACTS_NEEDED)
     found = await asyncio.to_thread(calibrate, facts, craft, antenna)
     return Calibration.model_validate(asdict(found))

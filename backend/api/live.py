@@ -1,7 +1,8 @@
 """The live websocket /api/live?mission=ID&after=SEQ&lite=0|1. It only tells; whatever a browser sends is ignored.
 
 Close codes: 4400 the address makes no sense, 4404 no such mission, 1013 too many viewers or the journal does not
-answer (try again), 4408 the viewer took nothing for too long (come back with after = its last number).
+answer (try again), 4408 the viewer took nothing for too long (come back with after = its last number), 4500 what is
+stored of the mission is damaged.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from backend.api.services import Services
 from backend.live.hub import Hub, Viewer
 from backend.live.viewer import ViewerStalled, serve
-from backend.store.reading import JournalUnavailable
+from backend.ports import JournalDamaged, JournalUnavailable
 from backend.version import VERSION
 from backend.wire.messages import Hello
 
@@ -34,7 +35,8 @@ class Refused(Exception):
 
 @router.websocket("/api/live")
 async def live(websocket: WebSocket) -> None:
-    """Close codes: 1013 the journal is away, 4408 too slow; else those of Refused. Come back with after=SEQ."""
+    """Close codes: 1013 the journal is away, 4408 too slow (come back with after=SEQ), 4500 damaged; else those of
+    Refused."""
     services: Services = websocket.app.state.services
     await websocket.accept()
     with suppress(WebSocketDisconnect):
@@ -44,6 +46,8 @@ async def live(websocket: WebSocket) -> None:
             await websocket.close(refused.code, refused.reason)
         except JournalUnavailable as error:
             await websocket.close(1013, str(error)[:120])
+        except JournalDamaged as error:
+            await websocket.close(4500, str(error)[:120])
         except ViewerStalled:
             await websocket.close(4408, "nothing was taken for too long: come back with after=SEQ")
 

@@ -111,7 +111,8 @@ async def sign_person_out(person_id: RowId, request: Request, services: Services
 async def list_invitations(services: ServicesDep, principal: PrincipalDep) -> InvitationList:
     """Those that wait to be accepted."""
     _myself(principal)
-    waiting = [row for row, left_s in services.access.invitations.waiting if left_s > 0]
+    access = services.access
+    waiting = [row for row, left_s in access.invitations.waiting if left_s > 0 and access.stands(row)]
     return InvitationList(invitations=[_invitation(services, row) for row in waiting])
 
 

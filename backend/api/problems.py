@@ -14,7 +14,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from backend.auth.keeping import Denied
-from backend.ports import FactRefused
+from backend.ports import FactRefused, JournalDamaged
 from backend.reasons import Reason, carried
 from backend.reasons import request as reasons
 from backend.reasons.access import TooManyTries
@@ -45,6 +45,7 @@ STATUSES: tuple[tuple[type[ReasonedError], int], ...] = (
     (MissionConflict, 409),
     (FactRefused, 409),
     (JournalUnavailable, 503),
+    (JournalDamaged, 500),
     (PlannerError, 422),
     (WorkStopped, 422),
     (WorkersBusy, 503),

@@ -32,6 +32,7 @@ from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.reasons.iq_recording import NotIq
 from hardware.reasons.renamed import renamed
+from hardware.reasons.table import RemarksNotListed
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
 from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, is_sigmf
@@ -41,6 +42,8 @@ router = APIRouter(prefix="/api/missions/{mission_id}", tags=["review"], respons
 
 SIGMF = (META, DATA, ARCHIVE)
 MOST_FILES = 3
+MOST_REMARKS = 50
+"""Of one recording, one by one: they are a fact of the mission, which every page that shows it loads."""
 
 
 def _past(moment: datetime | None) -> datetime | None:
@@ -61,7 +64,8 @@ class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), whose bearings in a file of those
     (needed when it holds several), else the sweep's name. offset_deg:
-    the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's.
+    the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's; of
+    bearings: that of the only emitter, or of the only one on the file's frequency.
     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ."""
 
     files: list[UploadFile]
@@ -175,6 +179,9 @@ def _parsed(
     headings = next((path for path in names if path.name == "headings.csv"), None)
     bearings = None if is_sigmf(recording) or headings is not None else read_bearing_file(recording, tag)
     read = bearings or read_sweeps(recording, tag, IqReading(headings, frequency_hz, pulses))
+    if len(read.remarks) > MOST_REMARKS:
+        rest = RemarksNotListed(str(recording), len(read.remarks) - MOST_REMARKS)
+        read = replace(read, remarks=(*read.remarks[:MOST_REMARKS], rest))
     if is_sigmf(recording) or (frequency_hz is None and pulses is None):
         return read
     return replace(read, remarks=(*read.remarks, NotIq(str(recording), "signal")))

@@ -172,17 +172,28 @@ class Access:
     def look_at_invitation(self, code: str, address: str) -> Invitation:
         """Raises Denied."""
         self.limits.take_try(address)
-        invitation = self.invitations.usable(code)
+        invitation = self._usable(code)
         self.limits.give_back_try(address)
+        return invitation
+
+    def stands(self, invitation: Invitation) -> bool:
+        """Not when whoever made it was shut out since, or no longer manages people."""
+        maker = self.people.get(invitation.made_by)
+        return maker is None or (maker.active and maker.admin)
+
+    def _usable(self, code: str) -> Invitation:
+        invitation = self.invitations.usable(code)
+        if not self.stands(invitation):
+            raise Denied(403, CodeUnusable("unknown"))
         return invitation
 
     async def accept_invitation(self, code: str, name: str, password: str, visit: Visit) -> str:
         """Each invitation makes one account. Raises Denied, JournalUnavailable."""
         self.limits.take_try(visit.address)
         async with self._keeping.changing:
-            invitation = self.invitations.usable(code)
+            invitation = self._usable(code)
             person = await self._new_person(name, password, invitation.role, invitation.admin)
-            self.invitations.usable(code)  # the hash took its time
+            self._usable(code)  # the hash took its time
             used = replace(invitation, used_by=person.person_id)
             secret = await self._new_with_session(person, visit, used)
             self.invitations.use(used)

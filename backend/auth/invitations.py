@@ -63,5 +63,5 @@ class Invitations:
             found = next((row for row, _ in self._made.values() if row.invitation_id == invitation_id), None)
             if found is None or found.used_by is not None:
                 raise Denied(404, NothingThere("invitation", invitation_id))
-            del self._made[found.secret_hash]
             await self._keeping.change(gone=(found,))
+            del self._made[found.secret_hash]

@@ -44,7 +44,7 @@ class Machines:
 
     @property
     def tokens(self) -> list[MachineToken]:
-        """The newest first."""
+        """The newest first, with those that could not be forgotten yet."""
         return sorted((entry.row for entry in self._entries.values()), key=lambda row: -row.made_at_us)
 
     async def make(self, name: str, scope: Scope, lasts_s: float | None, by: str) -> tuple[str, MachineToken]:
@@ -58,13 +58,14 @@ class Machines:
         return secret, token
 
     async def revoke(self, token_id: str) -> None:
-        """At once. Raises Denied 404, JournalUnavailable."""
+        """At once. Raises Denied 404, JournalUnavailable: it lets nobody in, and is to be revoked again, since a
+        restart would bring it back."""
         found = next((entry for entry in self._entries.values() if entry.row.token_id == token_id), None)
         if found is None:
             raise Denied(404, NothingThere("token", token_id))
         found.ended.set()
-        del self._entries[found.row.secret_hash]
         await self._keeping.change(gone=(found.row,))
+        self._entries.pop(found.row.secret_hash, None)
 
     def _lasts(self, entry: Entry[MachineToken]) -> bool:
         row = entry.row

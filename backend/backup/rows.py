@@ -7,15 +7,18 @@ from __future__ import annotations
 
 import base64
 import json
+import logging
 from collections.abc import AsyncGenerator, Iterable, Iterator, Sequence
 from datetime import date, datetime
 from typing import Any, Literal, cast
 
-from sqlalchemy import Connection, MetaData, Table, insert, inspect, select, text, types
+from sqlalchemy import Connection, Dialect, MetaData, Table, insert, inspect, select, text, types
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from backend.backup.manifest import BackupError
 from backend.store.packed import MARK, PackedText
+
+log = logging.getLogger("crossfix.backup")
 
 VERSION_TABLE = "alembic_version"
 READ_AT_ONCE = 200
@@ -24,6 +27,19 @@ LONGEST_LINE = 256 * 2**20
 """One row; the longest honest one is a sweep of some hundred kilobytes."""
 
 Kind = Literal["bytes", "time", "plain"]
+
+
+class SavedText(PackedText):
+    """What is damaged is saved as nothing: the rest of the database is worth a backup all the same."""
+
+    cache_ok = True
+
+    def process_result_value(self, value: Any | None, dialect: Dialect) -> str | None:
+        """Nothing of what cannot be unpacked."""
+        try:
+            return super().process_result_value(value, dialect)
+        except ValueError:
+            return ""
 
 
 def kinds_of(table: Table, names: Sequence[str]) -> list[Kind]:
@@ -43,7 +59,7 @@ def reflected(connection: Connection) -> MetaData:
     names = [name for name in inspect(connection).get_table_names() if name != VERSION_TABLE]
     metadata.reflect(connection, only=names)
     if "events" in metadata.tables:
-        metadata.tables["events"].c.body.type = PackedText()
+        metadata.tables["events"].c.body.type = SavedText()
     return metadata
 
 
@@ -61,6 +77,8 @@ async def lines_of(connection: AsyncConnection, table: Table) -> AsyncGenerator[
     query = select(table).order_by(*table.primary_key.columns).execution_options(yield_per=READ_AT_ONCE)
     async with connection.stream(query) as result:
         async for row in result:
+            if table.name == "events" and not row.body:
+                log.error("event %d of mission %s is damaged and saved as nothing", row.seq, row.mission_id)
             yield _line([_said(value, kind) for value, kind in zip(row, kinds, strict=True)])
 
 

@@ -111,7 +111,7 @@ async def _serve(settings: Settings, json_: bool) -> None:
             print_json(shown if code is None else {**shown, "first_admin_code": code})
         else:
             typer.echo(f"Crossfix flies {what}. The page: {running.url}", err=False)
-            typer.echo(who_may_enter(access.mode, (settings.public_url or running.url).rstrip("/"), code), err=False)
+            typer.echo(who_may_enter(access.mode, settings.public_url or running.url.rstrip("/"), code), err=False)
         if settings.plain_http and settings.reachable_from_outside:
             remark("CROSSFIX_PLAIN_HTTP: passwords cross the network as they are; it has to encrypt by itself.")
         await running.gone

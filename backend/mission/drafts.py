@@ -14,7 +14,7 @@ from backend.mission.equipment import MissionEquipment
 from backend.mission.flights import Flights
 from backend.mission.learning import learn_from_check
 from backend.mission.records import Records
-from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable
+from backend.reasons.refusals import AlreadyStarted, MissionFlies, NotEditable, WasDeleted
 from backend.search.area import centre_of
 from backend.search.band import check_band
 from backend.search.errors import MissionConflict
@@ -45,11 +45,13 @@ class Drafts:
         return mission_id
 
     async def edit(self, mission_id: str, spec: MissionSpec, by: str) -> None:
-        """Raises MissionNotFound, MissionConflict once it has started, MissionInputError."""
+        """Raises MissionNotFound, MissionConflict once it has started or was deleted, MissionInputError."""
         spec = await self.equipment.knowing(spec)
         await asyncio.to_thread(_check_spec, spec)
         async with self.records.lock(mission_id):
             state, _ = await self.records.load(mission_id)
+            if state.search.deleted:
+                raise MissionConflict(WasDeleted())
             if state.search.stage not in ("draft", "ready"):
                 raise MissionConflict(NotEditable())
             await self.records.give(mission_id, state, Edited(spec))
@@ -88,7 +90,7 @@ class Drafts:
         """Bring recorded sweeps into a mission, in flight too: its facts about them, and whether they were there
         before.
 
-        All or nothing. Raises MissionNotFound, MissionInputError.
+        All or nothing. Raises MissionNotFound, MissionInputError, MissionConflict when the mission was deleted.
         """
         equipment, craft = self.equipment, self.equipment.first
         async with self.records.lock(mission_id):
@@ -98,6 +100,8 @@ class Drafts:
                 return before, True
             runner = self.flights.running(mission_id)
             search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
+            if search.deleted:
+                raise MissionConflict(WasDeleted())
             if upload.recording.bearings:
                 found = await asyncio.to_thread(bearing_facts, mission_id, search, upload, by)
             else:

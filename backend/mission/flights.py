@@ -17,15 +17,16 @@ from backend.commands import Author, CommandReply, CommandRequest, CraftRequest
 from backend.craft.checklist import checklist
 from backend.craft.equipment import CraftEquipment
 from backend.craft.ground_check import ground_fact
-from backend.craft.inputs import Abandoned, StartFacts, WorkFailed
+from backend.craft.inputs import Abandoned, StartFacts
 from backend.craft.listening import Listening
 from backend.craft.loose import LooseCraft
 from backend.craft.runner import CraftRunner
 from backend.craft.safety import resume_vetoes
 from backend.craft.state import CraftState
-from backend.events import Event, GroundFact, Phase
+from backend.events import GroundFact, Phase
 from backend.mission import control
 from backend.mission.effects import Effect, Reply
+from backend.mission.elsewhere import Elsewhere
 from backend.mission.equipment import MissionEquipment
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
 from backend.mission.learning import learn
@@ -33,6 +34,7 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
+from backend.ports import JournalDamaged
 from backend.reasons import Interrupted, Reason
 from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
@@ -40,7 +42,6 @@ from backend.reasons.terrain import GroundNotKept
 from backend.search.antenna import antenna_fact
 from backend.search.errors import MissionInputError
 from backend.search.inputs import SearchOver
-from backend.search.other_area import task_or_reason
 from backend.search.planning import lay_out_ways, needs_program
 from backend.search.state import SearchState
 from backend.search.task import SearchTask, search_task
@@ -84,6 +85,7 @@ class Flights:
     active: MissionRunner | None = None
     starting: asyncio.Lock = field(default_factory=asyncio.Lock)
     loose: dict[str, LooseCraft] = field(init=False)
+    elsewhere: Elsewhere = field(init=False)
     ending: bool = False
     _tasks: list[asyncio.Task[None]] = field(default_factory=list[asyncio.Task[None]])
 
@@ -92,6 +94,7 @@ class Flights:
             return LooseCraft(craft, lambda: self.craft(craft.craft_id) is not None)
 
         self.loose = {craft_id: loose(craft) for craft_id, craft in self.equipment.crafts.items()}
+        self.elsewhere = Elsewhere(self.nets)
 
     def running(self, mission_id: str) -> MissionRunner | None:
         """The runner of this mission, None when it does not fly."""
@@ -133,15 +136,10 @@ class Flights:
         if self.ending and not isinstance(request.command, WHILE_ENDING):
             return CommandReply(command_id=request.command_id, accepted=False, reason=ServerIsEnding(), seq=0)
         if runner is not None and isinstance(request.command, commands.ChangeArea):
-            task = await asyncio.to_thread(
-                task_or_reason, runner.state.search, request.command.search, runner.task.ground.terrain
-            )
-            runner = self.running(mission_id)
-            if runner is not None:
-                asked = runner.change_area(request, author, task)
-                if isinstance(task, SearchTask) and _accepted(asked):
-                    await self._nets_elsewhere(runner, task)
-                return await _answered(runner, request, asked)
+            changed = await self.elsewhere.change(lambda: self.running(mission_id), request, request.command, author)
+            if changed is not None:
+                return await _answered(changed[0], request, changed[1])
+            runner = None
         if runner is not None:
             return await _in_flight(runner, request, author, operates)
         async with self.records.lock(mission_id):
@@ -149,18 +147,6 @@ class Flights:
             if runner is not None:
                 return await _in_flight(runner, request, author, operates)
             return await self._on_the_ground(mission_id, request, author, operates)
-
-    async def _nets_elsewhere(self, runner: MissionRunner, task: SearchTask) -> None:
-        """The autopilot's nets follow the search area. When they do not, it refuses what lies beyond, and says so."""
-
-        async def record(event: Event) -> None:
-            runner.outbox.record([event])
-            await runner.outbox.flushed()
-
-        for craft_id, craft in list(runner.crafts.items()):
-            trouble = await self.nets.change(craft.equipment, task, record)
-            if trouble is not None:
-                runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
 
     async def command_craft(self, craft_id: str, request: CraftRequest, author: Author) -> CommandReply:
         """To a craft in the air, whether it flies for a mission or not. Raises KeyError for an unknown craft."""
@@ -290,10 +276,14 @@ class Flights:
         await self.nets.recall()
         self._tasks.append(asyncio.create_task(self.nets.run(self.starting, lambda: self.active is not None)))
         unfinished = await self.equipment.journal.unfinished()
-        for mission_id in unfinished[:-1]:
-            await self._close_interrupted(mission_id, Interrupted("later_mission"))
-        if unfinished:
-            await self._recover(unfinished[-1])
+        for mission_id in unfinished:
+            try:
+                if mission_id == unfinished[-1]:
+                    await self._recover(mission_id)
+                else:
+                    await self._close_interrupted(mission_id, Interrupted("later_mission"))
+            except JournalDamaged as error:
+                log.error("mission %s does not come back, and its craft fly for none: %s", mission_id, error)
         for craft_id, craft in self.equipment.crafts.items():
             if self.craft(craft_id) is None:
                 craft.vehicle.restore(NOBODY)  # its failsafe may be acting on the silence before this server
@@ -384,10 +374,6 @@ async def _in_flight(
 async def _answered(runner: MissionRunner, request: CommandRequest, asked: tuple[Effect, ...]) -> CommandReply:
     await runner.outbox.flushed()
     return _reply(request, asked, runner.outbox.last_seq)
-
-
-def _accepted(asked: tuple[Effect, ...]) -> bool:
-    return any(isinstance(effect, Reply) and effect.reason is None for effect in asked)
 
 
 def _reply(request: CommandRequest, asked: tuple[Effect, ...], seq: int) -> CommandReply:

@@ -30,7 +30,7 @@ class Reports:
     async def add(self, mission_id: str, report: ReportedBearing) -> tuple[Recorded, bool]:
         """The fact, and whether the same bearing was there before: sent twice, it counts once.
 
-        Raises MissionNotFound, MissionInputError, MissionConflict once the search has ended.
+        Raises MissionNotFound, MissionInputError, MissionConflict once the search has ended or was deleted.
         """
         async with self.records.lock(mission_id):
             before = await self._stored(mission_id, report.bearing_id)
@@ -98,11 +98,13 @@ class Reports:
             raise MissionInputError(refusals.LeftOutByAnother(named[-1]), field)
 
     async def _search(self, mission_id: str) -> SearchState:
-        """Raises MissionConflict once it has ended."""
+        """Raises MissionConflict once it has ended, and when it was deleted."""
         runner = self.flights.running(mission_id)
         search = (runner.state if runner else (await self.records.load(mission_id))[0]).search
         if search.stage == "ended":
             raise MissionConflict(refusals.MissionOver())
+        if search.deleted:
+            raise MissionConflict(refusals.WasDeleted())
         return search
 
     async def _give(self, mission_id: str, given: BearingsArrived | SearchOrdered) -> None:

@@ -11,7 +11,7 @@ import logging
 from collections.abc import Sequence
 from functools import partial
 
-from backend.commands import Author, CommandRequest, ForCraft, Override
+from backend.commands import Author, CommandRequest, ForCraft, Override, Resume
 from backend.craft import inputs as craft_inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.measuring import Measured
@@ -30,6 +30,7 @@ from backend.mission.state import MissionState
 from backend.mission.told_forecasts import ToldForecasts
 from backend.ports import TrackPoint
 from backend.reasons import Reason
+from backend.reasons.refusals import NetsChanging
 from backend.search.effects import Record, SearchElsewhere, UpdateBelief
 from backend.search.inputs import NotStored
 from backend.search.state import SearchState
@@ -60,6 +61,8 @@ class MissionRunner:
         self.crafts: dict[str, CraftRunner] = {}
         self.finished = asyncio.Event()
         self.told = ToldForecasts()
+        self.nets_changing = False
+        """The autopilot's own fence is not yet that of the search area."""
 
     @property
     def state(self) -> MissionState:
@@ -123,10 +126,12 @@ class MissionRunner:
     def command(self, request: CommandRequest, author: Author, holder_gone: bool = False) -> tuple[Effect, ...]:
         """An operator's command; safety's objections are found first."""
         command, contexts = request.command, dict[str, Context]()
+        moves = isinstance(command, Override | Resume)
+        changing = (NetsChanging(),) if moves and self.nets_changing else ()
         if isinstance(command, ForCraft):
             contexts = {
                 craft_id: Context(
-                    craft.objections(command),
+                    craft.objections(command) + changing,
                     on_ground=craft.equipment.vehicle.telemetry().in_air is False,
                     altitude_amsl_m=craft.altitude_of(command),
                     foretold=self.told.of(self._state.search, command.place) if isinstance(command, Override) else None,

@@ -77,6 +77,14 @@ class AreaOnlyInHold:
 
 
 @dataclass(frozen=True, slots=True)
+class NetsChanging:
+    code: Literal["nets_changing"] = "nets_changing"
+    english: ClassVar[Words] = Words(
+        "The autopilot is still being given the fence of the new search area.", "Go on when it has it, in some seconds."
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class NoProposedPlace:
     code: Literal["no_proposed_place"] = "no_proposed_place"
     english: ClassVar[Words] = Words("No place is proposed.", "Wait for the planner's next place.")
@@ -240,6 +248,7 @@ RefusalReason = (
     | OnTheWayHome
     | OnTheGround
     | AreaOnlyInHold
+    | NetsChanging
     | NoProposedPlace
     | PlaceRefusedBefore
     | NoSuchBearing

@@ -209,14 +209,15 @@ class TakenEarlier:
 
 @dataclass(frozen=True, slots=True)
 class ImportRemark:
-    """What was changed about a recorded sweep when it was imported."""
+    """What was changed about a recorded sweep when it was imported, or not changed about bearings."""
 
     file: str
-    about: Literal["place_replaced", "altitude_unknown"]
+    about: Literal["place_replaced", "altitude_unknown", "bearings_stand"]
     code: Literal["import_remark"] = "import_remark"
     english: ClassVar[Words] = Words(
         "{about?place_replaced=The place that was named replaces the one in"
-        "|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}."
+        "|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in"
+        "|bearings_stand=The place or antenna offset that was named changes nothing about the bearings in} {file}."
     )
 
 

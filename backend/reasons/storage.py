@@ -124,6 +124,19 @@ class WrittenElsewhere:
 
 
 @dataclass(frozen=True, slots=True)
+class MissionDamaged:
+    """detail: what was found first."""
+
+    mission_id: str
+    detail: str
+    code: Literal["mission_damaged"] = "mission_damaged"
+    english: ClassVar[Words] = Words(
+        "What is stored of mission {mission_id} is damaged and cannot be read: {detail}.",
+        "The other missions are not touched by that; a backup may hold this one whole.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class DatabaseUnfit:
     """The server cannot start on it."""
 
@@ -133,6 +146,19 @@ class DatabaseUnfit:
     english: ClassVar[Words] = Words(
         "The database {database} cannot be used: {detail}.",
         "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DatabaseLater:
+    """revision: of its schema."""
+
+    database: str
+    revision: str
+    code: Literal["database_later"] = "database_later"
+    english: ClassVar[Words] = Words(
+        "A later Crossfix has written the database {database} (schema {revision}).",
+        "Update this one, or restore a backup from before the update.",
     )
 
 
@@ -163,7 +189,9 @@ StorageReason = (
     | NothingStores
     | FactUnfit
     | WrittenElsewhere
+    | MissionDamaged
     | DatabaseUnfit
+    | DatabaseLater
     | AnotherServer
     | ForeignSpool
 )

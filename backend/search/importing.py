@@ -23,6 +23,7 @@ from backend.search.sweep_facts import Taken, sweep_fact
 from backend.search.together import together
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.bearings_file import LATEST_S
 from hardware.direction_finding.recordings import RecordedSweep, Recording, mounted
 from hardware.frame import LocalFrame
 from hardware.ports import DirectionFinder
@@ -33,7 +34,7 @@ FAR_M = 50_000.0
 """A sweep taken further from the area belongs to another mission."""
 MOST_SWEEPS = 200
 CLOCK_S = 1e8
-"""Times from here on are UTC epoch seconds; smaller ones count from somewhere in the recording."""
+"""Times from here on, to 2100, are UTC epoch seconds; others count from somewhere in the recording."""
 OTHER_FREQUENCY = 0.01
 
 
@@ -119,7 +120,7 @@ def import_facts(
     mission, recording = state.mission, upload.recording
     emitter, remarks, number = begun(state, upload, len(recording.sweeps))
     first_s = float(recording.sweeps[0].sweep.at_s[0])
-    began_s = upload.at_s if upload.at_s is not None else (first_s if first_s >= CLOCK_S else None)
+    began_s = upload.at_s if upload.at_s is not None else (first_s if CLOCK_S <= first_s < LATEST_S else None)
     shift_s = 0.0 if began_s is None else began_s - first_s
     prepared = [_prepared(recorded, mission, emitter, upload, shift_s, remarks) for recorded in recording.sweeps]
     sweep_ids = [str(uuid5(NAMESPACE_URL, f"{mission_id}/{upload.recording_id}/{k}")) for k in range(len(prepared))]

@@ -29,10 +29,13 @@ LEAST_SIGMA_DEG, MOST_SIGMA_DEG = 1.0, 60.0
 def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) -> Import:
     """Every bearing of the emitter, and the belief after the last. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
+    upload = replace(upload, emitter_id=_emitter_id(mission, upload))
     emitter, remarks, number = begun(state, upload, len(recording.bearings))
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
+    if upload.place is not None or upload.offset_deg is not None:
+        remarks.append(reasons.ImportRemark(upload.filename, "bearings_stand"))
     others = (one.frequency_hz for one in recording.bearings if not _of(emitter, one))
     elsewhere = sorted({hz for hz in others if hz is not None})
     remarks += [reasons.OtherFrequency(upload.filename, hz, emitter.frequency_hz) for hz in elsewhere]
@@ -65,6 +68,20 @@ def _with_sigmas(bearings: Sequence[RecordedBearing], mission: MissionSpec, home
     found = bearing_scatter(places, degrees, np.array([west, south]), np.array([east, north]))
     sigma_deg = math.hypot(found.sigma_deg, COMPASS_SIGMA_DEG)
     return [one if one.stated else replace(one, sigma_deg=sigma_deg) for one in bearings]
+
+
+def _emitter_id(mission: MissionSpec, upload: Upload) -> str | None:
+    """Who is named, else the only one on a frequency that the file tells; None where there is one at all."""
+    bearings = upload.recording.bearings
+    if upload.emitter_id is not None or len(mission.emitters) == 1:
+        return upload.emitter_id
+    told = [one for one in bearings if one.frequency_hz is not None]
+    heard = [emitter for emitter in mission.emitters if any(_of(emitter, one) for one in told)]
+    if len(heard) == 1:
+        return heard[0].emitter_id
+    if heard or len(told) < len(bearings):
+        raise MissionInputError(reasons.WhichEmitter(len(mission.emitters)), "emitter_id")
+    return None
 
 
 def _of(emitter: EmitterSpec, one: RecordedBearing) -> bool:

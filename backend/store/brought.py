@@ -46,6 +46,8 @@ MOST_SAMPLES_BYTES = 16 * 2**20
 """Of one sweep, unpacked."""
 ROW_BYTES = 3 * 8
 POINTS_A_LINE = 5_000
+MOST_TOLD, LONGEST_MODE = 1e6, 40
+"""Metres, degrees or percent that a point of a path may tell, and characters of its mode; NaN: it does not."""
 WRITE_S = 10.0
 AT_ONCE = 500
 
@@ -240,7 +242,13 @@ def _track(told: tuple[bytes, str], mission_id: str) -> TrackEntry:
 
 
 def _sound(point: TrackPoint) -> bool:
-    return 0 <= point.at_s < 1e11 and _on_earth(point.lat_deg, point.lon_deg)
+    told = (point.altitude_amsl_m, point.altitude_relative_m, point.heading_deg, point.battery_percent)
+    return (
+        0 <= point.at_s < 1e11
+        and _on_earth(point.lat_deg, point.lon_deg)
+        and not any(value is not None and abs(value) > MOST_TOLD for value in told)
+        and (point.mode is None or (len(point.mode) <= LONGEST_MODE and point.mode.isprintable()))
+    )
 
 
 def _on_earth(lat_deg: float, lon_deg: float) -> bool:

@@ -8,12 +8,21 @@ from typing import Any
 
 from alembic import command
 from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlalchemy.pool import NullPool
 
 MIGRATIONS = Path(__file__).resolve().parent.parent.parent / "migrations"
+
+
+class LaterSchema(ValueError):
+    """The database is of a schema that this version does not know. revision: its."""
+
+    def __init__(self, revision: str) -> None:
+        super().__init__(f"its schema {revision} is of a later Crossfix")
+        self.revision = revision
 
 
 SHORTER = 0.6
@@ -87,7 +96,7 @@ def engine_for_once(url: str, timeout_s: float) -> AsyncEngine:
 
 async def migrate(url: str, timeout_s: float = 30.0, revision: str = "head") -> None:
     """Bring the database to the current schema, or to an earlier revision of it on the way there. In a thread of its
-    own: Alembic is synchronous."""
+    own: Alembic is synchronous. Raises LaterSchema."""
     await asyncio.to_thread(_migrate_in_thread, url, timeout_s, revision)
 
 
@@ -125,5 +134,8 @@ def _config() -> Config:
 
 def _run_alembic(connection: Connection, revision: str) -> None:
     config = _config()
+    there = MigrationContext.configure(connection).get_current_revision()
+    if there is not None and there not in known_revisions():
+        raise LaterSchema(there)
     config.attributes["connection"] = connection
     command.upgrade(config, revision)

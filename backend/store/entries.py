@@ -22,6 +22,7 @@ from backend.ports import FactRefused, TrackPoint
 from backend.reasons.storage import WrittenElsewhere
 from backend.spec import FIRST_EMITTER
 from backend.store.digest import EPOCH, MissionDigest, fold, from_columns, to_columns, to_us
+from backend.store.packed import MOST_BYTES
 from backend.store.tables import events, missions, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, READ_AS_IT_STANDS, Imports, craft_of_sweep, imports_of, upgraded
 from hardware.readings import Place, Sweep
@@ -47,8 +48,11 @@ class EventRow:
 
 
 def to_row(seq: int, at_utc: datetime, event: Event) -> EventRow:
-    """In today's form."""
-    return EventRow(seq, to_us(at_utc), event.kind, FORM, event.model_dump_json())
+    """In today's form. Raises ValueError for one that could not be read again."""
+    body = event.model_dump_json()
+    if len(body) > MOST_BYTES // 4 and len(body.encode()) > MOST_BYTES:
+        raise ValueError(f"a fact of {len(body)} characters is longer than any that is read")
+    return EventRow(seq, to_us(at_utc), event.kind, FORM, body)
 
 
 def to_records(mission_id: str, rows: Sequence[EventRow], imports: Imports | None = None) -> list[Recorded]:
@@ -63,13 +67,13 @@ def to_records(mission_id: str, rows: Sequence[EventRow], imports: Imports | Non
 def to_texts(mission_id: str, rows: Sequence[EventRow], imports: Imports | None = None) -> list[str]:
     """The JSON of what `to_records` gives. A body of today's form is passed on as it was stored, unread.
 
-    imports: as in to_records. Raises ValueError when an older body is no event.
+    imports: as in to_records. Raises ValueError when an older body is no event, and for none at all.
     """
     known = {**(imports or {}), **imported_before(rows)}
     head = f'"mission_id":{json.dumps(mission_id, ensure_ascii=False)},"at_utc":"'
     return [
         f'{{"seq":{row.seq},{head}{_utc_text(row.at_us)}","event":{row.body}}}'
-        if row.form == FORM
+        if row.form == FORM and row.body
         else _record(mission_id, row, known).model_dump_json()
         for row in rows
     ]

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, MissionBroughtIn, Recorded
-from backend.ports import FactRefused, JournalUnavailable, Kept, TrackPoint
+from backend.ports import FactRefused, JournalDamaged, JournalUnavailable, Kept, TrackPoint
 from backend.reasons.storage import FactUnfit, WrittenElsewhere
 from backend.store.brought import Brought, bring_in
 from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
@@ -103,8 +103,8 @@ class SqlJournal:
         async with self._lock:
             known = await self._known(mission_id)
             at_utc = datetime.fromtimestamp(self._now(), UTC)
-            entry = _entry(mission_id, len(known.recorded) + 1, at_utc, events)
             try:
+                entry = _entry(mission_id, len(known.recorded) + 1, at_utc, events)
                 recorded = to_records(mission_id, entry.rows)
                 after = fold(known.digest, recorded)
             except ValueError as error:
@@ -277,8 +277,12 @@ class SqlJournal:
         newest = await self._patiently(lambda: self._stored.missions(NETS_MISSIONS))
         known = {digest.mission_id for digest in newest} | set(self._written)
         stored = [d.mission_id for d in reversed(newest)] + sorted(known - {d.mission_id for d in newest})
-        found = [await self.read_kinds(each, ("nets_noted", "nets_put_back", "mission_brought_in")) for each in stored]
-        return [record for of_one in found for record in _of_this_installation(of_one)]
+        found: list[Recorded] = []
+        for each in stored:
+            with suppress(JournalDamaged):  # the others' nets are put back all the same
+                of_one = await self.read_kinds(each, ("nets_noted", "nets_put_back", "mission_brought_in"))
+                found += _of_this_installation(of_one)
+        return found
 
     async def unfinished(self) -> list[str]:
         """Missions that were started and have not ended, or whose craft is not down yet; oldest start first. Asked at a

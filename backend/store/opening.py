@@ -10,9 +10,9 @@ from pathlib import Path
 from sqlalchemy import make_url
 from sqlalchemy.exc import DBAPIError
 
-from backend.reasons.storage import AnotherServer, DatabaseUnfit, ForeignSpool
+from backend.reasons.storage import AnotherServer, DatabaseLater, DatabaseUnfit, ForeignSpool
 from backend.settings import Settings
-from backend.store.engine import make_engine, migrate
+from backend.store.engine import LaterSchema, make_engine, migrate
 from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
 from backend.store.reading import why
@@ -26,7 +26,7 @@ CLAIM_PATIENCE_S = 3.0
 class DatabaseUnusable(ReasonedError, RuntimeError):
     """The server cannot start."""
 
-    def __init__(self, reason: DatabaseUnfit | AnotherServer | ForeignSpool) -> None:
+    def __init__(self, reason: DatabaseUnfit | DatabaseLater | AnotherServer | ForeignSpool) -> None:
         super().__init__(reason)
 
 
@@ -74,6 +74,8 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
         raise DatabaseUnusable(AnotherServer(str(settings.spool_path))) from error
     except SpoolForeign as error:
         raise DatabaseUnusable(ForeignSpool(str(settings.spool_path))) from error
+    except LaterSchema as error:
+        raise DatabaseUnusable(DatabaseLater(shown, error.revision)) from error
     except (DBAPIError, OSError, ValueError) as error:
         raise DatabaseUnusable(DatabaseUnfit(shown, why(error))) from error
     engine = make_engine(url, settings.database_timeout_s)

@@ -7,7 +7,6 @@ Time, place and altitudes come back as they were told; a heading comes back to t
 from __future__ import annotations
 
 import json
-import math
 import zlib
 from collections.abc import Sequence
 from typing import cast
@@ -24,16 +23,22 @@ UNKNOWN = -(2**40)
 LEVEL = 9
 MOST_POINTS = 7200
 """Of one packed piece: an hour."""
-MOST_BYTES = MOST_POINTS * (2 + len(STEPS)) * 8 + 64 * 1024
+MOST_HEAD_BYTES = 64 * 1024
+MOST_BYTES = MOST_POINTS * (2 + len(STEPS)) * 8 + MOST_HEAD_BYTES
 """Of one piece, unpacked."""
+MOST_STEPS = 2**39
+"""A value further from zero is none that an autopilot tells: 550,000 km of altitude."""
 
 
 def packed_path(points: Sequence[TrackPoint]) -> bytes:
-    """One to MOST_POINTS of them, in time order, with finite times and places."""
+    """One to MOST_POINTS of them, in time order, with finite times and places. Raises ValueError for what could not be
+    unpacked again."""
     modes = sorted({point.mode for point in points if point.mode is not None})
     table = np.array([[round(p.at_s * 1e6), *_whole(p), _number(p.mode, modes)] for p in points], dtype=np.int64).T
     steps = np.diff(table, axis=1, prepend=0)
     head = json.dumps({"points": len(points), "modes": modes}).encode() + b"\n"
+    if len(points) > MOST_POINTS or len(head) > MOST_HEAD_BYTES:
+        raise ValueError(f"a path of {len(points)} points and {len(modes)} modes is no piece of an hour")
     return zlib.compress(head + _planes((steps << 1) ^ (steps >> 63)), LEVEL)
 
 
@@ -64,7 +69,7 @@ def _whole(point: TrackPoint) -> list[int]:
 
 
 def _steps(value: float | None, a_unit: float) -> int:
-    return UNKNOWN if value is None or not math.isfinite(value) else round(value * a_unit)
+    return UNKNOWN if value is None or not abs(value) * a_unit < MOST_STEPS else round(value * a_unit)
 
 
 def _number(mode: str | None, modes: Sequence[str]) -> int:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import sqlite3
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
@@ -12,14 +14,16 @@ from sqlalchemy import ColumnElement, Executable, exc, func, or_, select
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import FORM, Recorded
-from backend.ports import JournalUnavailable, Kept, TrackPoint
-from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy
+from backend.ports import JournalDamaged, JournalUnavailable, Kept, TrackPoint
+from backend.reasons.storage import DatabaseSilent, DatabaseTaken, DiskBusy, MachineBusy, MissionDamaged
 from backend.store.digest import MissionDigest, from_columns
 from backend.store.entries import ROW, EventRow, SweepEntry, imported_before, sweep_columns, to_records, to_texts
 from backend.store.paths import unpacked_path
 from backend.store.patience import StarvedError, patience
 from backend.store.tables import events, missions, paths, sweeps, tracks
 from backend.store.upgrade import FIRST_FORM, OF_A_SWEEP, Imports, kinds_of_old
+
+log = logging.getLogger("crossfix.store")
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +92,8 @@ def _on_the_globe(lon: float) -> float:
 
 
 class StoredFacts:
-    """All methods raise JournalUnavailable when the database does not answer in time."""
+    """All methods raise JournalUnavailable when the database does not answer in time; those that read what a mission
+    did raise JournalDamaged."""
 
     def __init__(self, engine: AsyncEngine, timeout_s: float) -> None:
         self._engine = engine
@@ -98,14 +103,16 @@ class StoredFacts:
         self, mission_id: str, after: int = 0, kinds: Collection[str] | None = None, most: int | None = None
     ) -> list[Recorded]:
         """Facts of today's form, in order; older ones are upgraded. kinds, most: None for all."""
-        rows = await self._rows(mission_id, after, kinds, most)
-        return await _beside(len(rows), to_records, mission_id, rows, await self._imports(mission_id, rows))
+        with _whole(mission_id):
+            rows = await self._rows(mission_id, after, kinds, most)
+            return await _beside(len(rows), to_records, mission_id, rows, await self._imports(mission_id, rows))
 
     async def read_texts(self, mission_id: str, after: int = 0, most: int | None = None) -> list[str]:
         """What `read` gives, each as the wire tells it."""
-        rows = await self._rows(mission_id, after, None, most)
-        told_anew = sum(row.form != FORM for row in rows)
-        return await _beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
+        with _whole(mission_id):
+            rows = await self._rows(mission_id, after, None, most)
+            told_anew = sum(row.form != FORM for row in rows)
+            return await _beside(told_anew, to_texts, mission_id, rows, await self._imports(mission_id, rows))
 
     async def _rows(
         self, mission_id: str, after: int, kinds: Collection[str] | None, most: int | None
@@ -177,7 +184,8 @@ class StoredFacts:
         columns = [column for column in tracks.c if column.name != "mission_id"]
         rows = await self._fetch(select(*columns).where(tracks.c.mission_id == mission_id))
         pieces = await self._fetch(select(paths.c.craft_id, paths.c.points).where(paths.c.mission_id == mission_id))
-        return await asyncio.to_thread(_in_time_order, rows, pieces)
+        with _whole(mission_id):
+            return await asyncio.to_thread(_in_time_order, rows, pieces)
 
     async def _fetch(self, query: Executable) -> list[Any]:
         try:
@@ -185,6 +193,16 @@ class StoredFacts:
                 return list(await connection.execute(query))
         except (exc.DBAPIError, exc.TimeoutError, OSError) as error:
             raise unavailable(error, self._engine) from error
+
+
+@contextmanager
+def _whole(mission_id: str) -> Generator[None]:
+    """Raises JournalDamaged for what cannot be unpacked, or is no fact."""
+    try:
+        yield
+    except ValueError as error:
+        log.error("mission %s: what is stored of it cannot be read: %s", mission_id, error)
+        raise JournalDamaged(MissionDamaged(mission_id, why(error))) from error
 
 
 async def _beside(count: int, work: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:

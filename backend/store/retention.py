@@ -10,9 +10,10 @@ import asyncio
 import logging
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from typing import Any
 
-from sqlalchemy import ColumnElement, delete, func, select, true
+from sqlalchemy import ColumnElement, delete, func, select, true, tuple_
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.ports import TrackPoint
@@ -85,39 +86,56 @@ async def thin(engine: AsyncEngine, keep_days: float, now: datetime) -> Thinned:
 
 async def pack_paths(engine: AsyncEngine, now: datetime) -> int:
     """The flown paths of missions that are over, out of their rows into pieces of an hour, one in a transaction. How
-    many pieces. Raises what the driver raises."""
-    query = select(tracks.c.mission_id, tracks.c.craft_id)
-    query = query.where(tracks.c.mission_id == missions.c.mission_id, _old(0.0, now)).limit(1)
-    packed = 0
+    many pieces. A path that cannot be packed stays as it is. Raises what the driver raises."""
+    packed, done = 0, ("", "")
     while True:
+        key = tuple_(tracks.c.mission_id, tracks.c.craft_id)
+        query = select(tracks.c.mission_id, tracks.c.craft_id).where(tracks.c.mission_id == missions.c.mission_id)
+        query = query.where(_old(0.0, now), key > done).order_by(tracks.c.mission_id, tracks.c.craft_id).limit(1)
         async with engine.connect() as connection:
             found = (await connection.execute(query)).first()
         if found is None:
             return packed
-        mission_id, craft_id = found
+        done = (found.mission_id, found.craft_id)
+        try:
+            packed += await _pack_path(engine, *done)
+        except ValueError as error:
+            log.error("the path of %s in mission %s stays unpacked: %s", found.craft_id, found.mission_id, error)
+
+
+async def _pack_path(engine: AsyncEngine, mission_id: str, craft_id: str) -> int:
+    """All that lies in rows of one path; how many pieces. Raises ValueError."""
+    packed = 0
+    while True:
         async with engine.execution_options(write=True).begin() as connection:
-            packed += await _pack_piece(connection, mission_id, craft_id)
+            taken = await _pack_piece(connection, mission_id, craft_id)
+        if taken is None:
+            return packed
+        packed += taken
         await asyncio.sleep(PAUSE_S)
 
 
-async def _pack_piece(connection: AsyncConnection, mission_id: str, craft_id: str) -> int:
-    """The first hour of what lies in rows. 0: it was a point that a piece holds already, written again."""
-    columns = [column for column in tracks.c if column.name not in ("mission_id", "craft_id")]
+async def _pack_piece(connection: AsyncConnection, mission_id: str, craft_id: str) -> int | None:
+    """The first hour of what lies in rows; how many pieces it made, None when there was nothing. Raises ValueError.
+
+    The rows that the database says it deleted are those that are packed, whatever is written at the same time.
+    """
     here = (tracks.c.mission_id == mission_id) & (tracks.c.craft_id == craft_id)
-    query = select(*columns).where(here).order_by(tracks.c.at_us).limit(MOST_POINTS)
-    rows: list[Any] = list(await connection.execute(query))
+    hour = select(tracks.c.at_us).where(here).order_by(tracks.c.at_us).limit(MOST_POINTS).subquery()
+    columns = [column for column in tracks.c if column.name not in ("mission_id", "craft_id")]
+    taking = delete(tracks).where(here, tracks.c.at_us <= select(func.max(hour.c.at_us)).scalar_subquery())
+    rows: list[Any] = sorted(await connection.execute(taking.returning(*columns)), key=lambda row: row.at_us)
     if not rows:
-        return 0
-    first_us, last_us = rows[0][0], rows[-1][0]
-    piece = {"mission_id": mission_id, "craft_id": craft_id, "at_us": first_us}
-    same = [paths.c[name] == value for name, value in piece.items()]
-    if (await connection.execute(select(paths.c.at_us).where(*same))).first() is not None:
-        await connection.execute(delete(tracks).where(here & (tracks.c.at_us == first_us)))
-        return 0
-    small = await asyncio.to_thread(lambda: packed_path([TrackPoint(at_us / 1e6, *values) for at_us, *values in rows]))
-    await connection.execute(paths.insert().values(piece | {"points": small}))
-    await connection.execute(delete(tracks).where(here & (tracks.c.at_us <= last_us)))
-    return 1
+        return None
+    same = (paths.c.mission_id == mission_id) & (paths.c.craft_id == craft_id)
+    begun = set(await connection.scalars(select(paths.c.at_us).where(same)))
+    new = [row for row in rows if row.at_us not in begun]  # those came again out of a spool
+    pieces = [new[at : at + MOST_POINTS] for at in range(0, len(new), MOST_POINTS)]
+    for piece in pieces:
+        points = [TrackPoint(at_us / 1e6, *told) for at_us, *told in piece]
+        key = {"mission_id": mission_id, "craft_id": craft_id, "at_us": piece[0].at_us}
+        await connection.execute(paths.insert().values(**key, points=await asyncio.to_thread(packed_path, points)))
+    return len(pieces)
 
 
 async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
@@ -125,10 +143,11 @@ async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
     Raises what the driver raises."""
     gone = (missions.c.deleted_at_us < to_us(now - timedelta(days=keep_days))) & ~missions.c.flying
     writer = engine.execution_options(write=True)
+    one = select(missions.c.mission_id).where(gone).limit(1).with_for_update()  # a restoration waits, or is waited for
     taken = 0
     while True:
         async with writer.begin() as connection:
-            mission_id = (await connection.execute(select(missions.c.mission_id).where(gone).limit(1))).scalar()
+            mission_id = (await connection.execute(one)).scalar()
             if mission_id is None:
                 return taken
             for table in (sweeps, tracks, paths, events, missions):
@@ -162,16 +181,25 @@ async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder) 
     while True:
         await asyncio.sleep(wait_s)
         wait_s = EVERY_S
-        try:
-            buried = await bury(engine, DELETED_DAYS, datetime.now(UTC))
-            if buried:
-                log.info("%d missions deleted more than %g days ago are gone", buried, DELETED_DAYS)
-            await pack_paths(engine, datetime.now(UTC))
-            await thin_iq(engine, iq, keep_days, datetime.now(UTC))
-            if keep_days is None:
-                continue
-            taken = await thin(engine, keep_days, datetime.now(UTC))
-            if taken.sweeps:
-                log.info("took %d raw sweeps older than %g days (%d bytes)", taken.sweeps, keep_days, taken.size_bytes)
-        except Exception:
-            log.exception("old raw sweeps or missions could not be taken; tried again later")
+        now = datetime.now(UTC)
+        for chore in (_bury, pack_paths, partial(_take_iq, iq, keep_days), partial(_take_sweeps, keep_days)):
+            try:
+                await chore(engine, now)
+            except Exception:
+                log.exception("old raw sweeps, paths or missions could not be taken; tried again later")
+
+
+async def _bury(engine: AsyncEngine, now: datetime) -> None:
+    buried = await bury(engine, DELETED_DAYS, now)
+    if buried:
+        log.info("%d missions deleted more than %g days ago are gone", buried, DELETED_DAYS)
+
+
+async def _take_iq(iq: IqFolder, keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:
+    await thin_iq(engine, iq, keep_days, now)
+
+
+async def _take_sweeps(keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:
+    taken = Thinned(0, 0, 0) if keep_days is None else await thin(engine, keep_days, now)
+    if taken.sweeps:
+        log.info("took %d raw sweeps older than %g days (%d bytes)", taken.sweeps, keep_days, taken.size_bytes)

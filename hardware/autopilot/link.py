@@ -13,6 +13,7 @@ import asyncio
 import contextlib
 import json
 import logging
+import math
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
@@ -171,6 +172,8 @@ class MavlinkLink:
 
         None among the fields is sent as NaN; a target among them is kept. Returns whether it was sent.
         """
+        if self._closed:
+            return False
         addressed = {"target_system": self.system_id, "target_component": AUTOPILOT_COMPONENT} | fields
         target = addressed["target_system"], addressed["target_component"]
         message = MavlinkMessage(name, 0, 0, *target, json.dumps(addressed))
@@ -190,7 +193,7 @@ class MavlinkLink:
         return await asyncio.wrap_future(running)
 
     async def parameter(self, name: str) -> float | None:
-        """An autopilot parameter, or None when it has none of that name (or does not answer)."""
+        """An autopilot parameter, or None when it has none of that name (or does not answer, or with no number)."""
         if not await self._has_parameter(name):
             return None
         return await self._waiting(self._blocking, self._read_parameter, name)
@@ -203,7 +206,7 @@ class MavlinkLink:
         """MAVSDK asks six times, for 9 s, for one that there is not; ArduPilot answers nothing then."""
         for _ in range(PARAMETER_ASKS):
             if name in self._parameters:
-                return True
+                break
             if not await self.send("PARAM_REQUEST_READ", {"param_id": name, "param_index": -1}, lambda: True):
                 return False
             end_s = time.monotonic() + PARAMETER_WALL_S
@@ -212,7 +215,7 @@ class MavlinkLink:
                 with contextlib.suppress(TimeoutError):
                     async with asyncio.timeout(left_s):
                         await self._parameter_heard.wait()
-        return name in self._parameters
+        return name in self._parameters and not self._closed
 
     def _read_parameter(self, name: str) -> float | None:
         if self._param is None:
@@ -220,7 +223,8 @@ class MavlinkLink:
         is_float = self._parameters[name] in _FLOATS
         read = self._param.get_param_float if is_float else self._param.get_param_int
         with contextlib.suppress(ParamError):
-            return float(read(name))
+            value = float(read(name))
+            return value if math.isfinite(value) else None
         return None
 
     async def fence(self) -> list[FenceItem]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +13,8 @@ DEFAULT_SIGMA_DEG = 7.0
 """The field system's (spec section 8), for bearings whose file states none."""
 EARLIEST_S = 1e8
 """Times from here on are UTC epoch seconds; smaller ones count from somewhere else."""
+LATEST_S = 4_102_444_800.0
+"""2100: no bearing was taken so late."""
 EXPECTED = ("lat", "lon", "bearing_deg")
 _LAT = ("lat", "lat_deg", "latitude", "latitude_deg")
 _LON = ("lon", "lon_deg", "lng", "long", "longitude", "longitude_deg")
@@ -137,5 +138,5 @@ def _bearing(table: Table, row: Row, columns: _Columns, default_sigma_deg: float
         sigma, given = stated, True
     tag = row.cells[columns.tag] if columns.tag is not None and columns.tag < len(row.cells) else None
     at_s = None if columns.at is None else row.number(columns.at)
-    at_s = at_s if at_s is not None and EARLIEST_S < at_s < math.inf else None
+    at_s = at_s if at_s is not None and EARLIEST_S < at_s < LATEST_S else None
     return RecordedBearing(row.line, Place(lat, lon), bearing % 360.0, sigma, tag or None, given, at_s)

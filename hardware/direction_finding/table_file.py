@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,8 +11,8 @@ from hardware.reasons.table import CellUnusable, ColumnsUnknown, FileUnreadable,
 from hardware.reasons.union import RecordingReason
 from planner.reason import ReasonedError
 
-LONGEST_CELL = 60
-"""Characters of a cell that a reason shows."""
+LONGEST_CELL, MOST_NAMED = 60, 20
+"""Characters of a cell that a reason shows, and how many tags it names."""
 
 
 class RecordingError(ReasonedError):
@@ -79,10 +80,13 @@ def read_table(path: Path | str) -> Table:
     comments: list[Row] = []
     for number, line in enumerate(text.splitlines(), start=1):
         stripped = line.strip()
-        if stripped.startswith("#"):
-            comments.append(Row(number, _cells(stripped.lstrip("#"))))
-        elif stripped.strip(",;"):
-            rows.append(Row(number, _cells(stripped)))
+        try:
+            if stripped.startswith("#"):
+                comments.append(Row(number, _cells(stripped.lstrip("#"))))
+            elif stripped.strip(",;"):
+                rows.append(Row(number, _cells(stripped)))
+        except csv.Error as error:  # a cell of more than 128 kB, for one
+            raise RecordingError(FileUnusable(str(path), "not_text")) from error
     if not rows:
         raise RecordingError(FileUnusable(str(path), "empty"))
     return Table(path, tuple(rows), tuple(comments))
@@ -92,6 +96,12 @@ def _cells(line: str) -> tuple[str, ...]:
     """Split at commas; at semicolons or tabs when there is no comma."""
     delimiter = next((d for d in (",", ";", "\t") if d in line), ",")
     return tuple(cell.strip().strip("'\"") for cell in next(csv.reader([line], delimiter=delimiter)))
+
+
+def some_of(names: Iterable[str]) -> tuple[str, ...]:
+    """In their order, as many and as much of each as a reason shows."""
+    shown = sorted(set(names))
+    return (*(name[:LONGEST_CELL] for name in shown[:MOST_NAMED]), *(("...",) if len(shown) > MOST_NAMED else ()))
 
 
 def column_of(names: tuple[str, ...], *aliases: str) -> int | None:

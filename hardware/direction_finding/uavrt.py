@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of
+from hardware.direction_finding.table_file import RecordingError, Row, Table, column_of, some_of
 from hardware.readings import Place, Sweep
 from hardware.reasons.table import (
     CellUnusable,
@@ -86,8 +86,9 @@ class _Rotation:
 
 
 def is_uavrt(table: Table) -> bool:
-    """Whether the table's rows are UAV-RT commands."""
-    return any(row.cells[0] in COMMANDS and len(row.cells) >= 4 for row in table.rows)
+    """Whether the table's rows are UAV-RT commands: a table of headings has a 7, 10 and 11 among others."""
+    commands = sum(row.cells[0] in COMMANDS and len(row.cells) >= 4 for row in table.rows)
+    return 0 < commands >= len(table.rows) / 2
 
 
 def read_rotations(table: Table, tag: str | None = None) -> tuple[list[tuple[Sweep, float]], list[TableRemark]]:
@@ -245,9 +246,9 @@ def _sweep(
         return None
     wanted = heard.most_common(1)[0][0] if tag is None else tag
     if wanted not in heard:
-        remarks.append(TagNotHeard(file, line, wanted, tuple(sorted(heard))))
+        remarks.append(TagNotHeard(file, line, wanted, some_of(heard)))
         return None
-    others = tuple(sorted(set(heard) - {wanted}))
+    others = some_of(set(heard) - {wanted})
     if others and tag is None:
         remarks.append(OtherTagsLeftOut(file, line, wanted, heard.total() - heard[wanted], others))
     pulses = [pulse for pulse in rotation.pulses if pulse.tag == wanted]

@@ -193,4 +193,24 @@ class PlaceNotStated:
     )
 
 
-TableReason = FileUnreadable | FileUnusable | ColumnsUnknown | TableRemark | NothingUsable | OneTagOnly | PlaceNotStated
+@dataclass(frozen=True, slots=True)
+class RemarksNotListed:
+    """Of a file of which too much was left out to be told one by one."""
+
+    file: str
+    remarks: int
+    code: Literal["remarks_not_listed"] = "remarks_not_listed"
+
+    english: ClassVar[Words] = Words("{remarks|more remark|more remarks} about {file}: not listed one by one.")
+
+
+TableReason = (
+    FileUnreadable
+    | FileUnusable
+    | ColumnsUnknown
+    | TableRemark
+    | NothingUsable
+    | OneTagOnly
+    | PlaceNotStated
+    | RemarksNotListed
+)

@@ -1,8 +1,13 @@
 """Settings of a server: what they refuse, and what follows from them."""
 
+from contextlib import nullcontext
+from pathlib import Path
+
+import httpx
 import pytest
 from pydantic import ValidationError
 
+from backend.api.application import make_application
 from backend.settings import Settings
 
 
@@ -42,3 +47,36 @@ def test_an_unknown_database_is_refused_with_the_two_that_work(url: str) -> None
 )
 def test_the_database_is_opened_with_the_asynchronous_driver(url: str, driven: str) -> None:
     assert Settings(database_url=url).async_database_url == driven
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "crossfix.example",
+        "javascript:alert(1)//x",
+        "https://",
+        "https://a/?b",
+        "https://a/#/join/x",
+        "https://a@b",
+        "//a",
+    ],
+)
+def test_an_address_that_no_link_can_be_made_of_is_refused(url: str) -> None:
+    with pytest.raises(ValidationError, match="public address"):
+        Settings(public_url=url)
+
+
+def test_the_pages_address_is_one_to_add_to() -> None:
+    assert Settings(public_url="https://192.168.1.10:8443/").public_url == "https://192.168.1.10:8443"
+    assert Settings(public_url="").public_url is None
+
+
+async def test_a_link_to_the_pages_address_is_not_turned_away(tmp_path: Path) -> None:
+    settings = Settings(public_url="https://Field.example:8443", page_dir=tmp_path)
+    app = make_application(settings, lambda _: nullcontext())
+    async with httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://127.0.0.1") as client:
+        told = {
+            host: (await client.get("/", headers={"host": host})).status_code
+            for host in ("field.example:8443", "e.example")
+        }
+    assert told == {"field.example:8443": 503, "e.example": 421}

@@ -558,6 +558,10 @@ export const reasonsEn: ReasonTable = {
     text: "The file {file} does not state where it was recorded.",
     remedy: "Add columns lat and lon, or name the place beside it.",
   },
+  remarks_not_listed: {
+    text: "{remarks|more remark|more remarks} about {file}: not listed one by one.",
+    remedy: "",
+  },
   sigmf_field_missing: {
     text: "The recording {file} does not state {field}.",
     remedy:
@@ -1256,6 +1260,10 @@ export const reasonsEn: ReasonTable = {
     text: "The search area can only be changed in hold.",
     remedy: "Hold, then change it.",
   },
+  nets_changing: {
+    text: "The autopilot is still being given the fence of the new search area.",
+    remedy: "Go on when it has it, in some seconds.",
+  },
   no_proposed_place: {
     text: "No place is proposed.",
     remedy: "Wait for the planner's next place.",
@@ -1626,7 +1634,7 @@ export const reasonsEn: ReasonTable = {
     remedy: "",
   },
   import_remark: {
-    text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in} {file}.",
+    text: "{about?place_replaced=The place that was named replaces the one in|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in|bearings_stand=The place or antenna offset that was named changes nothing about the bearings in} {file}.",
     remedy: "",
   },
   other_frequency: {
@@ -1683,9 +1691,17 @@ export const reasonsEn: ReasonTable = {
     text: "Event {seq} of mission {mission_id} does not follow what is stored: another server writes to it.",
     remedy: "Let only one server use this database.",
   },
+  mission_damaged: {
+    text: "What is stored of mission {mission_id} is damaged and cannot be read: {detail}.",
+    remedy: "The other missions are not touched by that; a backup may hold this one whole.",
+  },
   database_unfit: {
     text: "The database {database} cannot be used: {detail}.",
     remedy: "Check CROSSFIX_DATABASE_URL and that the disk can be written.",
+  },
+  database_later: {
+    text: "A later Crossfix has written the database {database} (schema {revision}).",
+    remedy: "Update this one, or restore a backup from before the update.",
   },
   another_server: {
     text: "Another server uses {path}.",

@@ -46,6 +46,10 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
   }, []);
   const shown = useRef<HTMLDivElement>(null);
   useEffect(() => shown.current?.scrollIntoView({ block: "nearest" }), [made.length]);
+  const takeBack = async (id: string) => {
+    await access.takeBackInvitation(id);
+    setMade((before) => before.filter((other) => other.invitation.invitation_id !== id));
+  };
   return (
     <section>
       <div class="page-head">
@@ -101,7 +105,7 @@ export function Invitations({ list, attempt }: { list: access.Invitation[]; atte
                 })}
               </span>
             </span>
-            <button type="button" onClick={() => attempt(access.takeBackInvitation(one.invitation_id).then(() => setMade([])))}>
+            <button type="button" onClick={() => attempt(takeBack(one.invitation_id))}>
               {t("people.takeBack")}
             </button>
           </li>

@@ -9,4 +9,5 @@ it("addresses lead to their pages, strange ones to the list", () => {
   expect(parseRoute("#/mission/a-1/edit")).toEqual({ page: "edit", missionId: "a-1" });
   expect(parseRoute("#/nowhere")).toEqual({ page: "missions" });
   expect(parseRoute(missionAddress("x y"))).toEqual({ page: "mission", missionId: "x y" });
+  expect(parseRoute("#/join/a%b%")).toEqual({ page: "join", code: "a%b%" });
 });

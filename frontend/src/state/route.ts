@@ -18,8 +18,17 @@ export type Route =
   | { page: "signIn"; fault: string }
   | { page: "firstAdmin"; code: string };
 
+/** A link that was mangled on its way is read as it came. */
+function decoded(part: string): string {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
+}
+
 export function parseRoute(hash: string): Route {
-  const parts = hash.replace(/^#\/?/, "").split("/").map(decodeURIComponent);
+  const parts = hash.replace(/^#\/?/, "").split("/").map(decoded);
   const id = parts[1];
   if (parts[0] === "new") return { page: "new", from: id ?? null };
   if (parts[0] === "maps" || parts[0] === "health" || parts[0] === "people" || parts[0] === "calibration") return { page: parts[0] };

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
 TARGET = (7.202, 50.601)
 PLACES = ((7.2, 50.6), (7.204, 50.6), (7.204, 50.602), (7.199, 50.603))
@@ -96,6 +98,62 @@ async def test_what_does_not_belong_to_the_search_is_refused_whole(client, servi
         reply = await bring(client, mission_id, text)
         assert (reply.status_code, reply.json()["reason"]["code"]) == (422, code)
     assert await facts(services, mission_id, "bearing_measured") == []
+
+
+@pytest.mark.parametrize("at_s", ["1e300", "inf", "nan", "9e9", "-1"])
+async def test_a_time_that_cannot_be_is_no_time(client, services, at_s):
+    mission_id = await draft(client)
+    bearings = f"2,rot.csv,{bearing_deg(7.2, 50.6)},0.5,50.6,7.2,10.0,110.0,1684766889.8,{at_s}"
+    turn = "heading_deg,power_db,time,lat,lon\n" + "\n".join(
+        f"{n + 0.5},{-60 - n % 180},{at_s},50.6,7.2" for n in range(0, 360, 5)
+    )
+    for text in (bearings, turn):
+        reply = await bring(client, mission_id, text)
+        assert reply.status_code == 201, reply.text
+    (imported, _) = await facts(services, mission_id, "recording_imported")
+    assert imported.recorded_at_utc is None
+    assert {one.taken_at_s for one in await facts(services, mission_id, "bearing_measured")} == {None}
+
+
+async def test_a_file_of_mistakes_is_told_briefly(client, services):
+    """Its remarks are a fact, and every page that shows the mission loads it."""
+    mission_id = await draft(client)
+    text = f"lat,lon,bearing_deg\n50.6,7.2,{bearing_deg(7.2, 50.6)}\n" + "north,7.2,45\n" * 3000
+    told = (await bring(client, mission_id, text)).json()
+    assert len(told["sweeps"]) == 1
+    assert len(told["remarks"]) == 51
+    assert (told["remarks"][-1]["code"], told["remarks"][-1]["remarks"]) == ("remarks_not_listed", 2950)
+    tags = "\n".join(f"{n:0100},rot.csv,45,0.5,50.6,7.2,10.0,110.0,1684766889.8,1684767153.8" for n in range(500))
+    refused = (await bring(client, mission_id, tags)).json()["reason"]
+    assert (refused["code"], len(refused["tags"]), max(map(len, refused["tags"]))) == ("one_tag_only", 21, 60)
+
+
+async def test_a_cell_without_end_is_no_table(client):
+    mission_id = await draft(client)
+    reply = await bring(client, mission_id, "lat,lon,bearing_deg\n50.6,7.2," + "4" * 200_000)
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (422, "file_unusable")
+
+
+async def test_a_place_or_an_offset_beside_bearings_is_said_to_change_nothing(client):
+    for said in ({"lat": 50.6, "lon": 7.2}, {"offset_deg": 10.0}):
+        told = (await bring(client, await draft(client), kraken(), **said)).json()
+        assert [(remark["code"], remark["about"]) for remark in told["remarks"]] == [
+            ("import_remark", "bearings_stand")
+        ]
+        assert [round(one["bearing_deg"]) for one in told["sweeps"]] == [round(bearing_deg(*place)) for place in PLACES]
+
+
+async def test_of_several_emitters_the_file_or_whoever_sends_it_says_which(client, services):
+    """A bearing of one counted for another would be believed."""
+    emitters = [{"emitter_id": f"e{n}", "frequency_hz": 868.1e6 + n * 200e3} for n in (0, 1)]
+    mission_id = await draft(client, emitters=emitters)
+    plain = f"lat,lon,bearing_deg\n50.6,7.2,{bearing_deg(7.2, 50.6)}\n"
+    refused = await bring(client, mission_id, plain)
+    assert (refused.status_code, refused.json()["reason"]["code"]) == (422, "which_emitter")
+    assert (await bring(client, mission_id, plain, emitter_id="e0")).status_code == 201
+    assert (await bring(client, mission_id, kraken())).status_code == 201
+    heard = [fact.emitter_id for fact in await facts(services, mission_id, "bearing_measured")]
+    assert heard == ["e0", *["e1"] * 4]
 
 
 async def test_bearings_of_another_frequency_are_left_out_and_named(client, services):

@@ -288,6 +288,11 @@ def still_flying(text: bytes) -> bytes:
         (changed("sweeps.jsonl", lambda text: text.replace(b'"entry":"sweep"', b'"entry":"track"')), "damaged"),
         (changed("tracks.jsonl", lambda text: text.replace(b'"at_s":1', b'"at_s":-1')), "damaged"),
         (changed("tracks.jsonl", lambda text: text.replace(b'"craft-1"', b'"../x"')), "damaged"),
+        (
+            changed("tracks.jsonl", lambda text: text.replace(b'"altitude_amsl_m":1', b'"altitude_amsl_m":1e99')),
+            "damaged",
+        ),
+        (changed("tracks.jsonl", lambda text: text.replace(b'"mode":"', b'"mode":"' + b"M" * 99)), "damaged"),
     ],
 )
 def test_a_hostile_bundle_is_refused_with_a_reason(spoil, fault):

@@ -117,6 +117,28 @@ async def test_a_deleted_mission_is_started_from_no_tab_that_still_shows_it(clie
     assert await names(client, deleted=True) == {"Search"}
 
 
+async def test_a_deleted_mission_takes_nothing_in_from_a_tab_that_still_shows_it(client):
+    mission_id = await draft(client)
+    base = f"/api/missions/{mission_id}"
+    spec = (await client.get(base)).json()["spec"]
+    bearing = {"bearing_id": "b" * 8, "place": {"lat": 50.6, "lon": 7.2}, "bearing_deg": 45.0}
+    table = {"files": ("b.csv", "lat,lon,bearing_deg\n50.6,7.2,45\n", "text/csv")}
+    assert (await client.delete(base)).status_code == 204
+
+    async def tried() -> list[int]:
+        replies = [
+            await client.put(f"{base}/spec", json=spec),
+            await client.post(f"{base}/bearings", json=bearing),
+            await client.post(f"{base}/recordings", files=table),
+        ]
+        return [reply.status_code for reply in replies]
+
+    assert await tried() == [409, 409, 409]
+    assert (await client.get(base)).json()["bearings"] == 0
+    assert (await client.post(f"{base}/restore")).status_code == 200
+    assert await tried() == [200, 201, 201]
+
+
 async def test_the_truth_is_told_and_the_last_word_counts(client):
     mission_id = await draft(client)
     told = {"place": {"lat": 50.601, "lon": 7.202}, "accuracy_m": 4, "how": "phone"}

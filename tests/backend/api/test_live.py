@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 import websockets
 from narrowing import known
+from sqlalchemy import text
 
 from backend.events import HoldOrdered, MissionDrafted
 from backend.spec import MissionSpec, Polygon
+from backend.store.engine import make_engine
 from hardware.readings import Telemetry
 from planner.belief.grid import GridBelief
 
@@ -81,6 +83,23 @@ async def test_a_wrong_address_is_told_why(served, query, code):
             await asyncio.wait_for(websocket.recv(), 60)
     assert known(closed.value.rcvd).code == code
     assert known(closed.value.rcvd).reason
+
+
+async def test_a_damaged_mission_says_so_and_is_let_go(served, services, client):
+    await happen(services, 2)
+    services.journal._written.clear()
+    services.hub._feeds.clear()
+    engine = make_engine(services.settings.async_database_url, 60.0)
+    async with engine.execution_options(write=True).begin() as connection:
+        await connection.execute(text("UPDATE events SET body = :body WHERE seq = 2"), {"body": b"\x78\x9c no text"})
+    await engine.dispose()
+    async with websockets.connect(f"ws://{served}/api/live?mission=m") as websocket:
+        async with asyncio.timeout(60):
+            await websocket.wait_closed()
+    assert (websocket.close_code, "damaged" in known(websocket.close_reason)) == (4500, True)
+    reply = await client.get("/api/missions/m/events")
+    assert (reply.status_code, reply.json()["reason"]["code"]) == (500, "mission_damaged")
+    assert [one["mission_id"] for one in (await client.get("/api/missions")).json()["missions"]] == ["m"]
 
 
 async def test_what_a_browser_sends_is_ignored(served, services):

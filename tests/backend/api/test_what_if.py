@@ -16,8 +16,10 @@ from backend.events import (
     BearingExcluded,
     BearingMeasured,
     CraftSource,
+    ImportSource,
     MissionDrafted,
     MissionStarted,
+    RecordingImported,
     SweepRejected,
     TruthNoted,
 )
@@ -239,6 +241,26 @@ async def test_another_pattern_is_flown_with_what_the_mission_took_off_its_beari
     told = await ask(client, "m1", bearings=1, pattern={"filename": "yagi.json", "text": pattern_json(YAGI)})
     assert told["antenna"]["offset_to_nose_deg"] == YAGI.offset_to_nose_deg - 20.0
     assert turned_deg(told) == pytest.approx([-20.0], abs=0.5)
+
+
+@pytest.mark.parametrize("imported_first", [False, True])
+async def test_a_recording_beside_the_flight_has_no_correction_and_takes_none_from_it(client, services, imported_first):
+    """Whichever came last: the flown bearings have the mission's offset taken off, a recording's never had it."""
+    sensor = SPEC.sensor.model_copy(update={"bearing_offset_deg": 20.0})
+    flown = replace(YAGI, name="flown", offset_to_nose_deg=YAGI.offset_to_nose_deg - 20.0)
+    theirs = BEARINGS[1].model_copy(update={"source": ImportSource(recording_id="r")})
+    recording = RecordingImported(
+        emitter_id="emitter-1", recording_id="r", filename="turn.csv", by="anna", recorded_at_utc=None,
+        sweep_ids=[str(theirs.sweep_id)], remarks=[], antenna=antenna_fact(YAGI),
+    )  # fmt: skip
+    flight, brought = [started(antenna=antenna_fact(flown)), BEARINGS[0]], [recording, theirs]
+    order = [*brought, *flight] if imported_first else [*flight, *brought]
+    await services.journal.append("m1", [MissionDrafted(spec=SPEC.model_copy(update={"sensor": sensor})), *order])
+    for fact, craft_id in ((BEARINGS[0], "craft-1"), (theirs, None)):
+        number = fact.place_number
+        await services.journal.save_sweep("m1", fact.sweep_id, craft_id, "emitter-1", number, 1, sweep_of(fact))
+    told = await ask(client, "m1", bearings=2, pattern={"filename": "yagi.json", "text": pattern_json(YAGI)})
+    assert sorted(turned_deg(told)) == pytest.approx([-20.0, 0.0], abs=0.5)
 
 
 async def test_through_an_antenna_that_it_does_not_look_like_a_sweep_tells_nothing(client, heard):

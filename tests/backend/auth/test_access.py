@@ -19,6 +19,7 @@ from backend.auth.registry import key_of
 from backend.auth.sessions import IDLE_S, LONGEST_S, SESSIONS_EACH
 from backend.ports import JournalUnavailable
 from backend.reasons import access as reasons
+from backend.reasons.storage import DatabaseSilent
 from backend.store.engine import make_engine, migrate
 
 PASSWORD = "correct horse battery"
@@ -275,6 +276,52 @@ async def test_an_expired_or_withdrawn_invitation_makes_nobody(access: Access, c
     with refusing(reasons.CodeUnusable("unknown"), Denied):
         await access.accept_invitation(link, "Eve", PASSWORD, Visit("10.0.0.9", ""))
     assert len(access.people.by_name) == 1
+
+
+async def test_an_invitation_falls_with_whoever_made_it(access: Access) -> None:
+    """An admin who is about to be shut out may have made links for later."""
+    await with_admin(access)
+    ada = access.people.by_name[0].person_id
+    link, _ = await access.invitations.make("pilot", True, 3600, ada)
+    await access.accept_invitation(link, "Mal", PASSWORD, Visit("a", ""))
+    mal = next(person.person_id for person in access.people.by_name if person.name == "Mal")
+    for admin, active in ((False, True), (True, False)):
+        for_later, made = await access.invitations.make("pilot", True, 3600, mal)
+        await access.change_person(mal, "pilot", admin, active)
+        assert not access.stands(made)
+        with refusing(reasons.CodeUnusable("unknown"), Denied):
+            access.look_at_invitation(for_later, "b")
+        with refusing(reasons.CodeUnusable("unknown"), Denied):
+            await access.accept_invitation(for_later, "Eve", PASSWORD, Visit("b", ""))
+        await access.change_person(mal, "pilot", True, True)
+
+
+async def test_what_the_database_could_not_forget_is_taken_back_again(
+    access: Access, url: str, clocks: Clocks, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else it would be back after a restart, and nobody could find it in a list before."""
+    await with_admin(access)
+    ada = access.people.by_name[0].person_id
+    link, invited = await access.invitations.make("pilot", True, 3600, ada)
+    secret, token = await access.machines.make("agent", "exports", None, ada)
+
+    async def away(*_: object, **__: object) -> None:
+        raise JournalUnavailable(DatabaseSilent("it is away"))
+
+    with monkeypatch.context() as gone:
+        gone.setattr(Records, "change", away)
+        with pytest.raises(JournalUnavailable):
+            await access.invitations.take_back(invited.invitation_id)
+        with pytest.raises(JournalUnavailable):
+            await access.machines.revoke(token.token_id)
+    assert access.machines.found(secret, "a") is None, "it is shut out at once"
+    await access.invitations.take_back(invited.invitation_id)
+    await access.machines.revoke(token.token_id)
+    access = await again(url, clocks, access)
+    assert (access.invitations.waiting, access.machines.tokens) == ([], [])
+    with refusing(reasons.CodeUnusable("unknown"), Denied):
+        await access.accept_invitation(link, "Eve", PASSWORD, Visit("b", ""))
+    await access.close()
 
 
 @pytest.mark.parametrize("name", ["ada", " Ada", "\uff21da", "A\u0064a"])

@@ -6,6 +6,7 @@ import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -16,16 +17,21 @@ from backend.api.beliefs import belief_frame
 from backend.backup.making import make_backup
 from backend.backup.manifest import BackupError
 from backend.backup.restoring import AUDIT_BEFORE, restore
-from backend.events import HoldOrdered, MissionDrafted, MissionStarted
+from backend.events import HoldOrdered, MissionDrafted, MissionEnded, MissionStarted, PhaseChanged
 from backend.ports import TrackPoint
+from backend.reasons.flight import Ordered
+from backend.reasons.search import Localized
 from backend.search.localization import localization
 from backend.settings import AUDIT_FILE, Settings
 from backend.store.entries import EventsEntry, to_row
 from backend.store.journal import SqlJournal
 from backend.store.opening import open_journal
+from backend.store.retention import pack_paths
 from backend.store.spool import Spool
 from hardware.readings import Sweep
 
+ENDED = MissionEnded(outcome="localized", reason=Localized(), mission_time_s=200.0)
+DOWN = PhaseChanged(craft_id="craft-1", before="landing", after="ground", reason=Ordered("abort", "operator"))
 STARTED = MissionStarted(craft_id="craft-1", by="operator", home=HOME, home_amsl_m=100.0, software="0")
 BEARINGS = [bearing(number) for number in (1, 2, 3)]
 TASK = localization(SPEC, HOME)
@@ -48,6 +54,8 @@ async def write_mission(journal: SqlJournal) -> None:
     await journal.append("a draft", [MissionDrafted(spec=SPEC.model_copy(update={"name": "ünter \x01 'quoted' \\"}))])
     await journal.save_sweep("flown", "s1", "craft-1", "emitter-1", 1, 1, SWEEP)
     await journal.save_track("flown", "craft-1", POINTS)
+    await journal.append("over", [MissionDrafted(spec=SPEC), STARTED, ENDED, DOWN])
+    await journal.save_track("over", "craft-1", POINTS)
 
 
 async def told(journal: SqlJournal) -> list[object]:
@@ -55,7 +63,14 @@ async def told(journal: SqlJournal) -> list[object]:
     sweep = await journal.sweep("flown", "s1")
     recorded = await journal.read("flown")
     missions = await journal.missions()
-    return [recorded, sweep, await journal.tracks("flown"), missions, belief_frame("flown", recorded, False)]
+    return [
+        recorded,
+        sweep,
+        await journal.tracks("flown"),
+        await journal.tracks("over"),
+        missions,
+        belief_frame("flown", recorded, False),
+    ]
 
 
 def served(tmp_path: Path, name: str, kind: str, request: pytest.FixtureRequest) -> Settings:
@@ -85,13 +100,15 @@ async def test_what_was_saved_is_what_comes_back(tmp_path, request, source, targ
     async with opened(here) as journal:
         await write_mission(journal)
         before = await told(journal)
+        assert await pack_paths(journal._engine, datetime.now(UTC)) == 1
+        assert await told(journal) == before
         made = await asyncio.to_thread(make_backup, here, tmp_path / "b.zip")  # while the server runs
     assert made.gone == ()
     restored = await asyncio.to_thread(restore, there, tmp_path / "b.zip")
     async with opened(there) as journal:
         assert await told(journal) == before
         await journal.append("flown", [hold(1)])
-    assert (restored.missions, restored.files) == (2, len(FILES) + 1)
+    assert (restored.missions, restored.files) == (3, len(FILES) + 1)
     assert restored.pattern is not None
     assert restored.pattern.read_text() == "{}"
     kept = {p.relative_to(there.data_dir).as_posix(): p for p in there.data_dir.rglob("*") if p.is_file()}
@@ -186,7 +203,7 @@ async def test_a_server_that_was_started_once_and_never_used_is_empty(tmp_path, 
     async with opened(there):
         pass
     await asyncio.to_thread(make_backup, here, tmp_path / "b.zip")
-    assert (await asyncio.to_thread(restore, there, tmp_path / "b.zip")).missions == 2
+    assert (await asyncio.to_thread(restore, there, tmp_path / "b.zip")).missions == 3
 
 
 def test_there_must_be_a_database_and_room_for_the_archive(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import replace
+from uuid import uuid4
 
 import pytest
 from equipment import spec
@@ -20,12 +21,15 @@ from backend.events import (
     BearingMeasured,
     LinkLost,
     PhaseChanged,
+    Recorded,
     ReturnOrdered,
 )
 from backend.mission.inputs import ToCraft
+from backend.ports import JournalDamaged
 from backend.reasons import PreflightFailed
 from backend.reasons.flight import FailsafeFlies, Landed, NotStored, WatchBroke
 from backend.reasons.safety import BATTERY, BatteryShort, BatteryUnknown, FailsafeActs, NotGivenBack
+from backend.reasons.storage import MissionDamaged
 from backend.spec import Place, TimerSpec
 from hardware.reasons.receiver import ReceiverUnplugged
 from planner.reason import remedy_of
@@ -49,6 +53,24 @@ async def test_a_vehicle_that_landed_at_home_while_it_was_not_heard_ends_the_mis
     await stage.until_mission(mission_id, "done")
     assert stage.vehicle.names.count("land") == 1
     assert not any(isinstance(alert.reason, Landed) for alert in stage.journal.of_kind(mission_id, AlertRaised))
+
+
+async def test_a_mission_whose_facts_are_damaged_keeps_the_server_from_nothing(stage: Stage, monkeypatch) -> None:
+    """Its craft is one that flies for no mission: hold, return and land reach it."""
+    mission_id = await stuck(stage)
+    read = stage.journal.read
+
+    async def damaged(which: str, after: int = 0) -> list[Recorded]:
+        if which == mission_id:
+            raise JournalDamaged(MissionDamaged(mission_id, "it is cut off"))
+        return await read(which, after)
+
+    monkeypatch.setattr(stage.journal, "read", damaged)
+    await stage.restart()
+    assert stage.room.flights.active is None
+    request = commands.CraftRequest(command_id=uuid4(), command=commands.Hold())
+    reply = await stage.room.flights.command_craft(FIRST_CRAFT, request, commands.Author("anna"))
+    assert reply.accepted, reply.reason
 
 
 async def test_the_pilot_silences_the_mission_until_an_operator_resumes(stage: Stage) -> None:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
+from uuid import uuid4
+
 import pytest
 from equipment import spec
 from flights import flying, order, stuck
 from stage import Stage
 
 from backend import commands
-from backend.events import FIRST_CRAFT, NetsNoted, NetsPutBack
+from backend.commands import CommandRequest
+from backend.events import FIRST_CRAFT, AreaChanged, NetsNoted, NetsPutBack
 from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
-from backend.spec import SearchArea
+from backend.reasons.refusals import NetsChanging
+from backend.spec import FIRST_EMITTER, GaussianPriorSpec, Place, PriorSpec, SearchArea
 from hardware.fence import FencePolygon, Nets, ParameterValue
 from hardware.reasons.nets import FenceReadBackDifferent
 
@@ -132,3 +137,79 @@ async def test_in_flight_the_nets_follow_the_search_area_and_the_owners_are_put_
     await order(stage, mission_id, commands.Abort())
     await stage.until(mission_id, "nets_put_back")
     assert stage.vehicle.nets == OWN
+
+
+def elsewhere(margin_m: float, prior: PriorSpec | None = None) -> commands.ChangeArea:
+    priors = {} if prior is None else {FIRST_EMITTER: prior}
+    search = SearchArea(area=spec().area, priors=priors, fence=None, fence_margin_m=margin_m, no_fly=[])
+    return commands.ChangeArea(search=search)
+
+
+def slow_link(stage: Stage, monkeypatch: pytest.MonkeyPatch) -> asyncio.Event:
+    """No net is set before the event is."""
+    done, at_once = asyncio.Event(), stage.vehicle.set_nets
+
+    async def slowly(nets: Nets) -> None:
+        await done.wait()
+        await at_once(nets)
+
+    monkeypatch.setattr(stage.vehicle, "set_nets", slowly)
+    return done
+
+
+async def held(stage: Stage) -> str:
+    mission_id = await stuck(stage)
+    await order(stage, mission_id, commands.Hold())
+    await stage.until_phase(mission_id, "hold")
+    return mission_id
+
+
+async def test_nothing_flies_on_before_the_nets_of_the_new_area_hang(stage: Stage, monkeypatch) -> None:
+    """A fence of sixteen corners takes 45 s over a link of 250 ms, and beyond the old one the autopilot turns back."""
+    mission_id = await held(stage)
+    done = slow_link(stage, monkeypatch)
+    changing = asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0)))
+    await stage.until(mission_id, "nets_noted", 2)
+    for command in (commands.Resume(), commands.Override(place=Place(lat=50.0003, lon=7.0))):
+        reply = await order(stage, mission_id, command)
+        assert (reply.accepted, reply.reason) == (False, NetsChanging())
+    assert (await order(stage, mission_id, commands.Hold())).accepted
+    done.set()
+    assert (await changing).accepted
+    stage.vehicle.stuck = False
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+
+
+async def test_of_two_changes_at_once_the_nets_are_those_of_the_area_that_is_searched(
+    stage: Stage, monkeypatch
+) -> None:
+    """From two tabs: the second knows nothing of what the first says of the emitter."""
+    mission_id = await held(stage)
+    done = slow_link(stage, monkeypatch)
+    prior = GaussianPriorSpec(
+        centre=Place(lat=50.0004, lon=7.0), sigma_major_m=40.0, sigma_minor_m=40.0, major_axis_deg=0.0
+    )
+    both = [
+        asyncio.ensure_future(order(stage, mission_id, elsewhere(60.0, prior))),
+        asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0))),
+    ]
+    await stage.until(mission_id, "nets_noted", 2)
+    done.set()
+    assert [reply.accepted for reply in await asyncio.gather(*both)] == [True, True]
+    first, second = stage.journal.of_kind(mission_id, AreaChanged)
+    assert {first.search.fence_margin_m, second.search.fence_margin_m} == {60.0, 90.0}
+    assert stage.active.task.mission == stage.journal.state(mission_id).search.mission
+    noted = stage.journal.of_kind(mission_id, NetsNoted)
+    assert len(noted) == 3
+    assert stage.vehicle.nets == noted[-1].after
+
+
+async def test_an_order_that_is_sent_again_hangs_no_nets_of_an_area_of_before(stage: Stage) -> None:
+    mission_id = await held(stage)
+    first = CommandRequest(command_id=uuid4(), command=elsewhere(60.0))
+    author = commands.Author("anna")
+    assert (await stage.room.flights.command(mission_id, first, author)).accepted
+    assert (await order(stage, mission_id, elsewhere(90.0))).accepted
+    hanging = stage.vehicle.nets
+    assert (await stage.room.flights.command(mission_id, first, author)).accepted, "it was"
+    assert stage.vehicle.nets == hanging

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import zlib
 from dataclasses import replace
@@ -17,7 +18,9 @@ from backend.events import MissionDrafted, MissionEnded, MissionStarted, Phase, 
 from backend.ports import TrackPoint
 from backend.reasons.flight import Ordered
 from backend.reasons.search import Localized
+from backend.store import retention
 from backend.store.engine import engine_for_once
+from backend.store.entries import TrackEntry
 from backend.store.paths import MOST_BYTES, MOST_POINTS, packed_path, unpacked_path
 from backend.store.retention import DELETED_DAYS, bury, pack_paths
 from backend.store.tables import missions, paths, tracks
@@ -153,6 +156,66 @@ async def test_points_that_come_late_or_twice_count_once(bench) -> None:
     assert await counted(engine) == {"over": (0, 2)}
     assert await journal.tracks("over") == {"craft-1": path}
     await engine.dispose()
+
+
+async def test_a_path_that_cannot_be_packed_holds_up_no_other(bench) -> None:
+    """The packer comes by every few hours, for every mission, for ever."""
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
+    journal = await bench.open()
+    for mission_id in ("odd", "over"):
+        await journal.append(mission_id, [*STARTED, *OVER])
+    odd = [replace(point, mode=f"{n}" * 200) for n, point in enumerate(flown(300))]
+    high = [replace(point, altitude_amsl_m=1e300, battery_percent=-1e30) for point in flown(3)]
+    await journal.save_track("odd", "craft-1", odd)
+    await journal.save_track("over", "craft-1", high)
+    engine = engine_for_once(bench.url, PATIENCE_S)
+    assert await pack_paths(engine, NOW) == 1
+    assert await counted(engine) == {"odd": (300, 0), "over": (0, 1)}
+    assert await journal.tracks("odd") == {"craft-1": odd}
+    unknown = [replace(point, altitude_amsl_m=None, battery_percent=None) for point in high]
+    assert await journal.tracks("over") == {"craft-1": unknown}
+    await engine.dispose()
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+async def test_a_point_that_is_written_while_its_neighbours_are_packed_stays(bench, monkeypatch) -> None:
+    """SQLite lets nobody write meanwhile."""
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
+    journal = await bench.open()
+    await journal.append("over", [*STARTED, *OVER])
+    path = flown(20)
+    await journal.save_track("over", "craft-1", [*path[:7], *path[8:]])
+
+    def packed_meanwhile(points: list[TrackPoint]) -> bytes:
+        monkeypatch.setattr(retention, "packed_path", packed_path)
+        asyncio.run(late())
+        return packed_path(points)
+
+    async def late() -> None:
+        other = engine_for_once(bench.url, PATIENCE_S)
+        async with other.begin() as connection:
+            await connection.run_sync(TrackEntry("over", "craft-1", (path[7],)).write)
+        await other.dispose()
+
+    monkeypatch.setattr(retention, "packed_path", packed_meanwhile)
+    engine = engine_for_once(bench.url, PATIENCE_S)
+    await pack_paths(engine, NOW)
+    assert await journal.tracks("over") == {"craft-1": path}
+    await engine.dispose()
+
+
+@pytest.mark.parametrize("database_url", ["postgresql"], indirect=True)
+async def test_two_servers_pack_a_path_once(bench) -> None:
+    bench.now_s, bench.timeout_s = BEGAN_S, PATIENCE_S
+    journal = await bench.open()
+    await journal.append("over", [*STARTED, *OVER])
+    path = flown(3000)
+    await journal.save_track("over", "craft-1", path)
+    engines = [engine_for_once(bench.url, PATIENCE_S) for _ in range(3)]
+    assert sum(await asyncio.gather(*(pack_paths(engine, NOW) for engine in engines))) == 1
+    assert await journal.tracks("over") == {"craft-1": path}
+    for engine in engines:
+        await engine.dispose()
 
 
 async def test_a_deleted_mission_takes_its_packed_path_with_it(bench) -> None:

@@ -15,7 +15,9 @@ from backend.cli.main import app
 from backend.events import MissionDrafted, MissionEnded, MissionStarted, Phase, PhaseChanged
 from backend.reasons.flight import Ordered
 from backend.reasons.search import Localized
+from backend.store import retention
 from backend.store.engine import engine_for_once
+from backend.store.iq_folder import IqFolder
 from backend.store.retention import old_sweeps, thin
 from hardware.readings import Sweep
 
@@ -69,6 +71,25 @@ async def test_only_missions_long_over_lose_their_samples(bench):
     assert await left(bench, old + new) == {*old, *new} - {"over"}
     journal = await bench.open("after.spool")
     assert [record.event for record in await journal.read("over")] == STORIES["over"]
+
+
+async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, tmp_path, monkeypatch):
+    await fill(bench, 400.0)
+
+    async def failing(*_: object) -> int:
+        raise OverflowError("a path that nobody foresaw")
+
+    for name in ("bury", "pack_paths", "thin_iq"):
+        monkeypatch.setattr(retention, name, failing)
+    monkeypatch.setattr(retention, "FIRST_AFTER_S", 0.0)
+    engine = engine_for_once(bench.url, 60.0)
+    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, IqFolder(tmp_path / "iq")))
+    async with asyncio.timeout(60):
+        while (await old_sweeps(engine, 30.0, datetime.now(UTC))).sweeps:  # noqa: ASYNC110 (it says nothing)
+            await asyncio.sleep(0.05)
+    keeping.cancel()
+    await asyncio.gather(keeping, return_exceptions=True)
+    await engine.dispose()
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)

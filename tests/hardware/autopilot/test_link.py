@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import socket
 from collections.abc import Callable
 from functools import cache
@@ -92,6 +93,42 @@ async def test_what_waits_for_an_answer_ends_before_the_link_does(monkeypatch: p
     await closing
 
     assert slow.done == ["RC_MAP_FLTMODE", "destroyed"]
+
+
+@pytest.mark.parametrize("told", [math.nan, math.inf, -math.inf])
+async def test_a_value_that_is_no_number_is_none(monkeypatch: pytest.MonkeyPatch, told: float) -> None:
+    """It would hold against no rule and could be stored in no fact."""
+
+    class Odd:
+        def get_param_float(self, name: str) -> float:
+            return told
+
+    link = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None)
+    monkeypatch.setattr(link, "_param", Odd())
+    monkeypatch.setattr(link, "_parameters", {"RTL_RETURN_ALT": 9})
+    assert await link.parameter("RTL_RETURN_ALT") is None
+    await link.close()
+
+
+async def test_a_link_that_closes_while_a_parameter_is_asked_for_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As when the vehicle is connected anew in the middle of a checklist."""
+    monkeypatch.setattr("hardware.autopilot.link.PARAMETER_WALL_S", 0.1)
+    link = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None)
+    monkeypatch.setattr(link, "_direct", Mute())
+    monkeypatch.setattr(link, "_parameters", {"KNOWN": 6})
+    asking = asyncio.create_task(link.parameter("UNHEARD_OF"))
+    await asyncio.sleep(0)
+    await link.close()
+    assert await asking is None
+    assert await link.parameter("KNOWN") is None
+    assert not await link.set_parameter("KNOWN", 1.0)
+
+
+class Mute:
+    """MAVSDK, to which nobody answers."""
+
+    def send_message(self, _message: object) -> None:
+        pass
 
 
 class HangingMission:

@@ -37,6 +37,7 @@ export const recording = {
     remedy: "Eine ihrer Kennungen wählen: {heard}.",
   },
   one_tag_only: { text: "{file} enthält Peilungen der Kennungen {tags}.", remedy: "Eine davon nennen." },
+  remarks_not_listed: { text: "{remarks|weitere Anmerkung|weitere Anmerkungen} zu {file}: nicht einzeln aufgeführt.", remedy: "" },
   other_tags_left_out: {
     text: "Aus der Drehung ab Zeile {line} von {file} wird die Kennung {tag} verwendet, ohne {pulses|Puls|Pulse} anderer Kennungen ({others}).",
     remedy: "Um eine andere Kennung zu verwenden, sie nennen.",
@@ -131,7 +132,7 @@ export const recording = {
     remedy: "In eine Mission einlesen, deren Gebiet sie umgibt, oder den richtigen Ort nennen.",
   },
   import_remark: {
-    text: "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, denn keine Höhe nennt die Datei} {file}.",
+    text: "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, denn keine Höhe nennt die Datei|bearings_stand=Der genannte Ort oder Versatz der Antenne ändert nichts an den Peilungen in der Datei} {file}.",
     remedy: "",
   },
   other_frequency: {

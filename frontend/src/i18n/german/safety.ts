@@ -68,6 +68,10 @@ export const safety = {
     remedy: "Zum Weitersuchen erst halten und fortsetzen.",
   },
   on_the_ground: { text: "Das Fluggerät ist am Boden.", remedy: "" },
+  nets_changing: {
+    text: "Der Autopilot bekommt gerade noch den Zaun des neuen Suchgebiets.",
+    remedy: "Weitermachen, wenn er ihn hat, in einigen Sekunden.",
+  },
   area_only_in_hold: {
     text: "Das Suchgebiet lässt sich nur ändern, während die Mission hält.",
     remedy: "Halten, dann ändern.",

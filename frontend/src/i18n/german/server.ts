@@ -122,6 +122,14 @@ export const server = {
     text: "Ereignis {seq} der Mission {mission_id} schließt nicht an das Gespeicherte an: Ein anderer Server schreibt hinein.",
     remedy: "Nur einen Server diese Datenbank benutzen lassen.",
   },
+  mission_damaged: {
+    text: "Was von der Mission {mission_id} gespeichert ist, ist beschädigt und nicht lesbar: {detail}.",
+    remedy: "Die anderen Missionen betrifft das nicht; eine Sicherung enthält diese vielleicht noch ganz.",
+  },
+  database_later: {
+    text: "Ein neueres Crossfix hat die Datenbank {database} geschrieben (Schema {revision}).",
+    remedy: "Dieses hier aktualisieren oder eine Sicherung von vor der Aktualisierung wiederherstellen.",
+  },
   database_unfit: {
     text: "Die Datenbank {database} ist nicht verwendbar: {detail}.",
     remedy: "Prüfen, ob CROSSFIX_DATABASE_URL stimmt und die Platte beschreibbar ist.",
