@@ -73,7 +73,7 @@ def ways_from(
 
     stretches, lengths = _once(stretches, lengths)
     network = _network(len(nodes), stretches, lengths)
-    reached, before = dijkstra(network, directed=False, indices=start, return_predecessors=True)
+    (reached,), (before,) = dijkstra(network, directed=False, indices=[start], return_predecessors=True)
     return Ways(nodes, stretches, lengths, wanted[np.isfinite(reached[wanted])], reached, before)
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 from shapely.geometry import mapping
 from shapely.geometry.base import BaseGeometry
 
@@ -85,9 +86,9 @@ def read_ways(content: bytes, area: Sequence[LonLat], name: str, added_at: datet
     if far == len(near):
         raise MapRefused(WaysTooFar(min(window.distance_m(part) for one in found for part in one.parts), FARTHEST_M))
     features = list(_features(near))
-    positions = sum(shapely.get_num_coordinates(geometry) for _, geometry in features)
+    positions = sum(len(shapely.get_coordinates(geometry)) for _, geometry in features)
     if positions > MOST_POSITIONS:
-        raise MapRefused(WaysTooMany(int(positions), MOST_POSITIONS))
+        raise MapRefused(WaysTooMany(positions, MOST_POSITIONS))
     notes: list[Reason] = [*reading.all_notes()]
     notes += [NeitherWayNorBarrier(unlike)] if unlike else []
     notes += [FarFromSearch(far, FARTHEST_M)] if far else []
@@ -128,13 +129,13 @@ def _parts(geometry: dict[str, Any], kind: WayKind) -> Iterator[BaseGeometry]:
     """Lines, and of a barrier polygons; the outline of an area to walk on is a way."""
     match geometry["type"]:
         case "LineString":
-            yield shapely.LineString(geometry["coordinates"])
+            yield LineString(geometry["coordinates"])
         case "MultiLineString":
-            yield from (shapely.LineString(line) for line in geometry["coordinates"])
+            yield from (LineString(line) for line in geometry["coordinates"])
         case "Polygon" | "MultiPolygon":
             polygons = [geometry["coordinates"]] if geometry["type"] == "Polygon" else geometry["coordinates"]
             for outline, *holes in polygons:
-                yield shapely.Polygon(outline, holes) if kind == "barrier" else shapely.LineString(outline)
+                yield Polygon(outline, holes) if kind == "barrier" else LineString(outline)
         case _:
             return
 
@@ -185,9 +186,9 @@ class _Window:
             return np.column_stack([lon + 360.0 * round((middle - float(lon.mean())) / 360.0), corners[:, 1]])
 
         if part.geom_type == "LineString":
-            return shapely.LineString(turned(shapely.get_coordinates(part)))
+            return LineString(turned(shapely.get_coordinates(part)))
         outline, *holes = (turned(shapely.get_coordinates(ring)) for ring in shapely.get_rings(part))
-        return shapely.Polygon(outline, holes)
+        return Polygon(outline, holes)
 
     def distance_m(self, part: BaseGeometry) -> float:
         """From the middle to the nearest corner, on a sphere."""
@@ -240,6 +241,7 @@ def _features(near: Sequence[Found]) -> Iterator[tuple[WayKind, BaseGeometry]]:
     }
     for kind, each in lines.items():
         if each:
-            yield kind, shapely.MultiLineString(each)
-    if areas := list(_simple(shapely.unary_union(parts("barrier", "Polygon", True, False)))):
-        yield "barrier", shapely.MultiPolygon(areas)
+            yield kind, MultiLineString([line for line in each if isinstance(line, LineString)])
+    united = _simple(shapely.unary_union(parts("barrier", "Polygon", True, False)))
+    if areas := [area for area in united if isinstance(area, Polygon)]:
+        yield "barrier", MultiPolygon(areas)

@@ -87,7 +87,7 @@ class Ground:
     @cached_property
     def segments(self) -> STRtree:
         """The same, stretch by stretch."""
-        return STRtree(shapely.linestrings(_pairs(self.borders)))
+        return STRtree(np.asarray(shapely.linestrings(_pairs(self.borders)), dtype=object))
 
     def free(self, start: Floats, ends: Floats) -> Flags:
         """(k,) whether nothing lies between start (2,) and each of ends (k, 2)."""
@@ -101,7 +101,7 @@ class Ground:
         if self.closed.is_empty or len(stretches) == 0:
             return np.ones(len(stretches), dtype=bool)
         shapely.prepare(self.closed)
-        return ~shapely.intersects(self.closed, shapely.linestrings(stretches))
+        return ~np.asarray(shapely.intersects(self.closed, shapely.linestrings(stretches)), dtype=bool)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ def along_roads(
     when no road is near, or none leads anywhere.
     """
     here = np.array(start)
-    total = float(shapely.length(ground.roads).sum())
+    total = sum(road.length for road in ground.roads)
     nodes, stretches = _network(ground.roads, max(0.5 * spacing, total / MOST_ROAD_NODES))
     stretches = stretches[ground.open_to_ways(nodes[stretches])]
     away = np.hypot(*(nodes - here).T)
@@ -214,10 +214,11 @@ class _Field:
         step = max(width, height) / CELLS
         columns, rows = int(np.ceil(width / step)), int(np.ceil(height / step))
         x, y = west + (np.arange(columns) + 0.5) * step, south + (np.arange(rows) + 0.5) * step
-        nodes = np.column_stack([np.tile(x, rows), np.repeat(y, columns)])
+        nodes: Floats = np.column_stack([np.tile(x, rows), np.repeat(y, columns)]).astype(np.float64)
         field = cls(west, south, step, columns, rows, nodes, np.ones(len(nodes), dtype=bool))
         areas = np.array([*ground.waters, *shapely.get_parts(ground.closed)], dtype=object)
-        field.open[STRtree(shapely.points(nodes)).query(areas, predicate="contains")[1]] = False
+        middles = STRtree(np.asarray(shapely.points(nodes), dtype=object))
+        field.open[middles.query(areas, predicate="contains")[1]] = False
         pairs = _pairs(_within(ground.borders, field.window))
         for some in np.array_split(pairs, len(pairs) // SEGMENTS_AT_ONCE + 1):
             dense = shapely.segmentize(shapely.linestrings(some), step / SAMPLES_A_CELL)
