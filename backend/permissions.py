@@ -113,6 +113,9 @@ ENDPOINTS: Mapping[str, Need] = {
     "POST /api/missions/{mission_id}/expected-time": ASK,
     "POST /api/missions/{mission_id}/area-outlook": ASK,
     "POST /api/missions/{mission_id}/advice": ASK,
+    "GET /api/missions/{mission_id}/ways": WATCH,
+    "POST /api/missions/{mission_id}/ways": PLAN,
+    "DELETE /api/missions/{mission_id}/ways": PLAN,
     "POST /api/preview": ASK,
     "POST /api/areas": ASK,
     # review

@@ -23,6 +23,12 @@ class LocalFrame:
         east, north, _ = pymap3d.geodetic2enu(point.lat, point.lon, 0.0, self.origin.lat, self.origin.lon, 0.0)
         return float(east), float(north)
 
+    def to_enu_points(self, lon_lat: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, 2) longitude, latitude in degrees -> (n, 2) east, north in metres."""
+        lon, lat = lon_lat[:, 0], lon_lat[:, 1]
+        east, north, _ = pymap3d.geodetic2enu(lat, lon, 0.0, self.origin.lat, self.origin.lon, 0.0)
+        return np.column_stack([east, north])
+
     def to_geo(self, east: float, north: float) -> Place:
         """(east, north) in metres at the origin's height to WGS84 degrees."""
         lat, lon, _ = pymap3d.enu2geodetic(east, north, 0.0, self.origin.lat, self.origin.lon, 0.0)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from planner.options import FIELD, CellLikelihood, Estimator
 from planner.reason import ReasonedError
 from planner.reasons import ChoiceReason, NotYetReason, RefusalReason
+from planner.ways import Ways
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -159,7 +160,8 @@ class Problem:
     action_grid: X x Y cells over the tripled belief rectangle (4.24-4.28); action_spacing: a fixed lattice (m) over
     the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
     rollouts. sector_turns: None: a measurement takes as long everywhere. next_source: who takes the bearings to come;
-    None: who took those that came.
+    None: who took those that came. ways: of somebody on the ground, with the only places to measure at; None: straight
+    flights, around what is not flown over.
     """
 
     area: Region
@@ -177,6 +179,7 @@ class Problem:
     prior: Prior = field(default_factory=UniformPrior)
     sector_turns: SectorTurns | None = None
     next_source: str | None = None
+    ways: Ways | None = None
 
 
 @dataclass(frozen=True, slots=True)

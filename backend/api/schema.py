@@ -34,6 +34,7 @@ from backend.api import (
     scene,
     system,
     terrain,
+    ways,
 )
 from backend.commands import Command
 from backend.events import Event
@@ -62,6 +63,7 @@ ROUTERS = (
     courses.router,
     planning.router,
     advice.router,
+    ways.router,
     maps.router,
     terrain.router,
     scene.router,

@@ -15,10 +15,11 @@ from backend.mission.records import Records
 from backend.reasons import Reason
 from backend.reasons.refusals import MissionDoesNotFly, MissionOver, NoSuchEmitter
 from backend.reasons.search import AskedFromTooFar
-from backend.search.advice import FARTHEST_M, Advice, advise, from_area_m
+from backend.search.advice import Advice, Going, advise, from_area_m
 from backend.search.area import centre_of, corner_of
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.forecast import Comparison, Forecast, Preview, compare, forecast, preview
+from backend.search.ground_ways import FARTHEST_M
 from backend.search.other_area import Outlook, outlook, task_in
 from backend.search.planning import needs_program
 from backend.search.state import SearchState
@@ -71,7 +72,7 @@ class Questions:
         return found, await asyncio.to_thread(compare, wanted, start, place, instead_of)
 
     async def advise(
-        self, mission_id: str, here: Place, speed_m_s: float, emitter_id: str | None, hops: bool = False
+        self, mission_id: str, here: Place, going: Going, emitter_id: str | None
     ) -> tuple[str, int, Advice | None]:
         """The emitter, the bearings that count, and where to listen for it next; None once it is localized.
 
@@ -94,7 +95,7 @@ class Questions:
         return (
             emitter.emitter_id,
             len(emitter.bearings),
-            await asyncio.to_thread(advise, task, emitter.bearings, here, speed_m_s, hops),
+            await asyncio.to_thread(advise, task, emitter.bearings, here, going),
         )
 
     async def outlook(self, mission_id: str, area: SearchArea) -> tuple[Outlook, tuple[Reason, ...]]:

@@ -23,6 +23,7 @@ from backend.reasons.search import SearchReason
 from backend.reasons.storage import StorageReason
 from backend.reasons.terrain import TerrainReason
 from backend.reasons.turning import TurnReason
+from backend.reasons.ways import WaysReason
 from backend.reasons.work import WorkReason
 from hardware.readings import CheckName
 from hardware.reasons.union import HardwareReason
@@ -188,6 +189,7 @@ ReasonUnion = TypeAliasType(
         | StorageReason
         | TerrainReason
         | TurnReason
+        | WaysReason
         | WorkReason
         | CompositeReason,
         Field(discriminator="code"),

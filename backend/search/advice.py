@@ -4,6 +4,9 @@ The same planner as a craft's, with another mover: it goes as slowly as it says,
 outside the fence, which is the craft's; what may not be flown over is kept off all the same. Who hops carries a craft
 along, flies it straight up at each place, turns it once and takes it down again: then the craft's antenna listens, the
 climb takes time, and the place is inside the fence.
+
+Where ways and barriers were uploaded (`ground_ways`), the places are those that a way leads to, and every way counts as
+long as it is; else ways are straight lines.
 """
 
 from __future__ import annotations
@@ -11,17 +14,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
-from shapely import MultiPoint, Point, Polygon
+from shapely import MultiPoint, Point, Polygon, unary_union
+from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
 from backend.events import BearingMeasured
 from backend.reasons import Reason, carried
 from backend.search import area
+from backend.search.ground_ways import LaidOut, Traced, along_roads, ground_of, on_foot
 from backend.search.localization import Localization
 from backend.search.planning import in_nine_of_ten
-from backend.spec import Place
+from backend.spec import LonLat, Place
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
 from planner.geometry import contains
@@ -36,14 +42,16 @@ HAND_TURN_S = 45.0
 SET_OUT_S = 5.0
 AROUND_M = 100.0
 """Somebody may stand this far outside the area."""
-FARTHEST_M = 20_000.0
-"""From the area: who is further away is not advised."""
+BESIDE_ROAD_M = 300.0
+"""And who keeps to roads, this far."""
 CLIMB_M_S, SINK_M_S = 2.5, 1.5
 """Of a craft that is flown straight up and down by hand."""
 ENTERED_M = 1.0
 """Somebody who came into the fence stands this far inside."""
 COARSEST_PLACES = 24
 """Places along the longer side: a person is not sent to the metre."""
+COARSEST_ON_WAYS = 12
+"""The same where ways are known: between every two places the shortest one is looked for."""
 OPTIONS = PlannerOptions(base_policy="fisher", budget=300)
 
 
@@ -62,9 +70,26 @@ class Hop:
         return self.up_s + self.turn_s + self.down_s
 
 
+Along = Literal["straight", "around", "roads"]
+"""What a way keeps to: nothing is known of the ground; around barriers and on all ways; to roads."""
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """How one gets there. points: both ends included. length_m: along them. move_s: how long it takes. places: that
+    were looked at, unreached: those of them that no way leads to."""
+
+    along: Along
+    points: tuple[LonLat, ...]
+    length_m: float
+    move_s: float
+    places: int = 0
+    unreached: int = 0
+
+
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """place: where to listen next. away_m, bearing_deg: the straight way there. move_s: how long it takes.
+    """place: where to listen next. away_m, bearing_deg: as the crow flies. course: the way there.
 
     error_now_m: expected error of the belief, error_then_m: about what is left of it after one bearing from there.
     mean_s, p90_s: until localized if every advice is followed; None: not known. bearings: that the advice knows of.
@@ -74,7 +99,7 @@ class Advice:
     place: Place
     away_m: float
     bearing_deg: float
-    move_s: float
+    course: Course
     error_now_m: float
     error_then_m: float
     mean_s: float | None
@@ -84,26 +109,42 @@ class Advice:
     hop: Hop | None = None
 
 
-def advise(
-    task: Localization, measured: Sequence[BearingMeasured], here: Place, speed_m_s: float, hops: bool = False
-) -> Advice:
-    """For one emitter. hops: with a craft that is flown up at each place. Raises PlannerError when there is nowhere to
-    go."""
+@dataclass(frozen=True, slots=True)
+class Going:
+    """How somebody gets on. hops: with a craft that is flown up at each place. on_roads: in a car. traced: what is
+    known of the ground, empty: nothing."""
+
+    speed_m_s: float
+    hops: bool = False
+    on_roads: bool = False
+    traced: tuple[Traced, ...] = ()
+
+
+def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place, going: Going) -> Advice:
+    """For one emitter. Raises PlannerError when there is nowhere to go, MissionInputError when no way leads there."""
     start = task.frame.to_enu(here)
     bearings = task.planner_bearings(measured)
     belief = task.planning_belief(bearings)
-    hop = _hop(task) if hops else None
-    problem = _for_people(task, start, speed_m_s, hop)
-    entering = start if hop is None else _into(problem.flight_area, start)
+    hop = _hop(task) if going.hops else None
+    around = _around(task, BESIDE_ROAD_M if going.on_roads and going.traced else AROUND_M)
+    if not going.traced:
+        around = around.union(Point(start)).convex_hull
+    problem = _for_people(task, around, going.speed_m_s, hop)
+    laid: LaidOut | None = None
+    entering = start
+    if going.traced:
+        laid = _ways(task, problem, start, going)
+        problem = replace(problem, ways=laid.ways)
+    elif hop is not None:
+        entering = _into(problem.flight_area, start)
     decision = plan(problem, belief, bearings, entering, OPTIONS, threads=1)
     east, north = decision.x - start[0], decision.y - start[1]
-    away = math.hypot(east, north)
     now = estimate(belief, problem.estimator).expected_rmse
     return Advice(
         place=task.place(decision.x, decision.y),
-        away_m=away,
+        away_m=math.hypot(east, north),
         bearing_deg=math.degrees(math.atan2(east, north)) % 360.0,
-        move_s=away / speed_m_s,
+        course=_course(task, here, (decision.x, decision.y), going, laid),
         error_now_m=now,
         error_then_m=_error_after(problem, belief, decision.x, decision.y),
         mean_s=float(decision.times.mean()) if len(decision.times) else None,
@@ -111,6 +152,35 @@ def advise(
         reason=carried(decision.reason),
         bearings=len(bearings),
         hop=hop,
+    )
+
+
+def _ways(task: Localization, problem: Problem, start: tuple[float, float], going: Going) -> LaidOut:
+    """Raises MissionInputError when there are none."""
+    closed = unary_union([Polygon(ring).buffer(0.0) for ring in problem.no_fly]) if problem.no_fly else Polygon()
+    ground = ground_of(going.traced, task.frame, closed)
+    assert problem.flight_area is not None
+    allowed = Polygon(problem.flight_area[0])
+    x_min, y_min, x_max, y_max = allowed.bounds
+    spacing = max(task.problem.action_spacing or 0.0, max(x_max - x_min, y_max - y_min) / COARSEST_ON_WAYS)
+    if going.on_roads and ground.roads:
+        return along_roads(ground, start, allowed, spacing, going.speed_m_s)
+    return on_foot(ground, start, allowed, spacing)
+
+
+def _course(task: Localization, here: Place, end: tuple[float, float], going: Going, laid: LaidOut | None) -> Course:
+    if laid is None:
+        there = task.place(*end)
+        length = math.dist(task.frame.to_enu(here), end)
+        return Course("straight", ((here.lon, here.lat), (there.lon, there.lat)), length, length / going.speed_m_s)
+    path = laid.ways.path(*end)
+    return Course(
+        "roads" if laid.on_roads else "around",
+        tuple(task.frame.to_lon_lat(path)),
+        float(np.hypot(*np.diff(path, axis=0).T).sum()),
+        float(laid.ways.to(np.array([end]))[0]) / going.speed_m_s,
+        laid.places,
+        laid.unreached,
     )
 
 
@@ -134,10 +204,14 @@ def from_area_m(task: Localization, here: Place) -> float:
     return float(ring.distance(Point(task.frame.to_enu(here))))
 
 
-def _for_people(task: Localization, start: tuple[float, float], speed_m_s: float, hop: Hop | None) -> Problem:
+def _around(task: Localization, margin: float) -> BaseGeometry:
+    """The area with a margin, m."""
+    corners = MultiPoint(np.concatenate(task.problem.area))
+    return corners.convex_hull.buffer(margin, join_style="mitre")
+
+
+def _for_people(task: Localization, around: BaseGeometry, speed_m_s: float, hop: Hop | None) -> Problem:
     problem = task.problem
-    corners = MultiPoint(np.concatenate(problem.area))
-    around = corners.convex_hull.buffer(AROUND_M, join_style="mitre").union(Point(start)).convex_hull
     x_min, y_min, x_max, y_max = around.bounds
     spacing = max(problem.action_spacing or 0.0, max(x_max - x_min, y_max - y_min) / COARSEST_PLACES)
     fence = problem.flight_area if hop is not None else None

@@ -25,7 +25,11 @@ SAME_PLACE_M = 5.0
 
 def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
     """(n, 2) m: every place where the platform may measure, whatever its distance to C95."""
-    places = lattice(problem) if problem.action_spacing is not None else belief_grid(problem, belief)
+    places = (
+        lattice(problem)
+        if problem.action_spacing is not None or problem.ways is not None
+        else belief_grid(problem, belief)
+    )
     allowed = may_fly(problem, places)
     if not allowed.any():
         raise PlannerError(NoPlaceToFly())
@@ -57,8 +61,10 @@ def without_refused(
 def lattice(problem: Problem) -> FloatArray:
     """(n, 2) m: centres of as many squares of `action_spacing` as fit each way into the flight area's rectangle.
 
-    West to east first; no place stands on the fence.
+    West to east first; no place stands on the fence. Somebody on the ground has the places of their ways instead.
     """
+    if problem.ways is not None:
+        return problem.ways.places
     spacing = problem.action_spacing
     if spacing is None or not (np.isfinite(spacing) and spacing > 0):
         raise PlannerError(UnusableNumber("action_spacing", "positive", str(spacing)))

@@ -86,7 +86,9 @@ class Simulation:
         """(a, 2) m places as first actions: cost of flying there and measuring once (4.5); infinite without a way."""
         places = np.ascontiguousarray(places, dtype=float).reshape(-1, 2)
         flights = places - self.platform
-        if self.graph is None:
+        if self.problem.ways is not None:
+            distances = self.problem.ways.to(places)
+        elif self.graph is None:
             distances = np.hypot(*flights.T)
         else:
             distances = travel_distances(self.problem, self.graph, self.platform, places)
@@ -161,7 +163,8 @@ def simulate(
         raise PlannerError(UnusableNumber("horizon", "at_least_one", str(horizon)))
     if threads < 1:
         raise PlannerError(UnusableNumber("threads", "at_least_one", str(threads)))
-    graph = None if straight_suffices(problem) else visibility_graph(problem)
+    is_straight = problem.ways is not None or straight_suffices(problem)
+    graph = None if is_straight else visibility_graph(problem)
     started = coarser(belief, FIRST_CELLS) if problem.likelihood == "resolved" else belief
     return Simulation(
         problem,
@@ -213,7 +216,9 @@ def rules_of(
     if places is None:
         places = allowed_lattice(problem)
     travel = np.empty((0, 0))
-    if graph is not None and len(places) > 0:
+    if problem.ways is not None:
+        travel = np.ascontiguousarray(problem.ways.between(places))
+    elif graph is not None and len(places) > 0:
         travel = np.ascontiguousarray(lattice_distances(problem, places))
     ratios, distances = table(problem.sigma)
     motion, speed, constant, turn_rate, acceleration = _motion_numbers(problem)
@@ -249,7 +254,7 @@ def rules_of(
 
 def allowed_lattice(problem: Problem) -> FloatArray:
     """(n, 2) m: the places of the lattice that may be flown to; none when actions are no lattice."""
-    if problem.action_spacing is None:
+    if problem.action_spacing is None and problem.ways is None:
         return np.empty((0, 2))
     places = lattice(problem)
     return np.ascontiguousarray(places[may_fly(problem, places)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import sys
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -48,8 +48,11 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 @contextmanager
-def serving(data_dir: Path, speedup: float = SPEEDUP) -> Iterator[Server]:
+def serving(data_dir: Path, speedup: float = SPEEDUP, emitters: Sequence[str] = ()) -> Iterator[Server]:
+    """emitters: in the simulated world besides those of the presets, as `crossfix serve --emitter` takes them."""
     arguments = ["--data-dir", str(data_dir), "--speedup", str(speedup), "--seed", "3"]
+    for one in emitters:
+        arguments += ["--emitter", one]
     process = started([*arguments, "--port", "0"])
     made = Server(url_of(process), data_dir, arguments, process)
     try:

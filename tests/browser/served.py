@@ -6,6 +6,7 @@ import json
 import socket
 import subprocess
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,11 +49,12 @@ class Server:
         answer.raise_for_status()
         return answer.json()
 
-    def draft(self, **localization: Any) -> str:
+    def draft(self, sensor: Mapping[str, Any] | None = None, **localization: Any) -> str:
         """A drafted mission with the suggested area, quickly flown; its id."""
         spec = self.get("/api/defaults")["spec"]
         for section, values in (QUICK | {"localization": localization}).items():
             spec[section] |= values
+        spec["sensor"] |= sensor or {}
         answer = httpx.post(self.url.rstrip("/") + "/api/missions", json=spec, timeout=20)
         answer.raise_for_status()
         return answer.json()["mission_id"]

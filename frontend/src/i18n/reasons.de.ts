@@ -13,6 +13,7 @@ import { sweep } from "./german/sweep";
 import { terrain } from "./german/terrain";
 import { turning } from "./german/turning";
 import { vehicle } from "./german/vehicle";
+import { ways } from "./german/ways";
 import type { ReasonTable } from "./reasons";
 
 export const reasonsDe: ReasonTable = {
@@ -30,4 +31,5 @@ export const reasonsDe: ReasonTable = {
   ...terrain,
   ...server,
   ...access,
+  ...ways,
 };

@@ -1797,6 +1797,35 @@ export const reasonsEn: ReasonTable = {
     text: "Turned {by_deg} further: what was heard gave no bearing yet.",
     remedy: "",
   },
+  neither_way_nor_barrier: {
+    text: "{parts|part is|parts are} left out: nothing says whether it is a road, a path or a barrier.",
+    remedy: "",
+  },
+  far_from_search: {
+    text: "{parts|part is|parts are} left out, further than {most_m} from the search area.",
+    remedy: "",
+  },
+  no_ways_in_file: {
+    text: "The file holds no road, path or barrier that could be told; {parts|other part|other parts} it has.",
+    remedy:
+      'Give each line or area a property "kind" that is "road", "path" or "barrier", or export them from OpenStreetMap with their tags.',
+  },
+  ways_too_far: {
+    text: "No road, path or barrier of the file lies within {most_m} of the search area: the nearest is at {nearest_m}.",
+    remedy: "Use the file that belongs to this search. In GeoJSON longitude comes first.",
+  },
+  ways_too_many: {
+    text: "The roads, paths and barriers near the search area have {positions} positions; {most} are the most.",
+    remedy: "Cut the file to the search and the ways there, or leave out what is not needed.",
+  },
+  no_road_near: {
+    text: "No road leads away from where you stand: the nearest one known is {nearest_m} away, and your car is looked for within {most_m}, on your side of what cannot be crossed.",
+    remedy: "Say where the car stands, go on foot, or upload ways with the missing road.",
+  },
+  no_way_leads_there: {
+    text: "No way leads there: {places|place|places} to listen from, and none that can be reached from where you stand {on_roads?true=by the roads that are known|false=without crossing what cannot be crossed}.",
+    remedy: "Start elsewhere, or upload ways with the missing road, bridge or gate.",
+  },
   file_too_heavy: {
     text: "The file was not read to its end: {limit?time=it took too long|memory=it took too much memory|depth=it is nested too deep|process=the process that read it ended} (a file may take {most_s} and {most_bytes} of memory). Nothing of it was kept.",
     remedy: "Simplify it or divide it, and upload the parts.",

@@ -7,6 +7,7 @@ import { tapping, tell } from "../commands/truth";
 import { type MessageKey, reasonText, t } from "../i18n";
 import { bannerPx } from "../panels/AlertsButton";
 import { Icon } from "../panels/Icon";
+import { advisedWay } from "../state/advice";
 import { shownBelief } from "../state/belief";
 import { isChoosing } from "../state/candidates";
 import { source } from "../state/connection";
@@ -17,6 +18,7 @@ import { cursor, emittersThen } from "../state/moment";
 import { settings } from "../state/settings";
 import { mission } from "../state/shown";
 import { path, vehicle } from "../state/vehicle";
+import { ways } from "../state/ways";
 import { formatPlace } from "../units/coordinates";
 import { formatDuration, formatLength } from "../units/quantities";
 import type { LonLat } from "../wire/beliefFrame";
@@ -32,6 +34,7 @@ import {
   measuredFeatures,
   pathFeatures,
   planFeatures,
+  wayFeatures,
 } from "./features";
 import { hover, watchHover } from "./hover";
 import { addSources, missionLayers, type SourceName, SWITCHES, type Switch } from "./layers";
@@ -129,6 +132,7 @@ function bind(map: GlMap): () => void {
     effect(() => put(map, "candidates", candidateFeatures({ plan: choice.value }, highlighted.value))),
     effect(() => put(map, "path", pathFeatures(path.value))),
     effect(() => putOverlays(map)),
+    effect(() => put(map, "ways", wayFeatures(ways.value, advisedWay.value))),
     effect(() => {
       const at = home.value;
       put(map, "home", collection(at ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: lonLat(at) } }] : []));

@@ -1,5 +1,6 @@
 // The mission as map features. Pure: the same for a live mission, a review and a recording.
 
+import type { MissionWays } from "../sources/waysApi";
 import { marginOutline } from "../state/areas";
 import { rankCandidates, roundShade } from "../state/candidates";
 import type { EmitterState } from "../state/emitter";
@@ -57,6 +58,14 @@ export function planFeatures(spec: MissionSpec | null): Features {
     ...fenceFeatures(spec),
     ...spec.flight.no_fly.map((area) => feature(area as GeoJSON.Geometry, { what: "no_fly" })),
   ]);
+}
+
+/** Roads, paths, barriers, and the way that was advised last. */
+export function wayFeatures(known: MissionWays | null, advised: readonly LonLat[]): Features {
+  const drawn = (known?.features ?? []).map(({ geometry, properties: { kind } }) =>
+    feature(geometry as unknown as GeoJSON.Geometry, { what: geometry.type === "MultiPolygon" ? "barrier_area" : kind }),
+  );
+  return collection(advised.length > 1 ? [...drawn, line([...advised], { what: "advised" })] : drawn);
 }
 
 /** Measurement places so near to each other that their numbers would cover one another. */

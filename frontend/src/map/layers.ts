@@ -9,7 +9,7 @@ import type {
 import { collection } from "./features";
 import type { Palette } from "./palette";
 
-export const SOURCES = ["plan", "overlays", "path", "measured", "candidates", "home"] as const;
+export const SOURCES = ["plan", "overlays", "ways", "path", "measured", "candidates", "home"] as const;
 export type SourceName = (typeof SOURCES)[number];
 
 /** Tiles of 760 m at 50 degrees north, drawn to 0.1 m: a search is one or two of them, however near it is looked at. */
@@ -123,6 +123,13 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       layout: { visibility: "none" },
       paint: { "circle-radius": 4, "circle-color": ["coalesce", ["get", "marker-color"], colours.ink] },
     },
+    fill("barrier-areas", "ways", "barrier_area", null, { "fill-color": colours.water, "fill-opacity": 0.55 }),
+    line("barrier-outlines", "ways", "barrier_area", null, { "line-color": colours.ink, "line-width": 1.2, "line-opacity": 0.6 }),
+    line("barriers", "ways", "barrier", null, { "line-color": colours.ink, "line-width": 1.6, "line-opacity": 0.75 }),
+    line("road-casing", "ways", "road", null, { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }),
+    line("roads", "ways", "road", null, { "line-color": colours.rounds[3], "line-width": 2.6 }),
+    line("paths", "ways", "path", null, { "line-color": colours.rounds[3], "line-width": 1.4, "line-dasharray": [3, 2] }),
+    line("advised-way", "ways", "advised", null, { "line-color": colours.accent, "line-width": 4, "line-opacity": 0.8 }),
     {
       id: "path-halo",
       type: "line",

@@ -6,8 +6,9 @@ import { t } from "../i18n";
 import { AdviceCard } from "../panels/AdviceCard";
 import { AimMap } from "../panels/AimMap";
 import { ProblemBox } from "../panels/ProblemNote";
+import { WaysCard } from "../panels/WaysCard";
 import { muteReporter } from "../sources/reportsApi";
-import { advised } from "../state/advice";
+import { advised, advisedWay } from "../state/advice";
 import { lastOf, pending, type Stage } from "../state/bearingQueue";
 import { sourceKey } from "../state/emitter";
 import { emitterName } from "../state/emitterName";
@@ -16,6 +17,7 @@ import { compassState, magneticDeg, startCompass, stopCompass } from "../state/p
 import { missionAddress } from "../state/route";
 import { me } from "../state/session";
 import { mission } from "../state/shown";
+import { drawnWays } from "../state/ways";
 import { formatBearing } from "../units/quantities";
 import type { Problem } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
@@ -210,6 +212,8 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         area={spec?.area ?? null}
         others={bearings}
         advised={advised.value}
+        way={advisedWay.value}
+        ways={drawnWays.value}
         here={here}
         bearing={direction}
         sigma={SHARPNESS[sharpness]}
@@ -335,6 +339,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           />
         </label>
       </details>
+      <WaysCard missionId={missionId} />
       <Sent missionId={missionId} />
       {named && !ended && (
         <OwnMute missionId={missionId} name={signedIn ?? reporter.name.trim()} by={signedIn === null ? reporter.name.trim() : null} />

@@ -14,6 +14,7 @@ import { Scene } from "../panels/Scene";
 import { SweepPanel } from "../panels/SweepPanel";
 import { Timeline } from "../panels/Timeline";
 import { TruthCard } from "../panels/TruthCard";
+import { WaysCard } from "../panels/WaysCard";
 import { type Card, chosenCard } from "../state/card";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
@@ -108,6 +109,7 @@ export function FlyPage() {
         <div class="drawers">
           {before && missionId && <AntennaCheck missionId={missionId} />}
           <ImportRecording />
+          {before && missionId && <WaysCard missionId={missionId} />}
         </div>
       </aside>
       <Timeline />

@@ -5,60 +5,12 @@ import { reasonText, t } from "../i18n";
 import { basemap, chooseBasemap } from "../map/basemap";
 import { overlayIds, showOverlay } from "../map/overlays";
 import { ProblemBox } from "../panels/ProblemNote";
+import { Upload } from "../panels/Upload";
 import * as maps from "../sources/mapsApi";
 import { deleteTerrain, listTerrain, type TerrainList } from "../sources/terrainApi";
-import { upload } from "../sources/upload";
 import { settings } from "../state/settings";
 import { formatLength, formatNumber } from "../units/quantities";
 import type { Problem } from "../wire";
-
-type Target = "maps" | "overlays" | "terrain";
-
-function Upload({
-  target,
-  accept,
-  label,
-  onDone,
-  onProblem,
-}: {
-  target: Target;
-  accept: string;
-  label: string;
-  onDone: () => void;
-  onProblem: (p: Problem | null) => void;
-}) {
-  const [progress, setProgress] = useState<{ name: string; percent: number } | null>(null);
-  return (
-    <>
-      <label class="button primary">
-        {label}
-        <input
-          class="visually-hidden"
-          type="file"
-          accept={accept}
-          data-testid={`upload-${target}`}
-          onChange={(e) => {
-            const file = e.currentTarget.files?.[0];
-            e.currentTarget.value = "";
-            if (!file) return;
-            onProblem(null);
-            setProgress({ name: file.name, percent: 0 });
-            upload(`/${target}?filename=${encodeURIComponent(file.name)}`, file, (share) =>
-              setProgress({ name: file.name, percent: Math.round(100 * share) }),
-            )
-              .then(onDone, (error: unknown) => onProblem(asProblem(error)))
-              .finally(() => setProgress(null));
-          }}
-        />
-      </label>
-      {progress && (
-        <span role="status">
-          {t("maps.uploading", progress)} <progress max={100} value={progress.percent} aria-label={progress.name} />
-        </span>
-      )}
-    </>
-  );
-}
 
 function Packages({ list, onChange }: { list: maps.MapList; onChange: () => void }) {
   return (
@@ -173,7 +125,7 @@ export function MapsPage() {
     <div class="page" data-testid="maps-page">
       <div class="page-head">
         <h1>{t("maps.title")}</h1>
-        <Upload target="maps" accept=".pmtiles" label={t("maps.upload")} onDone={read} onProblem={setProblem} />
+        <Upload path="/maps" testId="upload-maps" accept=".pmtiles" label={t("maps.upload")} onDone={read} onProblem={setProblem} />
       </div>
       <p>{t("maps.explain")}</p>
       {problem && <ProblemBox problem={problem} />}
@@ -185,13 +137,27 @@ export function MapsPage() {
       ))}
       <div class="page-head">
         <h1>{t("maps.terrain")}</h1>
-        <Upload target="terrain" accept=".tif,.tiff,.pmtiles" label={t("maps.uploadTerrain")} onDone={read} onProblem={setProblem} />
+        <Upload
+          path="/terrain"
+          testId="upload-terrain"
+          accept=".tif,.tiff,.pmtiles"
+          label={t("maps.uploadTerrain")}
+          onDone={read}
+          onProblem={setProblem}
+        />
       </div>
       <p>{t("maps.terrainExplain")}</p>
       {terrain && <Terrain list={terrain} onChange={read} />}
       <div class="page-head">
         <h1>{t("maps.overlays")}</h1>
-        <Upload target="overlays" accept=".geojson,.json,.kml,.kmz" label={t("maps.uploadOverlay")} onDone={read} onProblem={setProblem} />
+        <Upload
+          path="/overlays"
+          testId="upload-overlays"
+          accept=".geojson,.json,.kml,.kmz"
+          label={t("maps.uploadOverlay")}
+          onDone={read}
+          onProblem={setProblem}
+        />
       </div>
       <p>{t("maps.overlaysExplain")}</p>
       {overlays && <Overlays list={overlays} onChange={read} />}

@@ -21,13 +21,15 @@ function Said() {
   if (!given || !state) return null;
   if (given.localized) return <p data-testid="advice-done">{t("advice.localized")}</p>;
   const units = settings.value.units;
+  const along = given.along ?? "straight";
   const age = formatAge(Math.max(0, (shownTimeMs.value - Date.parse(given.given_at_utc)) / 1000));
   return (
     <div data-testid="advice-said" data-state={state} class={state === "holds" ? "" : "muted"}>
       <p>
         <strong>
-          {t("advice.go", {
-            length: formatLength(given.away_m ?? 0, units),
+          {t(`advice.go.${along}`, {
+            length: formatLength(given.way_m ?? 0, units),
+            away: formatLength(given.away_m ?? 0, units),
             bearing: formatBearing(given.bearing_deg ?? 0),
             time: formatDuration(given.move_s ?? 0),
           })}
@@ -48,7 +50,12 @@ function Said() {
         })}{" "}
         {given.expected_time_s !== null && t("advice.until", { time: formatDuration(given.expected_time_s) })}
       </p>
-      <small>{t(`advice.state.${state}`, { age })}</small>
+      {given.unreached > 0 && (
+        <p data-testid="advice-unreached">{t("advice.unreached", { unreached: given.unreached, places: given.places })}</p>
+      )}
+      <small>
+        {t(`advice.state.${state}`, { age })} {state === "holds" && along === "straight" && t("advice.straight")}
+      </small>
     </div>
   );
 }
@@ -62,7 +69,14 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
     setBusy(true);
     setProblem(null);
     try {
-      advice.value = await askAdvice(missionId, { lon: here[0], lat: here[1] }, SPEED[going], null, going === "hopping");
+      advice.value = await askAdvice(
+        missionId,
+        { lon: here[0], lat: here[1] },
+        SPEED[going],
+        null,
+        going === "hopping",
+        going !== "walking",
+      );
     } catch (error) {
       setProblem(asProblem(error));
     } finally {

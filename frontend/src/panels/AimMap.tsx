@@ -1,8 +1,10 @@
 // A plain map for one thumb: the area, the craft's and others' bearings, where one stands and the direction one hears.
 // Drawn without WebGL and without tiles, so that it is there at once on any phone. North is up.
+import { useMemo } from "preact/hooks";
 import { t } from "../i18n";
 import type { Bearing } from "../state/emitter";
 import { bearingDeg, boundsOf, destination, distanceM, metresPerDegree } from "../state/geometry";
+import type { Drawn } from "../state/ways";
 import type { Area, Place } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 
@@ -14,6 +16,8 @@ export interface Aim {
   area: Area | null;
   others: readonly Bearing[];
   advised: LonLat | null;
+  way: readonly LonLat[];
+  ways: readonly Drawn[];
   here: LonLat | null;
   bearing: number | null;
   sigma: number;
@@ -30,6 +34,9 @@ interface Frame {
   back: (x: number, y: number) => LonLat;
   /** Diagonal, metres. */
   reach: number;
+  middle: LonLat;
+  /** Of the picture a metre. */
+  scale: number;
 }
 
 function frameOf(points: readonly LonLat[]): Frame {
@@ -42,15 +49,35 @@ function frameOf(points: readonly LonLat[]): Frame {
     at: ([lon, lat]) => [SIZE / 2 + (lon - middle[0]) * mx * scale, SIZE / 2 - (lat - middle[1]) * my * scale],
     back: (x, y) => [middle[0] + (x - SIZE / 2) / scale / mx, middle[1] - (y - SIZE / 2) / scale / my],
     reach: side * 1.5,
+    middle,
+    scale,
   };
 }
 
 const pathOf = (points: readonly [number, number][]) =>
   points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 
-export function AimMap({ area, others, advised, here, bearing, sigma, mode, onHere, onDirection }: Aim) {
+const inView = (points: readonly [number, number][]) =>
+  [0, 1].every((axis) => points.some((p) => p[axis]! > -SIZE) && points.some((p) => p[axis]! < 2 * SIZE));
+
+/** Of thousands of lines those that can be seen. */
+const pathOfWays = ({ lines, area }: Drawn, at: Frame["at"]) =>
+  lines
+    .map((points) => points.map(at))
+    .filter(inView)
+    .map((points) => pathOf(points) + (area ? "Z" : ""))
+    .join("");
+
+export function AimMap({ area, others, advised, way, ways, here, bearing, sigma, mode, onHere, onDirection }: Aim) {
   const known: LonLat[] = [...(area ? ringsOf(area).flat() : []), ...(here ? [here] : []), ...(advised ? [advised] : [])];
   const frame = frameOf(known);
+  const ground = useMemo(
+    () =>
+      ways.map((one) => (
+        <path key={`${one.kind}-${one.area}`} class={`aim-${one.kind}`} data-area={one.area} d={pathOfWays(one, frame.at)} />
+      )),
+    [ways, frame.middle[0], frame.middle[1], frame.scale],
+  );
   const tap = (event: MouseEvent & { currentTarget: SVGSVGElement }) => {
     const box = event.currentTarget.getBoundingClientRect();
     const point = frame.back(((event.clientX - box.left) / box.width) * SIZE, ((event.clientY - box.top) / box.height) * SIZE);
@@ -77,6 +104,7 @@ export function AimMap({ area, others, advised, here, bearing, sigma, mode, onHe
             .join("")}
         />
       )}
+      {ground}
       {others.map(({ fact, excluded }) => (
         <path
           class={excluded ? "aim-other left-out" : "aim-other"}
@@ -84,6 +112,7 @@ export function AimMap({ area, others, advised, here, bearing, sigma, mode, onHe
           d={ray([fact.place.lon, fact.place.lat], fact.bearing_deg)}
         />
       ))}
+      {way.length > 1 && <path class="aim-way" d={pathOf(way.map(frame.at))} data-testid="aim-way" />}
       {advised && <circle class="aim-advised" cx={frame.at(advised)[0]} cy={frame.at(advised)[1]} r={14} />}
       {here && bearing !== null && (
         <>

@@ -5,8 +5,8 @@ import { json, withBody } from "./api";
 
 export type Advice = components["schemas"]["AdviceAnswer"];
 
-export const askAdvice = (missionId: string, place: Place, speedMS: number, emitterId: string | null, hops: boolean) =>
+export const askAdvice = (missionId: string, place: Place, speedMS: number, emitterId: string | null, hops: boolean, onRoads: boolean) =>
   json<Advice>(
     `/missions/${encodeURIComponent(missionId)}/advice`,
-    withBody("POST", { place, speed_m_s: speedMS, emitter_id: emitterId, hops }),
+    withBody("POST", { place, speed_m_s: speedMS, emitter_id: emitterId, hops, on_roads: onRoads }),
   );

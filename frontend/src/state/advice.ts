@@ -30,3 +30,6 @@ export const advised = computed<LonLat | null>(() => {
   const place = advice.value?.place;
   return place && adviceFreshness.value === "holds" ? [place.lon, place.lat] : null;
 });
+
+/** The way there; empty when nothing is advised. */
+export const advisedWay = computed<LonLat[]>(() => (advised.value ? ((advice.value?.way ?? []) as LonLat[]) : []));

@@ -1,0 +1,89 @@
+"""The ways folder: what can be gone along and what cannot be crossed, a file for each mission. Blocking; use threads.
+
+Advice only is made of it, which nobody has to follow: it is no fact of the mission, and may be replaced at any time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import lru_cache
+from pathlib import Path
+
+from shapely.geometry import shape
+
+from backend.maps.overlay_folder import MOST_OVERLAY_BYTES
+from backend.maps.refusal import MapRefused
+from backend.maps.upload import received, replace_text
+from backend.maps.ways import read_ways
+from backend.reasons.request import BodyTooLarge
+from backend.search.ground_ways import Traced
+from backend.spec import LonLat
+from backend.wire.ways import MissionWays
+from backend.workers import Workers
+
+
+@dataclass(frozen=True, slots=True)
+class WaysFolder:
+    """reserve_bytes: disk that no upload may take, kept for the journal."""
+
+    directory: Path
+    reserve_bytes: int = 0
+
+    def json(self, mission_id: str) -> bytes:
+        """Of MissionWays, as it was stored; empty ways when there are none."""
+        try:
+            return self.path(mission_id).read_bytes()
+        except FileNotFoundError:
+            return MissionWays().model_dump_json().encode()
+
+    def traced(self, mission_id: str) -> tuple[Traced, ...]:
+        """Shapes; read once until they change."""
+        path = self.path(mission_id)
+        try:
+            return _traced(path, path.stat().st_mtime_ns)
+        except FileNotFoundError:
+            return ()
+
+    def forget(self, mission_id: str) -> None:
+        """Nothing happens when there are none. Raises OSError."""
+        self.path(mission_id).unlink(missing_ok=True)
+
+    async def store(
+        self,
+        mission_id: str,
+        area: Sequence[LonLat],
+        body: AsyncIterator[bytes],
+        name: str,
+        announced_bytes: int | None,
+        now: datetime,
+        workers: Workers,
+    ) -> MissionWays:
+        """Read an upload and keep what it holds in the place of what was there. Raises MapRefused, WorkStopped."""
+        async with received(body, announced_bytes, self.directory, self.reserve_bytes, _look, now) as upload:
+            return await workers.run(self.keep_file, mission_id, area, upload.path, name, now)
+
+    def keep_file(self, mission_id: str, area: Sequence[LonLat], path: Path, name: str, now: datetime) -> MissionWays:
+        """What is kept, but for its features, of which there may be many; the file itself is not needed any more.
+
+        Raises MapRefused.
+        """
+        ways = read_ways(path.read_bytes(), area, name, now)
+        replace_text(self.path(mission_id), ways.model_dump_json())
+        return ways.model_copy(update={"features": []})
+
+    def path(self, mission_id: str) -> Path:
+        """Of its file, if there is one."""
+        return self.directory / f"{mission_id}.json"
+
+
+@lru_cache(maxsize=4)
+def _traced(path: Path, _changed_ns: int) -> tuple[Traced, ...]:
+    ways = MissionWays.model_validate_json(path.read_bytes())
+    return tuple(Traced(one.properties.kind, shape(one.geometry)) for one in ways.features)
+
+
+def _look(first_bytes: bytes, size: int) -> None:
+    if size > MOST_OVERLAY_BYTES:
+        raise MapRefused(BodyTooLarge(MOST_OVERLAY_BYTES))
