@@ -127,7 +127,7 @@ function roseFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
 }
 
 /** The stretches of way on which something was heard that counts, or counted. */
-const wayFeatures = ({ ways = [] }: Ways): GeoJSON.Feature[] =>
+const listenedFeatures = ({ ways = [] }: Ways): GeoJSON.Feature[] =>
   ways.flatMap(({ fact, excluded }) =>
     fact.stretches.map(({ begin, end }) => line([lonLat(begin), lonLat(end)], { what: "listened", faded: excluded ? 1 : 0 })),
   );
@@ -171,7 +171,7 @@ export const measuredFeatures = (
   emitters: Emitters = new Map(),
 ): Features =>
   collection([
-    ...wayFeatures(mission),
+    ...listenedFeatures(mission),
     ...directionFeatures(mission),
     ...roseFeatures(mission),
     ...placeFeatures(mission),
