@@ -17,7 +17,7 @@ from planner.policy.actions import action_space
 from planner.policy.fisher import gain_beside_bias
 from planner.policy.rollout import TELLING_SHARE
 from planner.policy.several import Wanted, times_together
-from planner.reasons import BetweenPlaces, NearerThanStandoff, RuleReason, TellsLittleOfBias
+from planner.reasons import BetweenPlaces, CrossesTooLittle, NearerThanStandoff, RuleReason, TellsLittleOfBias
 from planner.types import Bearing, FloatArray, PlannerError, Problem
 
 COMPARED_PATHS = 400
@@ -90,6 +90,12 @@ def rules_against(
         places = action_space(problem, belief)
     except PlannerError:
         return ()
+    if problem.crossing is not None:
+        kept_places = problem.crossing.crossed_from(np.vstack([xy, places]))
+        if not kept_places[0]:
+            crossing, needed = np.rad2deg([problem.crossing.angles(xy)[0], problem.crossing.least])
+            found.append(CrossesTooLittle(float(crossing), float(needed)))
+        places = places[kept_places[1:]]
     if problem.standoff > 0:
         region = confidence_region(belief)
         clearances = distance_to_convex(places, region)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from planner.crossing import Crossing
 from planner.options import FIELD, CellLikelihood, Estimator
 from planner.reason import ReasonedError
 from planner.reasons import ChoiceReason, NotYetReason, RefusalReason
@@ -161,7 +162,7 @@ class Problem:
     the flight area instead (the field system: 15 m). likelihood: of a cell of a hard wedge, in the localizer and in
     rollouts. sector_turns: None: a measurement takes as long everywhere. next_source: who takes the bearings to come;
     None: who took those that came. ways: of somebody on the ground, with the only places to measure at; None: straight
-    flights, around what is not flown over.
+    flights, around what is not flown over. crossing: what the next bearing must cross, where a claim waits for that.
     """
 
     area: Region
@@ -180,6 +181,7 @@ class Problem:
     sector_turns: SectorTurns | None = None
     next_source: str | None = None
     ways: Ways | None = None
+    crossing: Crossing | None = None
 
 
 @dataclass(frozen=True, slots=True)

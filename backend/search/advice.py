@@ -30,6 +30,7 @@ from backend.search.planning import in_nine_of_ten
 from backend.spec import LonLat, Place
 from planner.belief.estimate import estimate
 from planner.belief.grid import GridBelief
+from planner.belief.verdict import missing_crossing
 from planner.geometry import contains
 from planner.options import PlannerOptions
 from planner.plan import plan
@@ -137,6 +138,7 @@ def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place,
         problem = replace(problem, ways=laid.ways)
     elif hop is not None:
         entering = _into(problem.flight_area, start)
+    problem = replace(problem, crossing=missing_crossing(problem, task.rule, bearings, belief))
     decision = plan(problem, belief, bearings, entering, OPTIONS, threads=1)
     east, north = decision.x - start[0], decision.y - start[1]
     now = estimate(belief, problem.estimator).expected_rmse

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from backend.events import BearingMeasured, CandidateFact
 from backend.reasons import Reason, carried
 from backend.search.localization import Localization
-from backend.search.planning import candidate_facts, cost_of, decide, foreseen, in_nine_of_ten, way_to
+from backend.search.planning import candidate_facts, cost_of, decide, in_nine_of_ten, to_plan, way_to
 from backend.spec import Place
 from planner.comparison import difference_between, difference_together, rules_against
 from planner.policy.several import Wanted
@@ -90,7 +90,7 @@ def compare(
     start, here, there = (task.frame.to_enu(p) for p in (platform, place, other))
     options = task.mission.planner.options
     folded = [(one, facts, one.planning_belief(one.planner_bearings(facts))) for one, facts in wanted]
-    problems = [(foreseen(one.problem, facts, belief), belief) for one, facts, belief in folded]
+    problems = [(to_plan(one, facts, belief), belief) for one, facts, belief in folded]
     together = bool(more) and options.method == "rollout"
     try:
         if together:

@@ -21,6 +21,7 @@ from hardware.readings import Place
 from planner.belief.grid import GridBelief
 from planner.belief.joint import SMALLEST_SIGMA, JointBelief
 from planner.belief.moving import MovingBelief
+from planner.belief.verdict import missing_crossing
 from planner.movement import FLIGHT_S
 from planner.plan import expected_time_from, plan
 from planner.policy.actions import SAME_PLACE_M
@@ -76,7 +77,7 @@ def next_place_together(
 
 def _still_wanted(task: Localization, measured: Sequence[BearingMeasured]) -> Wanted:
     belief = task.planning_belief(task.planner_bearings(measured))
-    return Wanted(foreseen(task.problem, measured, belief), belief)
+    return Wanted(to_plan(task, measured, belief), belief)
 
 
 def _plan_fact(
@@ -115,7 +116,7 @@ def decide(
     if options.method == "base_policy":
         return base_policy_decision(task, belief, platform, without)
     return plan(
-        foreseen(task.problem, measured, belief),
+        to_plan(task, measured, belief),
         belief,
         task.planner_bearings(measured),
         platform,
@@ -123,6 +124,13 @@ def decide(
         threads=threads,
         without=without,
     )
+
+
+def to_plan(task: Localization, measured: Sequence[BearingMeasured], belief: GridBelief) -> Problem:
+    """What is foreseen, and what the next bearing must cross where a claim waits for nothing but that."""
+    problem = foreseen(task.problem, measured, belief)
+    crossing = missing_crossing(problem, task.rule, task.planner_bearings(measured), belief)
+    return replace(problem, crossing=crossing)
 
 
 def foreseen(problem: Problem, measured: Sequence[BearingMeasured], belief: GridBelief | None = None) -> Problem:

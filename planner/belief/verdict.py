@@ -10,6 +10,7 @@ from planner.belief.estimate import estimate, mass_within
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief, corrected
 from planner.belief.moving import MovingBelief, corrected_moving, where_it_may_be
+from planner.crossing import Crossing
 from planner.geometry import clip_wedge, validate_area
 from planner.observation import WEDGE_SIGMAS, WIDEST_HARD_WEDGE, expected_bearing, wrap
 from planner.reasons import (
@@ -46,17 +47,13 @@ def verdict(
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
     spread = estimate(belief, problem.estimator)
-    area = problem.area
-    if isinstance(belief, MovingBelief):
-        area = where_it_may_be(belief)
-        bearings = corrected_moving(belief, bearings, spread.x, spread.y)
-    else:
-        bearings = corrected(belief, bearings)
+    area = where_it_may_be(belief) if isinstance(belief, MovingBelief) else problem.area
+    bearings = _as_read(belief, bearings, spread)
     consistent = wedges_meet(area, bearings)
     if not bearings:
         return Verdict(False, consistent, (NoBearingYet(),), spread)
     against = tuple(i for i, b in enumerate(bearings) if not points_at(b, spread.x, spread.y))
-    supporting = [b for i, b in enumerate(bearings) if i not in against and _tells(belief, b)]
+    supporting = _supporting(belief, bearings, spread)
     reasons: list[NotYetReason] = [
         *_place_reasons(rule, bearings, supporting),
         *_angle_reasons(rule, supporting, spread.x, spread.y),
@@ -70,6 +67,28 @@ def verdict(
     elif isinstance(belief, JointBelief | MovingBelief):
         reasons.extend(_tail_reasons(belief, spread))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
+
+
+def missing_crossing(
+    problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief
+) -> Crossing | None:
+    """What the next bearing must cross; None where the error is still too large, or the lines cross widely enough."""
+    spread = estimate(belief, problem.estimator)
+    supporting = _supporting(belief, _as_read(belief, bearings, spread), spread)
+    if not spread.expected_rmse < rule.threshold or not _angle_reasons(rule, supporting, spread.x, spread.y):
+        return None
+    directions = [float(expected_bearing(b.x, b.y, spread.x, spread.y)) for b in supporting]
+    return Crossing(spread.x, spread.y, np.array(directions), rule.min_crossing_angle)
+
+
+def _as_read(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) -> Sequence[Bearing]:
+    if isinstance(belief, MovingBelief):
+        return corrected_moving(belief, bearings, spread.x, spread.y)
+    return corrected(belief, bearings)
+
+
+def _supporting(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimate) -> list[Bearing]:
+    return [b for b in bearings if points_at(b, spread.x, spread.y) and _tells(belief, b)]
 
 
 def _tells(belief: GridBelief, bearing: Bearing) -> bool:

@@ -37,11 +37,13 @@ def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
 
 
 def constrained_actions(problem: Problem, belief: GridBelief) -> FloatArray:
-    """(n, 2) m: the action space without the places nearer than r_min to C95.
+    """(n, 2) m: the action space without the places nearer than r_min to C95, and without those that cross too little.
 
     When fewer than two would be left, r_min shrinks until two are (6.1).
     """
     places = action_space(problem, belief)
+    if problem.crossing is not None:
+        places = places[problem.crossing.crossed_from(places)]
     if problem.standoff <= 0:
         return places
     clearance = distance_to_convex(places, confidence_region(belief))

@@ -91,6 +91,8 @@ def _half_steps(frame: Frame) -> FloatArray:
 
 def _allowed(problem: Problem, belief: GridBelief, places: FloatArray) -> FloatArray:
     places = places[may_fly(problem, places)]
+    if problem.crossing is not None and len(places) > 0:
+        places = places[problem.crossing.crossed_from(places)]
     if problem.action_spacing is not None and problem.flight_area is not None:  # off the fence as a lattice's are
         places = places[distance_to_edges(places, problem.flight_area) >= 0.5 * problem.action_spacing]
     if problem.standoff > 0 and len(places) > 0:

@@ -165,7 +165,7 @@ def plan_several(
     places = _places(wanted, simulations[0], without)
     estimates = [estimate(one.belief, one.problem.estimator) for one in copies]
     gains = np.stack([_gains(one, spread, places) for one, spread in zip(wanted, estimates, strict=True)])
-    telling = np.stack([_telling(one, gain) for one, gain in zip(wanted, gains, strict=True)])
+    telling = np.stack([_telling(one, gain, places) for one, gain in zip(wanted, gains, strict=True)])
     # what tells nothing of any of them is no next place, however soon it is reached
     some = telling.any(axis=0)
     places, gains, telling = places[some], gains[:, some], telling[:, some]
@@ -274,7 +274,7 @@ def telling_beside_bias(problem: Problem, belief: GridBelief, places: FloatArray
     error that it only measures again. The bias is that of the source with the most bearings.
     """
     wanted = Wanted(problem, belief)
-    return _telling(wanted, _gains(wanted, estimate(belief, problem.estimator), places))
+    return _telling(wanted, _gains(wanted, estimate(belief, problem.estimator), places), places)
 
 
 def _gains(wanted: Wanted, estimated: Estimate, places: FloatArray) -> FloatArray:
@@ -286,10 +286,12 @@ def _gains(wanted: Wanted, estimated: Estimate, places: FloatArray) -> FloatArra
     return gain_beside_bias(estimated, places, errors, wanted.problem.sigma, nearest=belief.h)
 
 
-def _telling(wanted: Wanted, gains: FloatArray) -> BoolArray:
+def _telling(wanted: Wanted, gains: FloatArray, places: FloatArray) -> BoolArray:
+    crossing = wanted.problem.crossing
+    crossed = np.ones(len(gains), dtype=bool) if crossing is None else crossing.crossed_from(places)
     if not isinstance(wanted.belief, JointBelief) or not wanted.belief.errors:
-        return np.ones(len(gains), dtype=bool)
-    return np.asarray(gains >= TELLING_SHARE * gains.max())
+        return crossed
+    return np.asarray(crossed & (gains >= TELLING_SHARE * gains[crossed].max()))
 
 
 def _detour(wanted: Wanted, gains: FloatArray, places: FloatArray) -> tuple[float, float]:

@@ -51,7 +51,7 @@ from planner.reasons.refusal import (
     UnusableNumber,
     UnusableRing,
 )
-from planner.reasons.rule import BetweenPlaces, NearerThanStandoff, RuleReason, TellsLittleOfBias
+from planner.reasons.rule import BetweenPlaces, CrossesTooLittle, NearerThanStandoff, RuleReason, TellsLittleOfBias
 
 PlannerReason = ChoiceReason | NotYetReason | RefusalReason | RuleReason
 
@@ -64,6 +64,7 @@ __all__ = [
     "BetweenPlaces",
     "BudgetTooSmall",
     "ChoiceReason",
+    "CrossesTooLittle",
     "CrossingAngleTooSmall",
     "ErrorMayBeFarLarger",
     "EstimateContradicted",

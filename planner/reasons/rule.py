@@ -37,6 +37,20 @@ class TellsLittleOfBias:
 
 
 @dataclass(frozen=True, slots=True)
+class CrossesTooLittle:
+    """crossing_deg: the widest angle at which the place's line crosses that of a bearing. needed_deg: of a claim."""
+
+    crossing_deg: float
+    needed_deg: float
+    code: Literal["crosses_too_little"] = "crosses_too_little"
+    english: ClassVar[Words] = Words(
+        "All that a claim waits for is a bearing from another side: lines must cross at {needed_deg}, and from here "
+        "they cross at {crossing_deg}. The forecast does not know that.",
+        "The angle is a setting of the mission.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class BetweenPlaces:
     """spacing_m: of the lattice of places that are compared."""
 
@@ -48,4 +62,4 @@ class BetweenPlaces:
     )
 
 
-RuleReason = NearerThanStandoff | TellsLittleOfBias | BetweenPlaces
+RuleReason = NearerThanStandoff | TellsLittleOfBias | CrossesTooLittle | BetweenPlaces

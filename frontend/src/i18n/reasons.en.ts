@@ -158,6 +158,10 @@ export const reasonsEn: ReasonTable = {
     text: "The planner compares only places that also show how far the compass is off; this one tells {share_percent} of what the best does, and {wanted_percent} are asked for. The forecast leaves the compass out.",
     remedy: "From another side the bearing would tell both.",
   },
+  crosses_too_little: {
+    text: "All that a claim waits for is a bearing from another side: lines must cross at {needed_deg}, and from here they cross at {crossing_deg}. The forecast does not know that.",
+    remedy: "The angle is a setting of the mission.",
+  },
   between_places: {
     text: "No rule forbids it: the planner compares places {spacing_m} apart with a limited number of simulated flights, and yours is better than what it found.",
     remedy: "",

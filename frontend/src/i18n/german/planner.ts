@@ -152,6 +152,10 @@ export const planner = {
     text: "Der Planer vergleicht nur Orte, die auch zeigen, wie falsch der Kompass geht; dieser sagt davon {share_percent} dessen, was der beste sagt, verlangt sind {wanted_percent}. Die Vorhersage lässt den Kompass außer Acht.",
     remedy: "Von einer anderen Seite sagt die Peilung beides.",
   },
+  crosses_too_little: {
+    text: "Es fehlt nur noch eine Peilung von einer anderen Seite: Die Linien müssen sich mit {needed_deg} kreuzen, und von hier kreuzen sie sich mit {crossing_deg}. Die Vorhersage weiß das nicht.",
+    remedy: "Den Winkel legt der Einsatz fest.",
+  },
   between_places: {
     text: "Keine Regel spricht dagegen: Der Planer vergleicht Orte im Abstand von {spacing_m} mit begrenzt vielen simulierten Flügen, und deiner ist besser als das, was er fand.",
     remedy: "",
