@@ -52,8 +52,8 @@ DECIMALS_OF = {
     "binned_db": 0, "fitted_db": 0, "power_db": 0, "heading_deg": 0, "value_s": 1, "std_error_s": 1,
 }  # fmt: skip
 """Of degrees: 0.1 m."""
-PROGRESS_POINTS = 40
-STATUS_S = 2.0
+PROGRESS_POINTS = 24
+STATUS_S = 4.0
 CELLS = 6400
 DRAWN = 1e-3
 """Of the peak: what is less the map does not show."""
