@@ -44,8 +44,9 @@ class _Upload:
 
 
 @router.get("", response_class=Response, responses={200: {"model": MissionWays}})
-async def get_ways(mission_id: MissionId, folder: WaysFolderDep) -> Response:
+async def get_ways(mission_id: MissionId, folder: WaysFolderDep, services: ServicesDep) -> Response:
     """What was uploaded last, cut to the search; empty when nothing was."""
+    await _mission(services, mission_id)
     return Response(await in_thread("overlay", folder.json, mission_id), media_type="application/json")
 
 
