@@ -156,6 +156,8 @@ def test_a_resting_pointer_asks_for_the_expected_time_and_moves_nothing(flight: 
 def test_the_next_place_is_dragged_and_its_cost_seen_before_it_is_confirmed(flight: Flight) -> None:
     screen, before = flight.screen, flight.kinds().count("plan_chosen")
     expect(screen.part("battery-then")).to_contain_text("%")
+    screen.part("map-fit").click()
+    screen.page.wait_for_timeout(600)  # the map glides for 0.4 s
     box = screen.part("next-place").bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
