@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planner.belief.grid import GridBelief
-from planner.belief.joint import joint_prior, update_joint
+from planner.belief.joint import JointBelief, joint_prior, update_joint
 from planner.belief.verdict import missing_crossing, verdict
 from planner.comparison import rules_against
 from planner.crossing import Crossing
@@ -41,7 +41,7 @@ def bearing_from(x: float, y: float) -> Bearing:
 BEARINGS = tuple(bearing_from(*place) for place in FROM_ONE_SIDE)
 
 
-def believed() -> GridBelief:
+def believed() -> JointBelief:
     belief = joint_prior(PROBLEM)
     for bearing in BEARINGS:
         belief = update_joint(belief, bearing)
