@@ -3,93 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
-from argon2 import PasswordHasher
+from entrance import DAY_S, PASSWORD, Clocks, again, everything_in, opened, who, with_admin
 from refusals import refusing
 
 from backend.auth.access import Access, Visit
-from backend.auth.audit import AuditLog
 from backend.auth.keeping import Denied
-from backend.auth.passwords import Passwords
 from backend.auth.records import Records
 from backend.auth.registry import key_of
 from backend.auth.sessions import IDLE_S, LONGEST_S, SESSIONS_EACH
 from backend.ports import JournalUnavailable
 from backend.reasons import access as reasons
-from backend.reasons.storage import DatabaseSilent
-from backend.store.engine import make_engine, migrate
-
-PASSWORD = "correct horse battery"
-DAY_S = 86_400.0
-
-
-class Clocks:
-    """wall_s jumps as the tests want; steady_s only goes on."""
-
-    def __init__(self) -> None:
-        self.wall_s, self.steady_s = 1_700_000_000.0, 50.0
-
-    def go(self, seconds: float) -> None:
-        self.wall_s += seconds
-        self.steady_s += seconds
-
-
-@pytest.fixture
-def clocks() -> Clocks:
-    return Clocks()
-
-
-@pytest.fixture
-async def url(tmp_path: Path) -> str:
-    url = f"sqlite+aiosqlite:///{tmp_path / 'people.sqlite'}"
-    await migrate(url)
-    return url
-
-
-def opened(url: str, clocks: Clocks, *, expected: bool = True) -> Access:
-    return Access(
-        Records(make_engine(url, 2.0), 2.0),
-        AuditLog(None, lambda: clocks.wall_s),
-        people_expected=expected,
-        payload_tokens=("a configured token of a payload",),
-        passwords=Passwords(PasswordHasher(time_cost=1, memory_cost=8, parallelism=1)),
-        wall_s=lambda: clocks.wall_s,
-        monotonic_s=lambda: clocks.steady_s,
-    )
-
-
-@pytest.fixture
-async def access(url: str, clocks: Clocks) -> AsyncIterator[Access]:
-    access = opened(url, clocks)
-    await access.load()
-    yield access
-    await access.close()
-
-
-async def with_admin(access: Access) -> str:
-    """The first admin's secret."""
-    return await access.make_first_admin(access.begin_first_admin() or "", "Ada", PASSWORD, Visit("10.0.0.2", "laptop"))
-
-
-def who(access: Access, secret: str) -> str | None:
-    found = access.signed_in(secret, "10.0.0.2")
-    return None if found is None else found[0].name
-
-
-def everything_in(folder: Path) -> bytes:
-    return b"".join(path.read_bytes() for path in folder.glob("people.sqlite*"))
-
-
-async def again(url: str, clocks: Clocks, access: Access) -> Access:
-    """The server after a restart. The steady clock of another boot begins anywhere."""
-    await access.close()
-    clocks.steady_s = 7.0
-    another = opened(url, clocks)
-    await another.load()
-    return another
 
 
 async def test_the_first_admin_needs_the_code_and_it_works_once(access: Access) -> None:
@@ -250,77 +176,6 @@ async def test_across_a_restart_time_goes_on_and_a_clock_set_back_revives_nothin
     access = await again(url, clocks, access)
     clocks.steady_s += IDLE_S
     assert who(access, secret) is None
-    await access.close()
-
-
-async def test_an_invitation_works_once_also_for_two_at_once(access: Access) -> None:
-    await with_admin(access)
-    link, _ = await access.invitations.make("operator", False, 3600, "x")
-    tries = [access.accept_invitation(link, name, PASSWORD, Visit(f"10.0.1.{i}", "")) for i, name in enumerate("BCD")]
-    done = await asyncio.gather(*tries, return_exceptions=True)
-    assert sum(isinstance(one, str) for one in done) == 1
-    with refusing(reasons.CodeUnusable("used"), Denied):
-        await access.accept_invitation(link, "Eve", PASSWORD, Visit("10.0.0.9", ""))
-    assert [person.role for person in access.people.by_name if person.name != "Ada"] == ["operator"]
-
-
-async def test_an_expired_or_withdrawn_invitation_makes_nobody(access: Access, clocks: Clocks) -> None:
-    await with_admin(access)
-    link, _ = await access.invitations.make("pilot", True, 3600, "x")
-    clocks.wall_s -= 10 * DAY_S
-    clocks.steady_s += 3600
-    with refusing(reasons.CodeUnusable("expired"), Denied):
-        await access.accept_invitation(link, "Eve", PASSWORD, Visit("10.0.0.9", ""))
-    link, made = await access.invitations.make("pilot", True, 3600, "x")
-    await access.invitations.take_back(made.invitation_id)
-    with refusing(reasons.CodeUnusable("unknown"), Denied):
-        await access.accept_invitation(link, "Eve", PASSWORD, Visit("10.0.0.9", ""))
-    assert len(access.people.by_name) == 1
-
-
-async def test_an_invitation_falls_with_whoever_made_it(access: Access) -> None:
-    """An admin who is about to be shut out may have made links for later."""
-    await with_admin(access)
-    ada = access.people.by_name[0].person_id
-    link, _ = await access.invitations.make("pilot", True, 3600, ada)
-    await access.accept_invitation(link, "Mal", PASSWORD, Visit("a", ""))
-    mal = next(person.person_id for person in access.people.by_name if person.name == "Mal")
-    for admin, active in ((False, True), (True, False)):
-        for_later, made = await access.invitations.make("pilot", True, 3600, mal)
-        await access.change_person(mal, "pilot", admin, active)
-        assert not access.stands(made)
-        with refusing(reasons.CodeUnusable("unknown"), Denied):
-            access.look_at_invitation(for_later, "b")
-        with refusing(reasons.CodeUnusable("unknown"), Denied):
-            await access.accept_invitation(for_later, "Eve", PASSWORD, Visit("b", ""))
-        await access.change_person(mal, "pilot", True, True)
-
-
-async def test_what_the_database_could_not_forget_is_taken_back_again(
-    access: Access, url: str, clocks: Clocks, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Else it would be back after a restart, and nobody could find it in a list before."""
-    await with_admin(access)
-    ada = access.people.by_name[0].person_id
-    link, invited = await access.invitations.make("pilot", True, 3600, ada)
-    secret, token = await access.machines.make("agent", "exports", None, ada)
-
-    async def away(*_: object, **__: object) -> None:
-        raise JournalUnavailable(DatabaseSilent("it is away"))
-
-    with monkeypatch.context() as gone:
-        gone.setattr(Records, "change", away)
-        with pytest.raises(JournalUnavailable):
-            await access.invitations.take_back(invited.invitation_id)
-        with pytest.raises(JournalUnavailable):
-            await access.machines.revoke(token.token_id)
-    assert access.machines.found(secret, "a") is None, "it is shut out at once"
-    await access.invitations.take_back(invited.invitation_id)
-    await access.machines.revoke(token.token_id)
-    access = await again(url, clocks, access)
-    assert (access.invitations.waiting, access.machines.tokens) == ([], [])
-    with refusing(reasons.CodeUnusable("unknown"), Denied):
-        await access.accept_invitation(link, "Eve", PASSWORD, Visit("b", ""))
     await access.close()
 
 
