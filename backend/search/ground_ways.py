@@ -36,7 +36,7 @@ CELLS = 96
 AROUND_SHARE = 0.5
 """Of the size of where one may listen, by which the ground that is looked at reaches beyond it: room for detours."""
 SAMPLES_A_CELL = 4
-"""Of a line, where it is told which cells it touches: consecutive samples are then never further than neighbours."""
+"""Of a line, to find the cells that it touches: consecutive samples then lie in the same or in neighbouring cells."""
 SEGMENTS_AT_ONCE = 5_000
 MOST_ROAD_NODES = 40_000
 SAME_NODE_M = 0.5

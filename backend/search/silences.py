@@ -1,4 +1,4 @@
-"""What a planner is told of turns that heard nothing."""
+"""Turns that heard nothing, as the planner takes them."""
 
 from __future__ import annotations
 

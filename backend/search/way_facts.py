@@ -1,4 +1,4 @@
-"""What is recorded of a leg that was listened on, and what a planner is told of that record."""
+"""A leg that was listened on: its record, and that record as the planner takes it."""
 
 from __future__ import annotations
 

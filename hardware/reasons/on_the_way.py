@@ -16,7 +16,7 @@ SwingsEnd = Literal["near_place", "not_ours", "lags", "refused"]
 
 @dataclass(frozen=True, slots=True)
 class ReadingsLeftOut:
-    """readings: so many of a leg."""
+    """readings: how many of a leg's readings were left out."""
 
     why: WhyLeftOut
     readings: int

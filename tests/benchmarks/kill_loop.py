@@ -357,7 +357,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=3)
     parser.add_argument("--whole", type=int, default=10, metavar="N", help="every N-th start is a whole one; 0: none")
     parser.add_argument("--away", type=float, nargs=2, default=(0.0, 0.0), metavar="S", help="no server for so long")
-    parser.add_argument("--pieces", type=int, default=1, metavar="N", help="so many runs, each with the next seed")
+    parser.add_argument("--pieces", type=int, default=1, metavar="N", help="how many runs, each with the next seed")
     parser.add_argument("--add", action="store_true", help="to the runs of the record that is there")
     add_out(parser)
     given = vars(parser.parse_args())

@@ -1,4 +1,4 @@
-// Roads, paths and barriers of a mission: what is known, uploaded anew, taken away.
+// Roads, paths and barriers of a mission: shown, replaced by an upload, taken away.
 import { useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
 import { reasonText, t } from "../i18n";

@@ -1550,7 +1550,7 @@ export interface components {
          * @description localized: nothing is left to be done, the rest is None. place: where to listen next, away_m and bearing_deg
          *     (from true north) as the crow flies. along: what the way keeps to; "straight" where no ways were uploaded: it may be
          *     none that can be gone. way: from where one stands to the place, way_m along it, move_s how long it takes. unreached:
-         *     of so many places, to how many no way leads.
+         *     the number of those places that no way leads to.
          *
          *     error_now_m: expected error, error_then_m: about what one bearing from there leaves of it. expected_time_s,
          *     time_90_s: until localized if all advice is followed. bearings: how many it knows of; a later one makes it old.
@@ -6857,7 +6857,7 @@ export interface components {
              */
             code: "readers_busy";
         };
-        /** @description readings: so many of a leg. */
+        /** @description readings: how many of a leg's readings were left out. */
         ReadingsLeftOut: {
             /** @enum {string} */
             why: "heading_unknown" | "place_unknown" | "overdriven" | "at_noise" | "beside_a_turn" | "pointed_one_way" | "too_many";

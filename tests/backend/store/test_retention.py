@@ -87,6 +87,7 @@ async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, 
     async with asyncio.timeout(60):
         while (await old_sweeps(engine, 30.0, datetime.now(UTC))).sweeps:  # noqa: ASYNC110 (it says nothing)
             await asyncio.sleep(0.05)
+    assert not keeping.done(), "it goes on after what failed"
     keeping.cancel()
     await asyncio.gather(keeping, return_exceptions=True)
     await engine.dispose()

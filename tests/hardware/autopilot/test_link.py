@@ -111,7 +111,7 @@ async def test_a_value_that_is_no_number_is_none(monkeypatch: pytest.MonkeyPatch
 
 
 async def test_a_link_that_closes_while_a_parameter_is_asked_for_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As when the vehicle is connected anew in the middle of a checklist."""
+    """As when the vehicle connects again in the middle of a checklist."""
     monkeypatch.setattr("hardware.autopilot.link.PARAMETER_WALL_S", 0.1)
     link = MavlinkLink("udpin://127.0.0.1:14999", (), lambda name, fields: None)
     monkeypatch.setattr(link, "_direct", Mute())
