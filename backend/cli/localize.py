@@ -26,7 +26,7 @@ from planner.belief.estimate import confidence_region, estimate
 from planner.belief.grid import GridBelief, fold
 from planner.belief.joint import JointBelief, corrected, joint_prior, update_joint
 from planner.belief.source_errors import SourceErrors
-from planner.belief.verdict import points_at, verdict
+from planner.belief.verdict import points_at, stated, verdict
 from planner.geometry import convex_hull
 from planner.options import Estimator
 from planner.reason import sentence_of, text_of
@@ -247,7 +247,7 @@ def _localize(
         "sources": [_source(one) for one in belief.errors] if isinstance(belief, JointBelief) else [],
     }
     if belief is not None:
-        spread = estimate(belief, problem.estimator)
+        spread = stated(belief, estimate(belief, problem.estimator))
         place = frame.to_geo(spread.x, spread.y)
         outline = [frame.to_geo(x, y) for x, y in confidence_region(belief)]
         ring = [[round(p.lon, 8), round(p.lat, 8)] for p in (*outline, outline[0])]

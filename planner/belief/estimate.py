@@ -73,6 +73,16 @@ def mass_within(belief: GridBelief, x: float, y: float, radius: float) -> float:
     return float(belief.density[np.hypot(cx - x, cy - y) <= radius].sum())
 
 
+def radius_of(belief: GridBelief, x: float, y: float, share: float) -> float:
+    """m, the least within which of (x, y) the target is with probability `share`, by cell centres."""
+    rows, columns = np.nonzero(belief.density)
+    cx, cy = belief.centres()
+    off = np.hypot(cx[columns] - x, cy[rows] - y)
+    order = np.argsort(off)
+    within = np.cumsum(belief.density[rows, columns][order])
+    return float(off[order[min(int(np.searchsorted(within, share)), len(off) - 1)]])
+
+
 def _support(belief: GridBelief) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass, x, y of the cells with mass, blocks of copies taken as the one cell they came from, in row order."""
     k = belief.copies

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from planner.belief.estimate import estimate, mass_within
+from planner.belief.estimate import estimate, mass_within, radius_of
 from planner.belief.grid import GridBelief
 from planner.belief.joint import JointBelief, corrected
 from planner.belief.moving import MovingBelief, corrected_moving, where_it_may_be
@@ -27,10 +28,10 @@ from planner.reasons import (
 from planner.types import Bearing, Estimate, FloatArray, LocalizationRule, Problem, Region, Verdict
 
 FAR_ERRORS = 3.0
-"""Times the expected error."""
+"""Times what is stated."""
 MOST_BEYOND = 0.02
-"""Probability that the error is larger than that, at a claim by a joint belief. Twice what outliers at their usual rate
-leave of a belief of a few bearings, so that it only stops what is not yet settled."""
+"""Probability that the error is larger than that, of a joint belief. Twice what outliers at their usual rate leave of a
+belief of a few bearings, so that it only stops what is not yet settled."""
 
 TELLING_SIGMA = np.deg2rad(25.0)
 """An emitter that moves: an older bearing, by now less sure than this, is no place that the claim rests on."""
@@ -43,10 +44,12 @@ def verdict(
 
     With a joint belief the bearings are judged as it reads them, freed of the bias of their source.
     Only bearings that point at the estimate count for places and crossing angle: a rejected outlier proves nothing.
+    The estimate's expected error is the stated one.
     """
     if belief is None:
         return Verdict(False, False, (disagreement(len(bearings)),))
-    spread = estimate(belief, problem.estimator)
+    mean = estimate(belief, problem.estimator)
+    spread = stated(belief, mean)
     area = where_it_may_be(belief) if isinstance(belief, MovingBelief) else problem.area
     bearings = _as_read(belief, bearings, spread)
     consistent = wedges_meet(area, bearings)
@@ -60,12 +63,10 @@ def verdict(
     ]
     if against and len(supporting) < max(3, 2 * len(against)):
         reasons.append(EstimateContradicted(len(against), len(bearings)))
-    elif not wedges_meet(area, supporting):
+    elif not wedges_meet(area, _towards(supporting, spread)):
         reasons.append(disagreement(len(supporting)))
     if not spread.expected_rmse < rule.threshold:
-        reasons.append(ExpectedErrorTooLarge(spread.expected_rmse, rule.threshold))
-    elif isinstance(belief, JointBelief | MovingBelief):
-        reasons.extend(_tail_reasons(belief, spread))
+        reasons.append(_error_reason(belief, mean, rule))
     return Verdict(not reasons, consistent, tuple(reasons), spread, against)
 
 
@@ -73,7 +74,7 @@ def missing_crossing(
     problem: Problem, rule: LocalizationRule, bearings: Sequence[Bearing], belief: GridBelief
 ) -> Crossing | None:
     """What the next bearing must cross; None where the error is still too large, or the lines cross widely enough."""
-    spread = estimate(belief, problem.estimator)
+    spread = stated(belief, estimate(belief, problem.estimator))
     supporting = _supporting(belief, _as_read(belief, bearings, spread), spread)
     if not spread.expected_rmse < rule.threshold or not _angle_reasons(rule, supporting, spread.x, spread.y):
         return None
@@ -91,16 +92,39 @@ def _supporting(belief: GridBelief, bearings: Sequence[Bearing], spread: Estimat
     return [b for b in bearings if points_at(b, spread.x, spread.y) and _tells(belief, b)]
 
 
+def _towards(supporting: Sequence[Bearing], spread: Estimate) -> list[Bearing]:
+    """Those whose main peak supports: the main peak of another is not where the belief takes it to come from."""
+    return [b for b in supporting if points_at(replace(b, peaks=()), spread.x, spread.y)]
+
+
 def _tells(belief: GridBelief, bearing: Bearing) -> bool:
     """Whether a bearing, as the belief reads it, says anything of where the emitter is now."""
     return not isinstance(belief, MovingBelief) or bearing.sigma <= TELLING_SIGMA
 
 
-def _tail_reasons(belief: GridBelief, spread: Estimate) -> list[NotYetReason]:
-    """Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean error says too little."""
-    far = FAR_ERRORS * spread.expected_rmse
-    beyond = 1.0 - mass_within(belief, spread.x, spread.y, far)
-    return [] if beyond <= MOST_BEYOND else [ErrorMayBeFarLarger(100.0 * beyond, 100.0 * MOST_BEYOND, far)]
+def stated(belief: GridBelief, mean: Estimate) -> Estimate:
+    """The estimate with the error that may be stated: of a joint belief at least a third of the radius that leaves
+    MOST_BEYOND outside.
+
+    Of a posterior with a heavy tail (few bearings, each perhaps wrong) the mean distance says too little.
+    """
+    if not isinstance(belief, JointBelief | MovingBelief) or _beyond(belief, mean, mean.expected_rmse) <= MOST_BEYOND:
+        return mean
+    radius = radius_of(belief, mean.x, mean.y, 1.0 - MOST_BEYOND)
+    return replace(mean, expected_rmse=max(mean.expected_rmse, radius / FAR_ERRORS))
+
+
+def _beyond(belief: GridBelief, at: Estimate, error: float) -> float:
+    """Probability that the emitter is further than three times `error` m away."""
+    return 1.0 - mass_within(belief, at.x, at.y, FAR_ERRORS * error)
+
+
+def _error_reason(belief: GridBelief, mean: Estimate, rule: LocalizationRule) -> NotYetReason:
+    """Whether the mean distance is too large, or the tail alone."""
+    if mean.expected_rmse >= rule.threshold:
+        return ExpectedErrorTooLarge(mean.expected_rmse, rule.threshold)
+    beyond = _beyond(belief, mean, rule.threshold)
+    return ErrorMayBeFarLarger(100.0 * beyond, 100.0 * MOST_BEYOND, FAR_ERRORS * rule.threshold)
 
 
 def wedges_meet(area: Region, bearings: Sequence[Bearing]) -> bool:

@@ -46,7 +46,7 @@ class Claims(NamedTuple):
 
 
 class ClaimRule(NamedTuple):
-    """threshold: m, of the expected error. far: times the expected error. beyond: the most mass that may be so far."""
+    """threshold: m, of the expected error. far: times the threshold. beyond: the most mass that may be so far."""
 
     threshold: float
     far: float
@@ -73,7 +73,7 @@ def claim_chances_reference(
         x, y = after @ cells.x, after @ cells.y
         off = np.hypot(cells.x - x[:, None], cells.y - y[:, None])
         expected = (after * off).sum(axis=1)
-        beyond = (after * (off > rule.far * expected[:, None])).sum(axis=1)
+        beyond = (after * (off > rule.far * rule.threshold)).sum(axis=1)
         found.chance[index] = (1.0 - rate) * ((expected < rule.threshold) & (beyond <= rule.beyond)).mean()
         found.tail[index] = np.log(np.maximum(beyond, rule.beyond)).mean()
     return found
@@ -113,7 +113,7 @@ def claim_chances(cells: BiasedCells, places: FloatArray, draws: Draws, rate: fl
             expected /= whole
             beyond = 0.0
             for c in range(count):
-                if off[c] > rule.far * expected:
+                if off[c] > rule.far * rule.threshold:
                     beyond += after[c]
             met += expected < rule.threshold and beyond <= rule.beyond * whole
             left += math.log(max(beyond / whole, rule.beyond))

@@ -156,7 +156,7 @@ def claim_ahead(
 def _tail(cells: BiasedCells, now: Estimate, rule: ClaimRule) -> float:
     """Logarithm of the mass that is too far from the estimate over what the rule allows."""
     off = np.hypot(cells.x - now.x, cells.y - now.y)
-    beyond = float(cells.mass[off > rule.far * now.expected_rmse].sum())
+    beyond = float(cells.mass[off > rule.far * rule.threshold].sum())
     return float(np.log(max(beyond, np.finfo(float).tiny) / rule.beyond))
 
 
@@ -185,7 +185,7 @@ def biased_cells(problem: Problem, belief: JointBelief, now: Estimate, errors: S
     rows, columns = np.nonzero(belief.density)
     mass = belief.density[rows, columns]
     x, y = (along[index] for along, index in zip(belief.centres(), (columns, rows), strict=True))
-    reach = FAR_ERRORS * now.expected_rmse
+    reach = FAR_ERRORS * max(now.expected_rmse, problem.threshold)
     near = np.maximum(np.abs(x - now.x), np.abs(y - now.y)) <= reach
     fine, coarse = 2.0 * reach / NEAR_BLOCKS, max(belief.nx, belief.ny) * belief.h / FAR_BLOCKS
     side = np.maximum(belief.h, np.where(near, fine, coarse))

@@ -116,7 +116,7 @@ class ExpectedErrorTooLarge:
 
 @dataclass(frozen=True, slots=True)
 class ErrorMayBeFarLarger:
-    """beyond_percent: probability that the emitter is further than far_m, three times the expected error, away."""
+    """beyond_percent: probability that the emitter is further than far_m, three times the threshold, away."""
 
     beyond_percent: float
     most_percent: float

@@ -20,7 +20,7 @@ from planner.belief.joint import JointBelief, joint_prior, update_joint
 from planner.belief.learning import flight_evidence, learned
 from planner.belief.moving import MovingBelief
 from planner.belief.source_errors import ErrorPrior
-from planner.belief.verdict import verdict
+from planner.belief.verdict import stated, verdict
 from planner.geometry import bounds, contains, distance_to_convex
 from planner.motion import flight_time
 from planner.study.error_worlds import ROWS, Row
@@ -198,7 +198,7 @@ def claim_at(
     time_s: float,
 ) -> Claim:
     """What the belief says, held against the truth. target: (2,) m. bias: rad, of the first source's bearings."""
-    spread = estimate(belief, problem.estimator)
+    spread = stated(belief, estimate(belief, problem.estimator))
     known = belief.errors if isinstance(belief, JointBelief | MovingBelief) else ()
     return Claim(
         seed=seed,

@@ -3145,7 +3145,7 @@ export interface components {
              */
             code: "emitter_too_near";
         };
-        /** @description beyond_percent: probability that the emitter is further than far_m, three times the expected error, away. */
+        /** @description beyond_percent: probability that the emitter is further than far_m, three times the threshold, away. */
         ErrorMayBeFarLarger: {
             beyond_percent: number;
             most_percent: number;

@@ -1,14 +1,18 @@
 """Mission rule 6: what may be called localized, and the reasons why not yet."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from planner.belief.grid import fold
+from planner.belief.joint import joint_prior, update_joint
 from planner.belief.verdict import best_crossing_angle, distinct_places, points_at, verdict, wedges_meet
 from planner.reasons import (
     BearingMissesArea,
     BearingsDisagree,
     CrossingAngleTooSmall,
+    ErrorMayBeFarLarger,
     EstimateContradicted,
     ExpectedErrorTooLarge,
     NoBearingYet,
@@ -108,6 +112,45 @@ def test_an_outlier_into_a_corner_after_one_look_is_not_believed():
     outlier = Bearing(280.0, 260.0, np.deg2rad(63.0), SIGMA, outlier_probability=0.05)
     answer = judged([outlier], rule=LocalizationRule(threshold=40.0))
     assert not answer.localized
+
+
+def tailed(far, share):
+    """A joint belief of two bearings that cross, its mass put at the target but for a share `far` m north of it."""
+    belief = joint_prior(PROBLEM)
+    for bearing in CROSSING:
+        belief = update_joint(belief, bearing)
+    x, y = belief.centres()
+    column = int(np.abs(x - TARGET[0]).argmin())
+    rows = [int(np.abs(y - wanted).argmin()) for wanted in (TARGET[1], TARGET[1] + far)]
+    density = np.zeros_like(belief.density)
+    density[rows, column] = 1.0 - share, share
+    return replace(belief, density=density)
+
+
+CROSSING = (toward(160, 110), toward(100, 170))
+
+
+def test_a_far_tail_is_stated_and_stops_no_claim_while_it_lies_within_three_thresholds():
+    near, light = (verdict(PROBLEM, RULE, CROSSING, tailed(24.0, share)) for share in (0.03, 0.01))
+    assert near.localized
+    assert near.estimate is not None
+    assert light.estimate is not None
+    assert near.estimate.expected_rmse == pytest.approx(8.0, abs=1.0)
+    assert light.estimate.expected_rmse < 1.5
+    (reason,) = verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.03)).reasons
+    assert isinstance(reason, ErrorMayBeFarLarger)
+    assert (reason.beyond_percent, reason.far_m) == (pytest.approx(3.0), 30.0)
+    assert verdict(PROBLEM, RULE, CROSSING, tailed(60.0, 0.01)).localized
+
+
+def test_a_bearing_that_supports_by_another_peak_does_not_disagree():
+    """Its main peak is a reflection: where that points no emitter is looked for, nor is the claim held up."""
+    towards = float(np.arctan2(TARGET[1] - 60.0, TARGET[0] - 200.0))
+    reflected = Bearing(200.0, 60.0, towards + np.pi, SIGMA, peaks=(Peak(towards, 0.4),), outlier_probability=0.05)
+    bearings = [*(replace(b, outlier_probability=0.05) for b in CROSSING), reflected]
+    answer = judged(bearings)
+    assert not answer.consistent
+    assert answer.localized
 
 
 def test_any_peak_of_a_sweep_supports_the_estimate():
