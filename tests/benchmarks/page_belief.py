@@ -3,7 +3,7 @@
     python -m tests.benchmarks.page_belief --bearings 12 --speedup 3
 
 A mission is flown and its page watched. Times in ms of the wall: `server` from the arrival of the bearing's event in
-the browser to that of the belief's event, `frame` from there to the belief's own arrival, `page` from there until the
+the browser to that of the belief or of its event, `frame` from there to that of the other, `page` from there until the
 map has its picture (read, fold, colour), `drawn` from there until the map has drawn it; `whole` is their sum.
 `repaints`: how often the map was drawn in `whole`. `work_ms` is what the server's parts need of one thread when nothing
 else runs in it: comparable between machines under load. Without a graphics card the processor draws: `drawn` is then an
@@ -50,9 +50,10 @@ window.WebSocket = class extends Plain {
     super(...all);
     this.addEventListener('message', ({data}) => {
       const at = performance.now();
-      if (typeof data !== 'string') { if (open && open.updated) open.arrived = at; return; }
-      if (data.includes('"kind":"bearing_measured"')) open = {bearing: at, repaints: 0};
-      if (open && data.includes('"kind":"belief_updated"')) open.updated = at;
+      if (typeof data === 'string' && data.includes('"kind":"bearing_measured"')) open = {bearing: at, repaints: 0};
+      if (open && (typeof data !== 'string' || data.includes('"kind":"belief_updated"'))) {
+        if (open.first) open.both = at; else open.first = at;
+      }
     });
   }
 };
@@ -61,7 +62,7 @@ Object.defineProperty(window, 'crossfixBeliefPainted', {
   get: () => last,
   set: (painted) => {
     last = painted;
-    if (open && open.arrived && painted.givenMs >= open.arrived) {
+    if (open && open.both && painted.givenMs >= open.both) {
       stages.push({...open, given: painted.givenMs, drawn: painted.atMs});
       open = null;
     }
@@ -70,9 +71,9 @@ Object.defineProperty(window, 'crossfixBeliefPainted', {
 """
 
 STAGES = (
-    ("server", "bearing", "updated"),
-    ("frame", "updated", "arrived"),
-    ("page", "arrived", "given"),
+    ("server", "bearing", "first"),
+    ("frame", "first", "both"),
+    ("page", "both", "given"),
     ("drawn", "given", "drawn"),
     ("whole", "bearing", "drawn"),
 )
