@@ -30,15 +30,16 @@ import httpx
 import websockets
 
 from backend.cli.demo_flight import DemoFailed, fly
-from backend.cli.demo_grade import summary
+from backend.cli.demo_grade import MissionLog, summary
 from backend.cli.running import running_server
-from backend.events import FIRST_CRAFT
+from backend.events import FIRST_CRAFT, HeardOnTheWay, MissionDrafted
 from backend.mission.flights import Flights
 from backend.settings import Settings
 from hardware.autopilot.status_texts import StatusTexts
 from hardware.frame import LocalFrame
 from hardware.ports import Vehicle, VehicleError
 from hardware.readings import Place, Telemetry
+from hardware.reasons.on_the_way import NoseSwung
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
@@ -60,6 +61,8 @@ ORDERS = {20: "return", 21: "land", 22: "take-off", 115: "yaw", 176: "mode", 178
 """MAV_CMD that move the vehicle, in words. A yaw step of PX4 is a place."""
 TURNING_DEG_S = 3.0
 """Below, an autopilot corrects its heading."""
+FLYING_M_S = 3.0
+"""Below, it hovers, starts or brakes."""
 FALSE_TIMES = 3.0
 """A claim is false when its error is beyond this multiple of what it stated."""
 
@@ -69,6 +72,7 @@ class Flown:
     """One mission. emitter_m: where it stood, metres (east, north) of home. error_m, stated_m: None without a claim.
 
     turned_deg: yaw, to and fro, faster than `TURNING_DEG_S`, until it ended. drawn_mah: by the autopilot's count.
+    speed_m_s: median over ground while flying. tilt_deg: of 99 in 100 attitudes, at most. nose: of each leg that swung.
     orders: how often each reached the vehicle. texts: the autopilot's warnings and worse, each once, with how often.
     failed: why the mission was not flown to its end; "" when it was.
     """
@@ -87,6 +91,9 @@ class Flown:
     drawn_mah: float | None
     orders: Counter[str]
     texts: Counter[str]
+    speed_m_s: float | None = None
+    tilt_deg: float | None = None
+    nose: tuple[NoseSwung, ...] = ()
     failed: str = ""
 
     @property
@@ -158,6 +165,26 @@ def drawn_mah(record: Sequence[Passed]) -> float | None:
     return counts[-1] - counts[0] if counts and counts[-1] > counts[0] >= 0 else None
 
 
+def speed_m_s(record: Sequence[Passed]) -> float | None:
+    """Median over ground of what is told faster than `FLYING_M_S`; None when nothing is."""
+    told = [p.fields for p in record if p.way == "from" and p.number == GLOBAL_POSITION]
+    speeds = [math.hypot(fields["vx"], fields["vy"]) / 100.0 for fields in told]
+    return statistics.median(flying) if (flying := [speed for speed in speeds if speed > FLYING_M_S]) else None
+
+
+def tilt_deg(record: Sequence[Passed]) -> float | None:
+    told = [p.fields for p in record if p.way == "from" and p.number == ATTITUDE]
+    tilts = sorted(math.degrees(math.acos(math.cos(fields["roll"]) * math.cos(fields["pitch"]))) for fields in told)
+    return tilts[int(0.99 * (len(tilts) - 1))] if tilts else None
+
+
+def noses(log: MissionLog) -> tuple[NoseSwung, ...]:
+    """Of the first emitter's legs."""
+    name = log.all(MissionDrafted)[-1].spec.emitters[0].emitter_id
+    told = [reason for leg in log.all(HeardOnTheWay, name) for reason in leg.nose]
+    return tuple(reason for reason in told if isinstance(reason, NoseSwung))
+
+
 async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | None = None) -> Flown:
     """A mission that is not flown to its end is an outcome, too: the vehicle is then landed. changes: as `fly` takes
     them.
@@ -176,11 +203,11 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 assert running.receiver is not None
                 running.receiver.follow(witness(proxy))
                 vehicle = running.services.missions.equipment.crafts[FIRST_CRAFT].vehicle
-                found, failed = dict[str, Any](), ""
+                found, nose, failed = dict[str, Any](), tuple[NoseSwung, ...](), ""
                 began_s = time.monotonic()
                 try:
                     log = await fly(running, settings, changes=changes)
-                    found = summary(log, settings, running.receiver.truth)
+                    found, nose = summary(log, settings, running.receiver.truth), noses(log)
                 except (DemoFailed, httpx.HTTPError, websockets.ConnectionClosed) as error:
                     failed = f"{type(error).__name__}: {error}"
                     await _land(vehicle)
@@ -202,6 +229,9 @@ async def one(url: str, seed: int, delay_s: float, changes: Mapping[str, Any] | 
                 drawn_mah=drawn_mah(proxy.record),
                 orders=ordered(proxy.record),
                 texts=said(proxy.record),
+                speed_m_s=speed_m_s(proxy.record),
+                tilt_deg=tilt_deg(proxy.record),
+                nose=nose,
                 failed=failed,
             )
 

@@ -1,9 +1,11 @@
-"""Turns as far as needed beside whole ones on a real autopilot, from the same seeds: minutes, degrees, energy, truth.
+"""Ways to turn and listen beside one another on a real autopilot, from the same seeds: minutes, degrees, energy, truth,
+and what the nose does when it is asked to swing in flight.
 
     python -m tests.strikes.turns udpin://127.0.0.1:14540 --flavour px4 --pairs 3
+    python -m tests.strikes.turns udpin://127.0.0.1:14540 --flavour px4 --pairs 3 --beside swings
 
-Each seed has its own emitter and is flown twice. Prints a line a mission, then one JSON object; ends with status 1 when
-a mission failed or claimed a place that is not so.
+Each seed has its own emitter and is flown twice: with whole turns, and as `--beside` says. Prints a line a mission,
+then one JSON object; ends with status 1 when a mission failed or claimed a place that is not so.
 """
 
 from __future__ import annotations
@@ -20,8 +22,12 @@ from tests.benchmarks.figures.record import Column, Figure, Table
 from tests.benchmarks.figures.writer import add_out, plain, write
 from tests.strikes.missions import Flown, line, one
 
-TURNS = {"whole": False, "as far as needed": True}
-"""In words, and as `sensor.sector_turns` says it."""
+WHOLE = "whole"
+BESIDE: dict[str, tuple[str, str, dict[str, bool]]] = {
+    "sectors": ("turns", "as far as needed", {"sector_turns": True}),
+    "swings": ("swings", "whole, nose swung on the way", {"listen_on_the_way": True, "swing_on_the_way": True}),
+}
+"""The record, in words, and as `sensor` of a mission says it."""
 
 
 def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
@@ -42,6 +48,22 @@ def figures(flights: dict[str, list[Flown]]) -> list[Figure]:
                 note=note,
             ),
         ]
+        speeds = [flight.speed_m_s for flight in flown if flight.speed_m_s is not None]
+        if speeds:
+            found.append(plain(f"turns {turns}: speed over ground, mean", statistics.fmean(speeds), "m/s", note=note))
+        tilts = [flight.tilt_deg for flight in flown if flight.tilt_deg is not None]
+        if tilts:
+            found.append(plain(f"turns {turns}: tilt, at most", max(tilts), "deg", note=f"{note}; 99 % of the time"))
+        legs = [leg for flight in flown for leg in flight.nose]
+        if legs:
+            of = f"{len(legs)} legs"
+            left = sum(leg.end in ("lags", "refused") for leg in legs)
+            found += [
+                plain(f"turns {turns}: sides that the nose came to", sum(leg.swung for leg in legs), "", note=of),
+                plain(f"turns {turns}: nose, mean", statistics.fmean(leg.rate_deg_s for leg in legs), "deg/s", note=of),
+                plain(f"turns {turns}: nose behind, at most", max(leg.lag_deg for leg in legs), "deg", note=of),
+                plain(f"turns {turns}: legs on which it did not follow or was refused", left, "", note=of),
+            ]
         if drawn:
             found.append(plain(f"turns {turns}: charge drawn, mean", statistics.fmean(drawn), "mAh", note=note))
     return found
@@ -55,6 +77,9 @@ def table(flights: dict[str, list[Flown]]) -> Table:
         Column(name="time, s", decimals=0),
         Column(name="turned, deg", decimals=0),
         Column(name="drawn, mAh", decimals=0),
+        Column(name="speed, m/s", decimals=1),
+        Column(name="tilt, deg", decimals=0),
+        Column(name="legs swung"),
         Column(name="bearings"),
         Column(name="error, m", decimals=1),
         Column(name="stated, m", decimals=1),
@@ -67,6 +92,9 @@ def table(flights: dict[str, list[Flown]]) -> Table:
             flight.took_s,
             flight.turned_deg,
             flight.drawn_mah,
+            flight.speed_m_s,
+            flight.tilt_deg,
+            len(flight.nose),
             len(flight.bearing_errors_deg),
             flight.error_m,
             flight.stated_m,
@@ -78,16 +106,18 @@ def table(flights: dict[str, list[Flown]]) -> Table:
 
 
 async def run(given: argparse.Namespace) -> dict[str, list[Flown]]:
-    flights: dict[str, list[Flown]] = {turns: [] for turns in TURNS}
+    record, words, wanted = BESIDE[given.beside]
+    both = {WHOLE: dict.fromkeys(wanted, False), words: wanted}
+    flights: dict[str, list[Flown]] = {turns: [] for turns in both}
     for number in range(given.pairs):
-        for turns, sector in TURNS.items():
-            changes = {"sensor": {"sector_turns": sector}}
+        for turns, sensor in both.items():
+            changes = {"sensor": sensor}
             flights[turns].append(await one(given.vehicle, given.seed + number, given.delay / 1e3, changes))
             print(f"{turns}: {line(flights[turns][-1])}", flush=True)
-        title = f"Turns as far as needed on a real autopilot, {given.flavour}"
+        title = f"Turns {words}, on a real autopilot, {given.flavour}"
         tables = [table(flights)]
         page = "faults-in-flight.md#real-autopilots"
-        write(given.out, f"turns_{given.flavour}", title, given.begun, figures(flights), tables=tables, page=page)
+        write(given.out, f"{record}_{given.flavour}", title, given.begun, figures(flights), tables=tables, page=page)
     return flights
 
 
@@ -99,6 +129,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vehicle", help="its address, as `crossfix serve --vehicle` takes it")
     parser.add_argument("--flavour", choices=("px4", "ardupilot"), default="px4")
+    parser.add_argument("--beside", choices=sorted(BESIDE), default="sectors", help="what whole turns are held against")
     parser.add_argument("--pairs", type=int, default=3)
     parser.add_argument("--seed", type=int, default=1, help="of the first pair")
     parser.add_argument("--delay", type=float, default=0.0, help="ms each way")
