@@ -44,8 +44,10 @@ class Ways:
         from scipy.sparse.csgraph import dijkstra  # takes a while to load: only where there are ways
 
         chosen = self._nodes_of(places)
-        network = _network(len(self.nodes), self.stretches, self.lengths)
-        return dijkstra(network, directed=False, indices=chosen)[:, chosen]
+        both = _network(len(self.nodes), self.stretches, self.lengths)
+        both = both + both.T
+        # one by one: until a search ends no other thread of the program runs, not even one that answers an abort
+        return np.array([dijkstra(both, indices=node)[chosen] for node in chosen]).reshape(len(chosen), -1)
 
     def path(self, x: float, y: float) -> NDArray[np.float64]:
         """(k, 2) m: the way to one of the places, both ends included."""

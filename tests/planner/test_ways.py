@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import csgraph
 
 from planner.belief.grid import prior_belief
 from planner.options import PlannerOptions
@@ -43,3 +44,18 @@ def test_the_planner_chooses_among_the_places_that_are_reached_and_counts_the_wh
     assert {(one.x, one.y) for one in found.candidates} <= {(100.0, 100.0), (0.0, 100.0)}
     assert (found.x, found.y) == (100.0, 100.0), "the other one is three sides away, not one"
     assert found.times.min() == pytest.approx(200.0 / 5.0 + 1.0), "by two sides, not across"
+
+
+def test_one_place_is_searched_from_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search holds the interpreter: a hundred in one call kept an abort waiting for seconds."""
+    asked: list[int] = []
+    search = csgraph.dijkstra
+
+    def counted(network: object, **how: object) -> object:
+        asked.append(np.size(how["indices"]))
+        return search(network, **how)
+
+    ways = made()
+    monkeypatch.setattr(csgraph, "dijkstra", counted)
+    ways.between(ways.places)
+    assert asked == [1, 1]
