@@ -6,7 +6,7 @@ No-fly areas, the flight area, and a minimum distance to C95 remove actions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -22,6 +22,9 @@ MOST_PLACES = 20_000
 SAME_PLACE_M = 5.0
 """Nearer to a refused place than this is the same place: what stands against one stands against the other."""
 
+Usable = Callable[[FloatArray], FloatArray]
+"""Those of the places (n, 2), m, that may be chosen."""
+
 
 def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
     """(n, 2) m: every place where the platform may measure, whatever its distance to C95."""
@@ -36,15 +39,17 @@ def action_space(problem: Problem, belief: GridBelief) -> FloatArray:
     return places[allowed]
 
 
-def constrained_actions(problem: Problem, belief: GridBelief) -> FloatArray:
+def constrained_actions(problem: Problem, belief: GridBelief, usable: Usable | None = None) -> FloatArray:
     """(n, 2) m: the action space without the places nearer than r_min to C95, and without those that cross too little.
 
-    When fewer than two would be left, r_min shrinks until two are (6.1).
+    When fewer than two would be left, r_min shrinks until two are (6.1). usable: among which places the widest crossing
+    is looked for, where one is asked for.
     """
     places = action_space(problem, belief)
     if problem.crossing is not None:
+        places = places if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
-    if problem.standoff <= 0:
+    if problem.standoff <= 0 or len(places) == 0:
         return places
     clearance = distance_to_convex(places, confidence_region(belief))
     return places[clearance >= min(problem.standoff, np.sort(clearance)[-min(2, len(clearance))])]

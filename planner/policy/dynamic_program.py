@@ -15,7 +15,7 @@ from planner.kernels.value.lookup import Frame, after_at, blended, principal_fra
 from planner.kernels.value.model import nodes
 from planner.motion import flight_time
 from planner.options import BasePolicy
-from planner.policy.actions import constrained_actions
+from planner.policy.actions import Usable, constrained_actions
 from planner.policy.ellipse import ellipse
 from planner.policy.fisher import fisher
 from planner.policy.value_table import ProgramTable, program_for
@@ -53,21 +53,27 @@ def stands_on(problem: Problem, wanted: BasePolicy) -> tuple[BasePolicy, Program
 
 
 def best_places(
-    problem: Problem, belief: GridBelief, platform: tuple[float, float], table: ProgramTable, count: int
+    problem: Problem,
+    belief: GridBelief,
+    platform: tuple[float, float],
+    table: ProgramTable,
+    count: int,
+    usable: Usable | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """At most `count` allowed places (n, 2), m, and the seconds until localized by way of them (n,), best first.
 
     Chosen greedily from the program's nodes and half-way between them, on all sides of the mean, so that no two are
     close to each other; where no straight flight may do, and where constraints leave none of these, from the lattice.
+    usable: as in `constrained_actions`.
     """
     here = np.array(platform, dtype=float)
     frame = belief_frame(belief)
     after = blended(table.adapted(problem), frame.s1 / problem.threshold, frame.s1 / frame.s2)
     places = np.empty((0, 2))
     if straight_suffices(problem):
-        places = _allowed(problem, belief, np.concatenate((_half_steps(frame), here[None])))
+        places = _allowed(problem, belief, np.concatenate((_half_steps(frame), here[None])), usable)
     if len(places) < 2:
-        places = constrained_actions(problem, belief)
+        places = constrained_actions(problem, belief, usable)
     seconds = _flights(problem, here, places) + after_at(after, nodes(), frame, places)
     order = np.argsort(seconds, kind="stable")
     chosen = _apart(places[order], count, max(LEAST_APART, SHARE_APART * frame.s1))
@@ -89,9 +95,10 @@ def _half_steps(frame: Frame) -> FloatArray:
     return frame.places(u1.ravel(), u2.ravel())
 
 
-def _allowed(problem: Problem, belief: GridBelief, places: FloatArray) -> FloatArray:
+def _allowed(problem: Problem, belief: GridBelief, places: FloatArray, usable: Usable | None) -> FloatArray:
     places = places[may_fly(problem, places)]
     if problem.crossing is not None and len(places) > 0:
+        places = places if usable is None else usable(places)
         places = places[problem.crossing.crossed_from(places)]
     if problem.action_spacing is not None and problem.flight_area is not None:  # off the fence as a lattice's are
         places = places[distance_to_edges(places, problem.flight_area) >= 0.5 * problem.action_spacing]

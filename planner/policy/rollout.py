@@ -15,7 +15,7 @@ import numpy as np
 from planner.belief.grid import GridBelief
 from planner.kernels.model import Actions, Paths, Tasks
 from planner.options import BasePolicy, DiscreteSelection, Sampling
-from planner.policy.actions import constrained_actions, without_refused
+from planner.policy.actions import Usable, constrained_actions, without_refused
 from planner.policy.claim_ahead import ClaimAhead, choice, claim_ahead
 from planner.policy.dynamic_program import best_places, stands_on
 from planner.policy.fisher import telling_places
@@ -138,11 +138,15 @@ def claim_after(
 
     without: places (m ENU) that the operator refused.
     """
+
+    def left(places: FloatArray) -> FloatArray:
+        return without_refused(places, without, problem, belief)
+
     return claim_ahead(
         problem,
         belief,
         simulation.platform,
-        lambda: without_refused(constrained_actions(problem, belief), without, problem, belief),
+        lambda: left(constrained_actions(problem, belief, left)),
         lambda places: simulation.first_actions(places).costs,
     )
 
@@ -232,18 +236,35 @@ class Rollout:
     def _places(
         self, problem: Problem, belief: GridBelief, simulation: Simulation, program: ProgramTable | None
     ) -> FloatArray:
-        if program is None:
-            places = constrained_actions(problem, belief)
-        else:
-            here = (float(simulation.platform[0]), float(simulation.platform[1]))
-            places = best_places(problem, belief, here, program, PROGRAM_PLACES)[0]
-        places = without_refused(places, self.without, problem, belief)
+        def left(places: FloatArray) -> FloatArray:
+            return without_refused(places, self.without, problem, belief)
+
+        def reached(places: FloatArray) -> FloatArray:
+            return places[np.isfinite(simulation.first_actions(places).costs)]
+
+        places = left(self._allowed(problem, belief, simulation, program, left))
         if len(places) == 0:
             raise PlannerError(EveryPlaceRefused())
-        reachable = np.isfinite(simulation.first_actions(places).costs)
-        if not reachable.any():
+        reachable = reached(places)
+        if len(reachable) == 0 and problem.crossing is not None:  # the ways to all places take a while to find
+            places = self._allowed(problem, belief, simulation, program, lambda some: reached(left(some)))
+            reachable = reached(left(places))
+        if len(reachable) == 0:
             raise PlannerError(NoPlaceInReach())
-        return telling_places(problem, belief, places[reachable], TELLING_SHARE)
+        return telling_places(problem, belief, reachable, TELLING_SHARE)
+
+    def _allowed(
+        self,
+        problem: Problem,
+        belief: GridBelief,
+        simulation: Simulation,
+        program: ProgramTable | None,
+        usable: Usable,
+    ) -> FloatArray:
+        if program is None:
+            return constrained_actions(problem, belief, usable)
+        here = (float(simulation.platform[0]), float(simulation.platform[1]))
+        return best_places(problem, belief, here, program, PROGRAM_PLACES, usable)[0]
 
 
 def _decision(places: FloatArray, result: SelectionResult, sampler: RolloutSampler) -> Decision:

@@ -12,6 +12,7 @@ from planner.comparison import rules_against
 from planner.crossing import Crossing
 from planner.options import FIELD
 from planner.plan import plan
+from planner.policy.actions import action_space
 from planner.policy.several import Wanted, plan_several
 from planner.reasons import CrossesTooLittle, CrossingAngleTooSmall
 from planner.types import Bearing, LinearConstantMotion, LocalizationRule, Problem
@@ -95,6 +96,38 @@ def test_where_no_place_crosses_widely_enough_the_widest_are_left() -> None:
     crossing = Crossing(0.0, 0.0, np.array([0.0]), np.deg2rad(20.0))
     places = np.array([[-100.0, 0.0], [-100.0, 10.0], [100.0, -17.0]])
     assert crossing.crossed_from(places).tolist() == [False, False, True]
+
+
+def widest_alone() -> tuple[Problem, JointBelief, tuple[float, float]]:
+    """No place crosses widely enough, and one of them the most widely."""
+    problem, belief, crossing = waiting()
+    asking = replace(problem, crossing=replace(crossing, least=np.pi / 2))
+    places = action_space(asking, belief)
+    (widest,) = places[asking.crossing.crossed_from(places)]
+    return asking, belief, (float(widest[0]), float(widest[1]))
+
+
+def test_where_the_widest_is_refused_the_next_widest_is_flown_to() -> None:
+    problem, belief, widest = widest_alone()
+    chosen = plan(problem, belief, BEARINGS, HERE, FIELD, threads=1)
+    assert (chosen.x, chosen.y) == widest
+    refused = [widest]
+    for _ in range(3):
+        chosen = plan(problem, belief, BEARINGS, HERE, FIELD, threads=1, without=refused)
+        assert (chosen.x, chosen.y) not in refused
+        refused.append((chosen.x, chosen.y))
+
+
+def test_where_the_widest_is_out_of_reach_the_widest_in_reach_is_flown_to() -> None:
+    problem, belief, (x, y) = widest_alone()
+    corners = 20.0 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) + (x, y)
+    moat = tuple(
+        np.array([a, b, b + 8.0 * np.sign(b - (x, y)), a + 8.0 * np.sign(a - (x, y))])
+        for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    )
+    enclosed = replace(problem, no_fly=moat)
+    chosen = plan(enclosed, belief, BEARINGS, HERE, FIELD, threads=1)
+    assert (chosen.x, chosen.y) != (x, y)
 
 
 def test_opposite_directions_are_one_line() -> None:
