@@ -202,7 +202,8 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
         raise Refused(refusals.OnTheWayHome())
     _refuse_place_refused_before(craft, command.place)
     _refuse_objections(step, given)
-    in_the_way = craft.phase in AUTOMATIC and craft.took_off
+    # a second climb from the ground, like the first, ends before anything flies elsewhere
+    in_the_way = craft.phase in AUTOMATIC and craft.phase != "taking_off"
     if in_the_way:
         step.do(CancelWork())
     told = given.foretold

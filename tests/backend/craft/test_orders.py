@@ -255,3 +255,17 @@ def test_before_the_start_orders_are_refused() -> None:
 
 
 EXCLUDED = BearingExcluded(emitter_id="emitter-1", bearing_id="b3", by="anna", reason="")
+
+
+def test_a_place_of_the_operators_waits_for_a_second_climb_as_for_the_first() -> None:
+    walk = CraftWalk().to("hold")
+    walk.give(inputs.Landed())
+    walk.order(commands.Resume(), on_ground=True)
+    assert walk.craft.phase == "taking_off"
+    asked = walk.order(commands.Override(place=HOME))
+    assert refusal(asked) is None
+    assert not sent(asked), "it would leave the ground aslant, or hold half-way up"
+    assert effects.CancelWork() not in asked
+    asked = walk.give(inputs.InTheAir(HOME, 40.0))
+    walk.believe()
+    assert [effect.place for effect in moves(asked) if isinstance(effect, effects.FlyTo)] == [HOME]
