@@ -18,6 +18,9 @@ if [ -e .env ]; then
 else
     address=${1:-$(own_address)}
     [ -n "$address" ] || { echo "No network found. This machine's address on yours: $0 192.168.1.10" >&2; exit 2; }
+    case $address in
+        -* | *[!A-Za-z0-9.-]*) echo "Only an address or a name, like this: $0 192.168.1.10" >&2; exit 2 ;;
+    esac
     printf 'ADDRESS=%s\nLISTEN=0.0.0.0\nCOMPOSE_PROFILES=simulated\n' "$address" > .env
 fi
 
@@ -32,7 +35,10 @@ until said=$(docker compose logs --no-log-prefix --since "$began" server | grep 
 done
 
 link=$(printf '%s\n' "$said" | sed -n 's|.*\(https*://[^ ]*#/first-admin/[^ ]*\).*|\1|p' | tail -n 1)
-if [ -n "$link" ]; then
+mode=$(docker compose exec -T server python -c \
+    'import json, urllib.request as u; print(json.load(u.urlopen("http://127.0.0.1:8600/api/session", timeout=4))["mode"])' \
+    2>/dev/null || true)
+if [ -n "$link" ] && [ "$mode" != people ]; then # the log still names a link that was used since
     echo 'Scan this with a phone on your network, or open the link. It makes the first admin, once:'
     docker compose exec -T server python -c \
         'import sys, segno; segno.make(sys.argv[1], error="l", micro=False).terminal(border=2, compact=True)' "$link"

@@ -18,6 +18,7 @@ echo "$*" >> "$SAID/asked"
 case "$*" in
     *" logs "*) cat "$SAID/log" ;;
     inspect*) echo 2026-11-23T18:00:00Z ;;
+    *"/api/session"*) cat "$SAID/mode" ;;
     *" exec "*) echo "QR of $(eval echo \\"\\${$#}\\")" ;;
 esac
 """
@@ -34,8 +35,9 @@ def team(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def brought_up(team: Path, log: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+def brought_up(team: Path, log: str, *arguments: str, mode: str = "waiting") -> subprocess.CompletedProcess[str]:
     (team / "log").write_text(log)
+    (team / "mode").write_text(mode)
     surroundings = {**os.environ, "PATH": f"{team}:{os.environ['PATH']}", "SAID": str(team)}
     command = [str(team / "deploy" / "for-a-team.sh"), *arguments]
     return subprocess.run(command, env=surroundings, capture_output=True, text=True, timeout=60, check=False)
@@ -72,3 +74,19 @@ def test_the_address_is_found_where_none_is_given(team: Path) -> None:
     ip.chmod(0o755)
     brought_up(team, who_may_enter("people", "https://10.1.2.3:443", None))
     assert (team / ".env").read_text().startswith("ADDRESS=10.1.2.3\n")
+
+
+def test_a_link_that_was_used_since_the_start_is_not_shown_again(team: Path) -> None:
+    (team / ".env").write_text("ADDRESS=box.local\n")
+    done = brought_up(team, who_may_enter("waiting", "https://box.local:443", CODE), mode="people")
+    assert done.returncode == 0, done.stderr
+    assert CODE not in done.stdout
+    assert done.stdout.splitlines()[-1] == "It is up at https://box.local: whoever uses it signs in."
+
+
+@pytest.mark.parametrize("address", ["https://192.168.1.10", "box local", "box\nLISTEN=1", '"]', "$(id)", "--help"])
+def test_what_is_no_address_is_refused_before_it_is_written_down(team: Path, address: str) -> None:
+    done = brought_up(team, "", address)
+    assert done.returncode == 2
+    assert not (team / ".env").exists()
+    assert not (team / "asked").exists()
