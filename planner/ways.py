@@ -62,6 +62,13 @@ class Ways:
         return np.array([index[float(x), float(y)] for x, y in places], dtype=np.int64)
 
 
+def parts(count: int, stretches: NDArray[np.int64]) -> NDArray[np.int32]:
+    """(count,) of which part of a network each node is: between two parts no way leads."""
+    from scipy.sparse.csgraph import connected_components
+
+    return connected_components(_network(count, stretches, np.ones(len(stretches))), directed=False)[1]
+
+
 def ways_from(
     start: int,
     nodes: NDArray[np.float64],

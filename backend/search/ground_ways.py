@@ -22,7 +22,7 @@ from shapely.geometry.base import BaseGeometry
 from backend.reasons.ways import NoRoadNear, NoWayLeadsThere
 from backend.search.errors import MissionInputError
 from hardware.frame import LocalFrame
-from planner.ways import Ways, ways_from
+from planner.ways import Ways, parts, ways_from
 
 WayKind = Literal["road", "path", "barrier"]
 Floats = NDArray[np.float64]
@@ -42,6 +42,10 @@ MOST_ROAD_NODES = 40_000
 SAME_NODE_M = 0.5
 NEAR_ROAD_M = 150.0
 """Who stands further from every road is not at a car."""
+MOST_ROADS_NEAR = 500
+"""Nodes, of those near enough, that are looked at."""
+MAIN_SHARE = 0.5
+"""Of the places that the best road near a car leads to: a yard that leads to fewer is not the road that it takes."""
 WALK_M_S = 1.3
 START_CELLS = 3
 """Who stands in a closed cell, on a shore, may step out of it into an open one as near as this."""
@@ -118,6 +122,15 @@ class LaidOut:
         return self.places - len(self.ways.measured)
 
 
+def within_reach(traced: Sequence[Traced], frame: LocalFrame, around: BaseGeometry) -> tuple[Traced, ...]:
+    """Those that come as near to a search (m ENU) as any that is read for it: its area may be another than it was."""
+
+    def distance(one: Traced) -> float:
+        return shapely.transform(shapely.box(*one.geometry.bounds), frame.to_enu_points).distance(around)
+
+    return tuple(one for one in traced if distance(one) <= FARTHEST_M)
+
+
 def ground_of(traced: Sequence[Traced], frame: LocalFrame, closed: BaseGeometry) -> Ground:
     """closed: m ENU."""
 
@@ -133,23 +146,26 @@ def along_roads(
 ) -> LaidOut:
     """Of a car. around: where one may listen, m ENU; there a place about every `spacing` m of road.
 
-    The way to the car is walked, and counts as the longer way that could be driven meanwhile. Raises MissionInputError
-    when no road is near, or none leads anywhere.
+    The car stands on the nearest road that leads to many such places. The way to it is walked, and counts as the longer
+    one that could be driven meanwhile. Raises MissionInputError when no road is near, or none leads anywhere.
     """
     here = np.array(start)
     total = sum(road.length for road in ground.roads)
-    nodes, stretches = _network(ground.roads, max(0.5 * spacing, total / MOST_ROAD_NODES))
+    nodes, stretches = _network(ground.roads, max(min(0.5 * spacing, NEAR_ROAD_M), total / MOST_ROAD_NODES))
     stretches = stretches[ground.open_to_ways(nodes[stretches])]
     away = np.hypot(*(nodes - here).T)
-    near = np.argsort(away)[:32]
+    near = np.argsort(away)[:MOST_ROADS_NEAR]
     near = near[away[near] <= NEAR_ROAD_M]
     near = near[ground.free(here, nodes[near])]
     if len(near) == 0:
         raise MissionInputError(NoRoadNear(float(away.min()), NEAR_ROAD_M), "place")
     wanted = np.flatnonzero(shapely.contains_xy(around, nodes))
+    own, part = len(nodes), parts(len(nodes), stretches)
+    leads_to = np.bincount(part[wanted], minlength=part.max() + 1)[part[near]]
+    car = near[np.argmax(leads_to >= MAIN_SHARE * leads_to.max())]
+    wanted = wanted[np.argsort(part[wanted] != part[car], kind="stable")]  # where there are two roads, the car's
     _, one_each = np.unique(np.floor(nodes[wanted] / spacing), axis=0, return_index=True)
-    own = len(nodes)
-    joined = np.column_stack([np.full(1, own), near[:1]])
+    joined = np.array([[own, car]])
     nodes, stretches = np.vstack([nodes, here]), np.vstack([stretches, joined])
     lengths = np.hypot(*(nodes[stretches[:, 0]] - nodes[stretches[:, 1]]).T)
     lengths[-1] *= max(1.0, speed_m_s / WALK_M_S)

@@ -116,6 +116,19 @@ def test_a_car_on_an_island_of_roads_is_told_how_many_places_it_cannot_get_to() 
     assert 0 < laid.unreached < laid.places
 
 
+def test_a_car_beside_two_roads_takes_the_one_that_leads_there() -> None:
+    yard = LineString([(-5.0, -102.0), (5.0, -102.0)])
+    laid = along_roads(ground(roads=[yard, ROADS[0]]), SOUTH, AROUND, 25.0, 9.0)
+    assert length_to(laid, 100.0, 60.0) < 600.0
+
+
+def test_a_car_on_a_long_straight_road_stands_on_it_however_large_the_search_is() -> None:
+    road = LineString([(-6000.0, 0.0), (6000.0, 0.0)])
+    around = box(-2500.0, -2500.0, 2500.0, 2500.0)
+    for east in (-3000.0, -2800.0, -2600.0):
+        assert along_roads(ground(roads=[road]), (east, 0.0), around, 5000.0, 9.0).ways.places.size
+
+
 def test_no_road_is_near() -> None:
     with pytest.raises(MissionInputError) as refused:
         along_roads(ground(roads=[LineString([(0, 200), (100, 200)])]), SOUTH, AROUND, 25.0, 9.0)
