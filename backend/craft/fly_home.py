@@ -17,7 +17,7 @@ from backend.craft.recent_telemetry import recent
 from backend.craft.safety import ground_return_vetoes, return_vetoes
 from backend.craft.under_way import UnderWay
 from backend.craft.way_home import ABOVE_HOME_M, Point2, way_home
-from backend.craft.work import LEVEL_M, Work
+from backend.craft.work import CLIMB_FIRST_M, LEVEL_M, Work
 from backend.reasons import Reason, carried, safety
 from hardware.ports import HardwareError, NotInControl, VehicleUnreachable
 from hardware.readings import Place
@@ -25,8 +25,6 @@ from hardware.readings import Place
 log = logging.getLogger("crossfix.craft")
 
 AT_HOME_M = 2.0
-CLIMB_FIRST_M = 3.0
-"""A vehicle that is further than this from the altitude it returns at goes there first, on the spot."""
 
 
 async def fly_home(work: Work, under_way: UnderWay) -> inputs.AutopilotReturns | None:

@@ -34,6 +34,9 @@ from planner.types import PlannerError
 
 LEVEL_M = 1.0
 """A vehicle that is within this of an altitude is at it; well within what a level way is given."""
+CLIMB_FIRST_M = 3.0
+"""Over ground that nobody knows. A vehicle that is so much lower than it is to fly, after a pilot or a landing, goes up
+on the spot and not aslant."""
 
 PLACES_TRIED = 5
 """The planner knows only roughly where the ground leaves no room: what is not allowed after all is chosen again."""
@@ -239,10 +242,14 @@ class Work:
         return self.level_altitude(self.way_points(place))
 
     async def level_off(self, altitude_amsl_m: float) -> bool:
-        """Climb or sink on the spot before a level way over known ground; False when nothing is to be done."""
+        """Climb or sink on the spot before a level way over known ground; over ground that nobody knows, climb where it
+        is far below. False when nothing is to be done."""
         telemetry = self.situation().telemetry
         here, now = telemetry.position, telemetry.altitude_amsl_m
-        if self.task.ground.terrain is None or here is None or now is None or abs(now - altitude_amsl_m) <= LEVEL_M:
+        if here is None or now is None:
+            return False
+        known = self.task.ground.terrain is not None
+        if abs(now - altitude_amsl_m) <= LEVEL_M if known else altitude_amsl_m - now <= CLIMB_FIRST_M:
             return False
         await self.equipment.vehicle.goto(here, altitude_amsl_m, self.task.mission.flight.speed_m_s)
         return True

@@ -306,3 +306,18 @@ async def test_a_receiver_that_is_gone_refuses_the_start(stage: Stage) -> None:
     assert not reply.accepted
     assert reply.reason == PreflightFailed("receiver", ReceiverUnplugged())
     assert stage.room.flights.active is None
+
+
+async def test_a_vehicle_that_a_pilot_brought_low_climbs_on_the_spot_before_it_flies_on(stage: Stage) -> None:
+    mission_id = await stuck(stage)
+    stage.vehicle.pilot_takes_over()
+    await stage.until_phase(mission_id, "manual")
+    stage.vehicle.state = replace(stage.vehicle.state, altitude_amsl_m=103.0, altitude_relative_m=3.0)
+    here, before = stage.vehicle.state.position, len(stage.vehicle.flown)
+    stage.vehicle.pilot_gives_back()
+    stage.vehicle.stuck = False
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+    await stage.until_true(lambda: len(stage.vehicle.flown) > before + 1)
+    climb, there = stage.vehicle.flown[before : before + 2]
+    assert climb == (here, 140.0)
+    assert there[0] != here
