@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from dataclasses import replace
 
 from flights import order, stuck
@@ -17,8 +16,9 @@ from backend.wire.messages import CraftStatusMessage
 
 
 async def test_telemetry_and_status_are_shown_without_a_mission(stage: Stage) -> None:
-    await asyncio.sleep(0.3)
-    assert stage.publisher.telemetries.count(FIRST_CRAFT) >= 2
+    await stage.until_true(
+        lambda: stage.publisher.telemetries.count(FIRST_CRAFT) >= 2 and bool(stage.publisher.statuses)
+    )
     status = stage.publisher.statuses[0]
     assert (status.mission_id, status.phase, status.database) == (None, None, "ok")
     assert status.crafts == (CraftStatus(FIRST_CRAFT, None, "ground", "off", None, None, None),)

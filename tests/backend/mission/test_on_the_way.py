@@ -37,10 +37,14 @@ def turning_in_flight(stage: Stage) -> None:
         assert vehicle.state.position is not None
         here, there = FRAME.to_enu(vehicle.state.position), FRAME.to_enu(place)
         for step in range(STEPS):
-            share = step / STEPS
-            at = FRAME.to_geo(*(a + share * (b - a) for a, b in zip(here, there, strict=True)))
-            vehicle.headings_heard.append(HeadingSample(stage.clock.now(), 6.0 * step % 360.0, at))
+            began_s = stage.clock.now()
             await stage.clock.sleep(0.2)
+            took_s = stage.clock.now() - began_s
+            looks = 2 + int(2.0 * took_s)  # a busy machine sleeps for seconds of this clock
+            for look in range(looks):
+                share = (step + look / looks) / STEPS
+                at = FRAME.to_geo(*(a + share * (b - a) for a, b in zip(here, there, strict=True)))
+                vehicle.headings_heard.append(HeadingSample(began_s + look / looks * took_s, 360.0 * share, at))
         await goto(place, altitude_amsl_m, speed_m_s, heading_deg)
 
     vehicle.goto = turning  # type: ignore[method-assign]
