@@ -33,8 +33,8 @@ MOST_CORNERS, MOST_PLACES = 24, 40
 @dataclass(frozen=True, slots=True)
 class LibraryEntry:
     """Columns of the missions table. tags: one a line. sought, vehicles: what is searched in, lower case. west, south,
-    east, north: of the area, degrees; None before there is one. truths: emitters of which somebody told
-    whether and where it was found.
+    east, north: of the area, degrees, west of one across the antimeridian larger than east; None before there is one.
+    truths: emitters of which somebody told whether and where it was found.
 
     sketch: outline (rings of the area, thinned), places (of bearings), found and truth (by emitter id; truth None:
     looked for and not found).
@@ -89,7 +89,10 @@ def _somewhere(entry: LibraryEntry, area: Area) -> LibraryEntry:
     polygons = [area.coordinates] if isinstance(area, Polygon) else area.coordinates
     outlines = [[_rounded(lon, lat) for lon, lat in rings[0]] for rings in polygons]
     lons, lats = zip(*(corner for ring in outlines for corner in ring), strict=True)
-    placed = replace(entry, west=min(lons), south=min(lats), east=max(lons), north=max(lats))
+    west, east = min(lons), max(lons)
+    if east - west > 180.0:  # no area is that wide: it lies across the antimeridian
+        west, east = min(lon for lon in lons if lon > 0.0), max(lon for lon in lons if lon <= 0.0)
+    placed = replace(entry, west=west, south=min(lats), east=east, north=max(lats))
     return _drawn(placed, outline=[ring[:: max(1, -(-len(ring) // MOST_CORNERS))] for ring in outlines])
 
 

@@ -76,8 +76,11 @@ def _asked(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
         yield (columns.south <= north) & (columns.north >= south)
         if abs(east - west) < 360.0:
             west, east = _on_the_globe(west), _on_the_globe(east)
-            begun, ends = columns.west <= east, columns.east >= west
-            yield begun & ends if west <= east else begun | ends  # through the antimeridian
+            begun, ends, whole = columns.west <= east, columns.east >= west, columns.west <= columns.east
+            if west <= east:
+                yield (begun & ends) | (~whole & (begun | ends))
+            else:  # through the antimeridian, as an area may lie
+                yield begun | ends | ~whole
     if wanted.since_us is not None:
         yield columns.drafted_at_us >= wanted.since_us
     if wanted.until_us is not None:

@@ -55,6 +55,21 @@ async def test_a_rectangle_reaches_through_the_antimeridian(client):
     assert await names(client, box="179.5,51,-179.5,52") == set()
 
 
+async def test_an_area_across_the_antimeridian_is_found_there_and_nowhere_else(client):
+    across = [[179.99, 50.6], [-179.99, 50.6], [-179.99, 50.61], [179.99, 50.6]]
+    await draft(client, name="across", area={"type": "Polygon", "coordinates": [across]})
+    for box in (
+        "179.5,50,-179.5,51",
+        "179.5,50,179.995,51",
+        "-180,50,-179.5,51",
+        "-179.995,50,-170,51",
+        "170,50,190,51",
+    ):
+        assert await names(client, box=box) == {"across"}, box
+    for box in ("0,50,10,51", "-179.5,50,179.5,51", "179.5,51,-179.5,52"):
+        assert await names(client, box=box) == set(), box
+
+
 async def test_words_are_found_whatever_their_case_in_any_language(client):
     mission_id = await draft(client)
     labels = {"name": "Übung Größe", "tags": ["ÄSCHE"], "notes": "Čáp"}
