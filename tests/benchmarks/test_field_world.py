@@ -6,22 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from field_flights import FLOWN
 
 from backend.cli.field_missions import FieldMission
 from tests.benchmarks import field_world
-
-FLOWN = FieldMission(
-    seed=1,
-    localized=True,
-    time_s=200.0,
-    in_c95=True,
-    error_m=5.0,
-    stated_m=8.0,
-    bearings=4,
-    rejected=0,
-    turned_deg=1440.0,
-    off_deg=(1.0, -2.0),
-)
 
 
 def row(*times: float) -> dict[int, FieldMission]:

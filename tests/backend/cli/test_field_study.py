@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from field_flights import FLOWN
 from typer.testing import CliRunner
 
 from backend.cli.field_legs import LISTENED_HZ, flown, listened
-from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldMission, FieldOptions, FieldStudy, summary
+from backend.cli.field_missions import LOOK_S, SETTLE_S, FieldOptions, FieldStudy, summary
 from backend.cli.main import app
 from backend.search.sector import planned_turn, whole_turn
 from backend.simulation.field_world import drawn_field
@@ -21,20 +22,6 @@ from planner.types import FullMotion
 
 def run(*arguments):
     return CliRunner().invoke(app, ["study", "run", "--scenario", "field-world", *arguments])
-
-
-FLOWN = FieldMission(
-    seed=1,
-    localized=True,
-    time_s=100.0,
-    in_c95=True,
-    error_m=5.0,
-    stated_m=8.0,
-    bearings=4,
-    rejected=0,
-    turned_deg=1440.0,
-    off_deg=(1.0, -2.0),
-)
 
 
 def test_a_mission_is_its_seed():
