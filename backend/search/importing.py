@@ -11,7 +11,15 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from uuid import NAMESPACE_URL, uuid5
 
-from backend.events import AntennaFact, BearingMeasured, Event, ImportSource, Recorded, RecordingImported
+from backend.events import (
+    AntennaFact,
+    BearingMeasured,
+    Event,
+    ImportSource,
+    Recorded,
+    RecordingImported,
+    SweepRejected,
+)
 from backend.reasons import Reason, carried
 from backend.reasons import search as reasons
 from backend.reasons.refusals import NoSuchEmitter
@@ -125,23 +133,38 @@ def import_facts(
     prepared = [_prepared(recorded, mission, emitter, upload, shift_s, remarks) for recorded in recording.sweeps]
     sweep_ids = [str(uuid5(NAMESPACE_URL, f"{mission_id}/{upload.recording_id}/{k}")) for k in range(len(prepared))]
     antenna = antenna_fact(mounted(pattern, recording.sweeps[0], upload.offset_deg))
-    facts: list[Event] = [import_fact(upload, emitter, by, began_s, remarks, sweep_ids, antenna)]
-    tasks = together(mission, state.home or corner_of(mission.area), emitter.emitter_id)
     source = ImportSource(recording_id=upload.recording_id)
     kept: list[KeptSweep] = []
+    heard: list[BearingMeasured | SweepRejected] = []
     for sweep_id, recorded, sweep in zip(sweep_ids, recording.sweeps, prepared, strict=True):
         number += 1
         kept.append(KeptSweep(sweep_id, emitter.emitter_id, number, sweep))
         reading = finder.estimate(sweep, mounted(pattern, recorded, upload.offset_deg))
         taken = Taken(emitter.emitter_id, source, sweep_id, number, attempt=1)
-        fact = sweep_fact(taken, mission.sensor, sweep, reading, measurement_time_s=None)
+        heard.append(sweep_fact(taken, mission.sensor, sweep, reading, measurement_time_s=None))
+    begins = import_fact(upload, emitter, by, began_s, remarks, sweep_ids, antenna)
+    return Import((begins, *with_beliefs(state, emitter.emitter_id, heard, began_s, each=True)), tuple(kept))
+
+
+def with_beliefs(
+    state: SearchState,
+    emitter_id: str,
+    heard: Sequence[BearingMeasured | SweepRejected],
+    began_s: float | None,
+    *,
+    each: bool,
+) -> list[Event]:
+    """What was heard of an emitter, and the belief after each bearing, or after the last fact alone. began_s: as in
+    import_fact."""
+    tasks = together(state.mission, state.home or corner_of(state.mission.area), emitter_id)
+    facts: list[Event] = []
+    for fact in heard:
         facts.append(fact)
         state = evolve(state, fact, began_s or 0.0)
-        if isinstance(fact, BearingMeasured):
-            task = tasks.about(state, emitter.emitter_id)
-            belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
+        if isinstance(fact, BearingMeasured) and (each or fact is heard[-1]):
+            belief, _ = tasks.about(state, emitter_id).belief_fact(state.emitters[emitter_id].bearings)
             facts.append(belief)
-    return Import(tuple(facts), tuple(kept))
+    return facts
 
 
 def _emitter_of(mission: MissionSpec, emitter_id: str | None) -> EmitterSpec:

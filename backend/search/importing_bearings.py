@@ -9,14 +9,13 @@ from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from backend.events import BearingMeasured, Event, ImportSource
+from backend.events import BearingMeasured, ImportSource
 from backend.reasons import search as reasons
 from backend.search.area import corner_of, target_area
 from backend.search.errors import MissionInputError
-from backend.search.importing import Import, Upload, begun, import_fact, refuse_far
+from backend.search.importing import Import, Upload, begun, import_fact, refuse_far, with_beliefs
 from backend.search.reported import COMPASS_SIGMA_DEG, SAME_CHANNEL_HZ, compass_share_deg
-from backend.search.state import SearchState, evolve
-from backend.search.together import together
+from backend.search.state import SearchState
 from backend.spec import EmitterSpec, MissionSpec
 from hardware.direction_finding.bearing_scatter import bearing_scatter
 from hardware.direction_finding.bearings_file import RecordedBearing
@@ -30,7 +29,7 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     """Every bearing of the emitter, and the belief after the last. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
     upload = replace(upload, emitter_id=_emitter_id(mission, upload))
-    emitter, remarks, number = begun(state, upload, len(recording.bearings))
+    emitter, remarks, last = begun(state, upload, len(recording.bearings))
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
@@ -41,18 +40,15 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     remarks += [reasons.OtherFrequency(upload.filename, hz, emitter.frequency_hz) for hz in elsewhere]
     times = [upload.at_s if upload.at_s is not None else one.at_s for one in heard]
     first_s = min((at_s for at_s in times if at_s is not None), default=None)
-    facts: list[Event] = [import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)]
     for one in heard:
         refuse_far(one.place, mission)
-    home = state.home or corner_of(mission.area)
-    for one, at_s in zip(_with_sigmas(heard, mission, home), times, strict=True):
-        number += 1
-        fact = _fact(mission_id, state, upload, emitter, one, number, at_s)
-        facts.append(fact)
-        state = evolve(state, fact, first_s or 0.0)
-    task = together(mission, home, emitter.emitter_id).about(state, emitter.emitter_id)
-    belief, _ = task.belief_fact(state.emitters[emitter.emitter_id].bearings)
-    return Import((*facts, belief), ())
+    sure = _with_sigmas(heard, mission, state.home or corner_of(mission.area))
+    facts = [
+        _fact(mission_id, state, upload, emitter, one, number, at_s)
+        for number, (one, at_s) in enumerate(zip(sure, times, strict=True), start=last + 1)
+    ]
+    begins = import_fact(upload, emitter, by, first_s, remarks, sweep_ids=[], antenna=None)
+    return Import((begins, *with_beliefs(state, emitter.emitter_id, facts, first_s, each=False)), ())
 
 
 def _with_sigmas(bearings: Sequence[RecordedBearing], mission: MissionSpec, home: Place) -> list[RecordedBearing]:
