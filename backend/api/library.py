@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import asdict
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Response
+from pydantic import TypeAdapter
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
 from backend.api.missions import get_mission
 from backend.api.problems import PROBLEM_RESPONSES
-from backend.events import Recorded
+from backend.api.services import Services
 from backend.ports import JournalDamaged
-from backend.search.calibration import FACTS_NEEDED, calibrate
+from backend.search.calibration import Calibrated, calibrate
+from backend.search.told import FACTS_NEEDED, Told, told
+from backend.store.digest import MissionDigest
 from backend.store.reading import Wanted
 from backend.wire.library import Calibration, MissionLabels, TruthTold
 from backend.wire.resources import Mission
@@ -56,17 +59,42 @@ async def restore_mission(mission_id: MissionId, services: ServicesDep, principa
     return await get_mission(mission_id, services)
 
 
-@router.get("/calibration")
+@router.get("/calibration", response_model=Calibration)
 async def calibration(
     services: ServicesDep,
     craft: Annotated[str, Query(max_length=40)] = "",
     antenna: Annotated[str, Query(max_length=200)] = "",
-) -> Calibration:
+) -> Response:
     """How right bearings, fixes and forecasts were where the truth is known; "" for every craft or antenna."""
     checked = await services.journal.page(MOST_CHECKED, wanted=Wanted(checked=True))
-    facts: dict[str, tuple[str, list[Recorded]]] = {}
+    async with services.reckoning:
+        known = await asyncio.to_thread(_known, services, checked)
+        known |= await _reckoned(services, [digest for digest in checked if digest.mission_id not in known])
+    missions = {d.mission_id: (d.name, known[d.mission_id]) for d in checked if d.mission_id in known}
+    return Response(await asyncio.to_thread(_calibration, missions, craft, antenna), media_type="application/json")
+
+
+def _known(services: Services, checked: Sequence[MissionDigest]) -> dict[str, Told]:
+    """What is kept of them by id; what is kept of others is kept no longer."""
+    services.told.forget(set(services.told.missions()) - {digest.mission_id for digest in checked})
+    found = {digest.mission_id: services.told.of(digest) for digest in checked}
+    return {mission_id: one for mission_id, one in found.items() if one is not None}
+
+
+async def _reckoned(services: Services, checked: Sequence[MissionDigest]) -> dict[str, Told]:
+    """Out of their facts, and kept; without the damaged ones, which say so in the log and when they are opened."""
+    found: dict[str, Told] = {}
     for digest in checked:
-        with suppress(JournalDamaged):  # it is in the log, and says so itself when it is opened
-            facts[digest.mission_id] = digest.name, await services.journal.read_kinds(digest.mission_id, FACTS_NEEDED)
-    found = await asyncio.to_thread(calibrate, facts, craft, antenna)
-    return Calibration.model_validate(asdict(found))
+        with suppress(JournalDamaged):
+            recorded = await services.journal.read_kinds(digest.mission_id, FACTS_NEEDED)
+            found[digest.mission_id] = await asyncio.to_thread(told, recorded)
+            await asyncio.to_thread(services.told.keep, digest, found[digest.mission_id])
+    return found
+
+
+_CALIBRATED = TypeAdapter(Calibrated)
+
+
+def _calibration(missions: dict[str, tuple[str, Told]], craft: str, antenna: str) -> bytes:
+    """The wire's Calibration, of which Calibrated has the fields: a season has tens of thousands of bearings."""
+    return _CALIBRATED.dump_json(calibrate(missions, craft, antenna))

@@ -16,6 +16,7 @@ from backend.ports import Kept
 from backend.settings import Settings
 from backend.store.iq_folder import IqFolder
 from backend.store.journal import SqlJournal
+from backend.store.told_folder import ToldFolder
 from backend.wire.health import StockKind
 from backend.workers import Workers
 from hardware.direction_finding.antenna import AntennaPattern
@@ -40,6 +41,7 @@ class Services:
     beside: short work on missions runs in one thread at a time, since each more takes the interpreter from the flight.
     workers: read what comes from outside. desk: works on whole missions, so that no file from outside keeps it waiting.
     stocks: what comes from outside, and how much of it may be kept. iq: of recordings that came as SigMF.
+    told: what checked missions say of their errors, reckoned once by whoever asks first (reckoning).
     access: who may enter. provider: whom the settings trust to say who somebody is.
     """
 
@@ -60,6 +62,8 @@ class Services:
     began_monotonic_s: float = field(default_factory=time.monotonic)
     stocks: dict[StockKind, Stock] = field(init=False)
     iq: IqFolder = field(init=False)
+    told: ToldFolder = field(init=False)
+    reckoning: asyncio.Lock = field(init=False, default_factory=asyncio.Lock)
 
     def __post_init__(self) -> None:
         overlays = OverlayFolder(self.settings.data_dir / "overlays")
@@ -70,3 +74,4 @@ class Services:
         made = stocks(self.settings, kept_overlays, self.journal.imported_sweeps)
         object.__setattr__(self, "stocks", made)
         object.__setattr__(self, "iq", IqFolder.of_settings(self.settings))
+        object.__setattr__(self, "told", ToldFolder.of_settings(self.settings))

@@ -18,6 +18,7 @@ from backend.store.journal import SqlJournal
 from backend.store.reading import why
 from backend.store.retention import keep_thin
 from backend.store.spool import Spool, SpoolForeign, SpoolTaken, claim
+from backend.store.told_folder import ToldFolder
 from planner.reason import ReasonedError
 
 CLAIM_PATIENCE_S = 3.0
@@ -91,7 +92,8 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
     try:
         await journal.start_up()
         beside.append(asyncio.create_task(journal.run()))
-        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, IqFolder.of_settings(settings))))
+        folders = IqFolder.of_settings(settings), ToldFolder.of_settings(settings)
+        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, *folders)))
         yield journal
     finally:
         for task in beside:

@@ -21,6 +21,7 @@ from backend.store.digest import to_us
 from backend.store.iq_folder import IqFolder
 from backend.store.paths import MOST_POINTS, packed_path
 from backend.store.tables import events, missions, paths, sweeps, tracks
+from backend.store.told_folder import ToldFolder
 
 log = logging.getLogger("crossfix.store")
 
@@ -159,19 +160,23 @@ async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
 async def thin_iq(engine: AsyncEngine, iq: IqFolder, keep_days: float | None, now: datetime) -> list[str]:
     """Take the IQ of missions that are older than the rule, and of those that are gone. Their ids. Raises what the
     driver raises. keep_days None: IQ of missions that are there is kept for ever."""
-    kept = await asyncio.to_thread(iq.missions)
+    return await _take_files(engine, iq, true() if keep_days is None else ~_old(keep_days, now))
+
+
+async def _take_files(engine: AsyncEngine, folder: IqFolder | ToldFolder, stays: ColumnElement[bool]) -> list[str]:
+    """What a folder keeps of other missions than those that stay. Their ids."""
+    kept = await asyncio.to_thread(folder.missions)
     staying: set[str] = set()
-    stays = true() if keep_days is None else ~_old(keep_days, now)
     async with engine.connect() as connection:
         for at in range(0, len(kept), AT_ONCE):
             named = missions.c.mission_id.in_(kept[at : at + AT_ONCE])
             staying |= set(await connection.scalars(select(missions.c.mission_id).where(named & stays)))
     taken = [mission_id for mission_id in kept if mission_id not in staying]
-    await asyncio.to_thread(iq.forget, taken)
+    await asyncio.to_thread(folder.forget, taken)
     return taken
 
 
-async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder) -> None:
+async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, told: ToldFolder) -> None:
     """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
     keep_days None: raw sweeps are kept for ever; paths are packed all the same.
 
@@ -182,7 +187,14 @@ async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder) 
         await asyncio.sleep(wait_s)
         wait_s = EVERY_S
         now = datetime.now(UTC)
-        for chore in (_bury, pack_paths, partial(_take_iq, iq, keep_days), partial(_take_sweeps, keep_days)):
+        chores = (
+            _bury,
+            pack_paths,
+            partial(_take_iq, iq, keep_days),
+            partial(_take_told, told),
+            partial(_take_sweeps, keep_days),
+        )
+        for chore in chores:
             try:
                 await chore(engine, now)
             except Exception:
@@ -197,6 +209,10 @@ async def _bury(engine: AsyncEngine, now: datetime) -> None:
 
 async def _take_iq(iq: IqFolder, keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:
     await thin_iq(engine, iq, keep_days, now)
+
+
+async def _take_told(told: ToldFolder, engine: AsyncEngine, _: datetime) -> None:
+    await _take_files(engine, told, true())
 
 
 async def _take_sweeps(keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:

@@ -11,7 +11,8 @@ from ground import AREA, FRAME, bearing
 
 from backend.events import Event, MissionDrafted, MissionStarted, PlaceReached, Recorded, TruthNoted
 from backend.search.antenna import antenna_fact
-from backend.search.calibration import calibrate, wilson
+from backend.search.calibration import Calibrated, calibrate, wilson
+from backend.search.told import told as told_by
 from backend.spec import MissionSpec, SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 
@@ -31,6 +32,10 @@ def recorded(*events: Event) -> list[Recorded]:
     ]
 
 
+def calibrated(missions: dict[str, list[Recorded]], craft: str = "") -> Calibrated:
+    return calibrate({mission_id: ("m", told_by(facts)) for mission_id, facts in missions.items()}, craft, "")
+
+
 def seen_from(x: float, y: float, error_deg: float, sigma: float = 5.0) -> Event:
     compass = math.degrees(math.atan2(TARGET[0] - x, TARGET[1] - y)) + error_deg
     return bearing(x, y, compass % 360.0, sigma)
@@ -42,7 +47,7 @@ def test_sigma_offset_and_outliers_come_back() -> None:
     places = rng.uniform([0.0, 0.0], [100.0, 100.0], (60, 2))
     events = [seen_from(x, y, error) for (x, y), error in zip(places, errors, strict=True)]
     wrong = [seen_from(10.0 * n, 0.0, 100.0) for n in range(3)]
-    found = calibrate({"m": ("one", recorded(*events, *wrong, told()))}, "", "")
+    found = calibrated({"m": recorded(*events, *wrong, told())})
     assert found.suggested is not None
     assert found.suggested.sigma_deg == pytest.approx(4.0, rel=0.25)
     assert found.suggested.offset_deg == pytest.approx(6.0, abs=3 * found.suggested.offset_std_error_deg)
@@ -55,9 +60,9 @@ def test_sigma_offset_and_outliers_come_back() -> None:
 def test_few_bearings_suggest_nothing_and_not_found_counts() -> None:
     few = recorded(seen_from(0.0, 0.0, 1.0), told())
     lost = recorded(seen_from(0.0, 0.0, 1.0), told(), told(None))
-    found = calibrate({"a": ("a", few), "b": ("b", lost)}, "", "")
+    found = calibrated({"a": few, "b": lost})
     assert (found.missions, found.not_found, len(found.bearings), found.suggested) == (2, 1, 1, None)
-    assert calibrate({"a": ("a", few)}, "another", "").missions == 0
+    assert calibrated({"a": few}, "another").missions == 0
 
 
 def test_flight_times_suggest_a_movement_model() -> None:
@@ -72,7 +77,7 @@ def test_flight_times_suggest_a_movement_model() -> None:
         for n in range(1, 14)
     ]
     errors = [seen_from(10.0 * n, 0.0, (-1.0) ** n) for n in range(10)]
-    found = calibrate({"m": ("m", recorded(*reached, *errors, told()))}, "", "")
+    found = calibrated({"m": recorded(*reached, *errors, told())})
     assert found.suggested is not None
     assert found.suggested.speed_m_s == pytest.approx(8.0, rel=0.02)
     assert found.suggested.constant_s == pytest.approx(6.0, abs=0.3)
@@ -113,7 +118,7 @@ def flown(file_deg: float, taken_off_deg: float, true_deg: float, days: int, nam
 def test_the_suggested_offset_is_the_whole_of_it_whatever_was_taken_off_before(
     flights: list[list[Recorded]], offset_deg: float
 ) -> None:
-    found = calibrate({f"m{n}": ("m", facts) for n, facts in enumerate(flights)}, "", "")
+    found = calibrated({f"m{n}": facts for n, facts in enumerate(flights)})
     assert found.suggested is not None
     assert math.remainder(found.suggested.offset_deg - offset_deg, 360.0) == pytest.approx(0.0, abs=0.2)
     assert found.suggested.sigma_deg == pytest.approx(2.0, abs=0.2), "what was taken off is no error"
@@ -121,6 +126,6 @@ def test_the_suggested_offset_is_the_whole_of_it_whatever_was_taken_off_before(
 
 
 def test_errors_are_shown_as_they_were_flown() -> None:
-    found = calibrate({"m": ("m", flown(0.0, 6.0, -6.0, 0))}, "", "")
+    found = calibrated({"m": flown(0.0, 6.0, -6.0, 0)})
     assert [one.error_deg for one in found.bearings] == pytest.approx([2.0, -2.0] * 5, abs=0.01)
     assert found.within_1_sigma.share == 1.0
