@@ -40,14 +40,12 @@ def belief_frame(
         return None
     name = emitter_id or state.mission.emitters[0].emitter_id
     tasks = together(state.mission, state.home or corner_of(state.mission.area), name)
-    if seq:
-        task = tasks.about(state, name)
-        fact, belief = task.belief_fact(state.emitters[name].bearings)
-    else:
-        task = tasks.emitters[name]
-        fact, belief = task.belief_fact(())
+    task = tasks.about(state, name) if seq else tasks.emitters[name]
+    bearings = task.planner_bearings(state.emitters[name].bearings if seq else ())
+    folded = task.belief(bearings)
+    belief = task.planning_belief(bearings) if folded is None else folded
     corners = task.corners_lon_lat(belief)
-    return encode_belief(mission_id, task.emitter_id, seq, fact.bearings, belief.density, corners, lite=lite)
+    return encode_belief(mission_id, task.emitter_id, seq, len(bearings), belief.density, corners, lite=lite)
 
 
 def _last_belief(recorded: Sequence[Recorded], emitter_id: str | None) -> tuple[SearchState, int]:
