@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from backend.api.services import Services
 from backend.events import (
     BearingMeasured,
+    BearingSource,
+    CraftSource,
     ImportSource,
     MissionDrafted,
     MissionEdited,
@@ -19,7 +21,7 @@ from backend.events import (
 from backend.reasons import carried
 from backend.reasons.refusals import NoSuchEmitter
 from backend.reasons.request import SamplesNotStored
-from backend.search.antenna import antenna_flown, corrected
+from backend.search.antenna import antennas, corrected
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.sweep_facts import Taken, sweep_fact
 from backend.spec import MissionSpec
@@ -32,12 +34,12 @@ from hardware.ports import DirectionFinder
 
 @dataclass(frozen=True, slots=True)
 class AnotherAntenna:
-    """pattern: of what a craft of the mission turned. imported: of what came with recordings, which has no correction
-    of the mission in it. sweeps: the stored ones by their id."""
+    """pattern: of what a craft of the mission turned. of: by source, of those that have another one; what came with a
+    recording has no correction of the mission in it. sweeps: the stored ones by their id."""
 
     finder: DirectionFinder
     pattern: AntennaPattern
-    imported: AntennaPattern
+    of: Mapping[BearingSource, AntennaPattern]
     sweeps: Mapping[str, SweepEntry]
 
     @property
@@ -53,7 +55,7 @@ class AnotherAntenna:
         if entry is None:
             raise MissionConflict(SamplesNotStored(flown.place_number))
         sweep = replace(entry.sweep(), partial=flown.turn is not None and flown.turn.partial)
-        reading = self.finder.estimate(sweep, self.imported if isinstance(flown.source, ImportSource) else self.pattern)
+        reading = self.finder.estimate(sweep, self.of.get(flown.source, self.pattern))
         taken = Taken(flown.emitter_id, flown.source, entry.sweep_id, flown.place_number, entry.attempt, flown.turn)
         heard = sweep_fact(taken, mission.sensor, sweep, reading, None)
         if isinstance(heard, BearingMeasured) and isinstance(flown, BearingMeasured):
@@ -64,25 +66,30 @@ class AnotherAntenna:
 async def another_antenna(
     services: Services, mission_id: str, recorded: Sequence[Recorded], wanted: Supposition
 ) -> AnotherAntenna | None:
-    """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew, in the place of its
-    file's and the mission's correction together. Another pattern: with the mission's correction, where a craft flew.
+    """None when the antenna is to stay as flown. Another mounting alone: of the antenna that flew and of those that
+    recordings came with, in the place of their files' and the mission's correction together. Another pattern: for all,
+    with the mission's correction where a craft flew.
 
     Raises MissionInputError for a pattern that cannot be used.
     """
     if wanted.pattern is None and wanted.offset_to_nose_deg is None:
         return None
+    heard = [r.event for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
     if wanted.pattern is None:
-        pattern = imported = antenna_flown(recorded) or services.pattern
+        of = antennas(recorded)
+        flew = [one for source, one in of.items() if isinstance(source, CraftSource)]
+        pattern = [services.pattern, *of.values(), *flew][-1]
     else:
-        imported = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
-        pattern = corrected(imported, _taken_off_deg(recorded))
+        measured = _pattern(wanted.pattern, _frequency_hz(recorded, wanted.emitter_id))
+        pattern = corrected(measured, _taken_off_deg(recorded))
+        of = {fact.source: measured for fact in heard if isinstance(fact.source, ImportSource)}
     if wanted.offset_to_nose_deg is not None:
-        pattern = imported = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
-    heard = [r.event.sweep_id for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
-    ids = [sweep_id for sweep_id in heard if sweep_id is not None]
+        pattern = replace(pattern, offset_to_nose_deg=wanted.offset_to_nose_deg)
+        of = {source: replace(one, offset_to_nose_deg=wanted.offset_to_nose_deg) for source, one in of.items()}
+    ids = [fact.sweep_id for fact in heard if fact.sweep_id is not None]
     stored = {sweep_id: await services.journal.sweep(mission_id, sweep_id) for sweep_id in ids}
     kept = {id_: entry for id_, entry in stored.items() if entry is not None}
-    return AnotherAntenna(services.finder, pattern, imported, kept)
+    return AnotherAntenna(services.finder, pattern, of, kept)
 
 
 def _taken_off_deg(recorded: Sequence[Recorded]) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from backend.events import BearingMeasured, BeliefUpdated, MissionDrafted, MissionEdited, Recorded
 from backend.reasons import Reason, carried
-from backend.search.antenna import antenna_flown, corrected, correction_flown
+from backend.search.antenna import antenna_flown, antennas, corrected, correction_flown, same_pattern
 from backend.search.counted import counted
 from backend.search.machine import bearings_corrected, turned
 from backend.wire.resources import AntennaReview, PatternUpload
@@ -23,16 +23,19 @@ PROPOSED_FILENAME = "refined_in_flight.json"
 
 
 def antenna_review(recorded: Sequence[Recorded], emitter_id: str | None, ours: AntennaPattern) -> AntennaReview | None:
-    """None when the mission has no such emitter. ours: the pattern of missions that kept none.
+    """None when the mission has no such emitter. Of the antenna that was flown or imported with last: what others took
+    says nothing of it. ours: the pattern of missions that kept none.
 
     recorded: the what-if's kinds, in order. Heavy (some tenths of a second): call it off the event loop.
     """
     chosen = _emitter(recorded, emitter_id)
     if chosen is None:
         return None
+    known = antennas(recorded)
     pattern = antenna_flown(recorded) or ours
     in_file = corrected(pattern, -correction_flown(recorded))
-    kept = [_kept(fact) for fact in _counted(recorded, chosen) if fact.source.kind != "person" and fact.binned_db]
+    heard = [fact for fact in _counted(recorded, chosen) if fact.source.kind != "person" and fact.binned_db]
+    kept = [_kept(fact) for fact in heard if same_pattern(known.get(fact.source, pattern), pattern)]
     found = repeating(kept, pattern)
     belief = _last_belief(recorded, chosen)
     doubt: Reason | None = None if belief is None else _turned_together(belief)

@@ -28,11 +28,13 @@ from backend.search.importing import Upload, imported_before
 from backend.spec import Id, Model, Place
 from backend.wire.resources import ImportedSweep, RecordingImport
 from backend.workers import Workers
+from hardware.direction_finding.antenna import AntennaPattern
+from hardware.direction_finding.pattern_file import PatternError, parse_pattern
 from hardware.direction_finding.recordings import Recording
 from hardware.direction_finding.table_file import RecordingError
 from hardware.reasons.iq_recording import NotIq
 from hardware.reasons.renamed import renamed
-from hardware.reasons.table import RemarksNotListed
+from hardware.reasons.table import FileUnreadable, RemarksNotListed
 from hardware.sdr.pulses import PulseSetting
 from hardware.sdr.rotation import IqReading, read_sweeps
 from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, is_sigmf
@@ -63,12 +65,14 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 class RecordingForm(Model):
     """What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), whose bearings in a file of those
-    (needed when it holds several), else the sweep's name. offset_deg:
-    the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's; of
-    bearings: that of the only emitter, or of the only one on the file's frequency.
+    (needed when it holds several), else the sweep's name. offset_deg: the antenna's front, clockwise of the nose.
+    antenna: the pattern of the antenna that took the sweeps (as in hardware.direction_finding.pattern_file), None: ours
+    did. emitter_id: whose sweeps these are, None: the first emitter's; of bearings: that of the only emitter, or of the
+    only one on the file's frequency.
     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ."""
 
     files: list[UploadFile]
+    antenna: UploadFile | None = None
     lat: Annotated[Finite, Field(ge=-90, le=90)] | None = None
     lon: Annotated[Finite, Field(ge=-180, le=180)] | None = None
     at_utc: Annotated[datetime | None, AfterValidator(_past)] = None
@@ -128,6 +132,7 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
         recording = await workers.run(_parsed, names, form.tag, form.frequency_hz, pulses)
     except (RecordingError, SpectrumError) as error:
         raise MissionInputError(carried(renamed(error.reason, owners)), "files") from error
+    pattern = None if form.antenna is None else await _pattern(form.antenna, workers)
     first = next(iter(names.values()))
     return Upload(
         recording_id,
@@ -137,7 +142,24 @@ async def _read(form: RecordingForm, workers: Workers, folder: Path) -> Upload:
         None if form.at_utc is None else form.at_utc.timestamp(),
         form.offset_deg,
         form.emitter_id,
+        pattern,
     )
+
+
+async def _pattern(file: UploadFile, workers: Workers) -> AntennaPattern:
+    """Raises MissionInputError."""
+    try:
+        text = (await file.read()).decode("utf-8-sig")
+        return await workers.run(parse_pattern, _called(file), text)
+    except UnicodeDecodeError as error:
+        raise MissionInputError(FileUnreadable(_called(file), error.reason), "antenna") from error
+    except PatternError as error:
+        raise MissionInputError(carried(error.reason), "antenna") from error
+
+
+def _called(file: UploadFile) -> str:
+    """By its owner."""
+    return Path((file.filename or "").replace("\\", "/")).name[-120:] or "recording"
 
 
 def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
@@ -145,7 +167,7 @@ def _stored(files: Sequence[UploadFile], folder: Path) -> dict[Path, str]:
     if len(files) > MOST_FILES:
         raise MissionInputError(reasons.TooManyFiles(len(files)), "files")
     kept: dict[Path, str] = {}
-    called = [Path((file.filename or "").replace("\\", "/")).name[-120:] or "recording" for file in files]
+    called = [_called(file) for file in files]
     sigmf = any(name.lower().endswith(SIGMF) for name in called)
     for file, name in zip(files, called, strict=True):
         ending = next((e for e in SIGMF if name.lower().endswith(e)), None)
@@ -163,7 +185,10 @@ def _identity(names: dict[Path, str], form: RecordingForm) -> str:
     for path in sorted(names):
         with path.open("rb") as stream:
             digest.update(hashlib.file_digest(stream, "sha256").digest())
-    digest.update(form.model_dump_json(exclude={"files"}).encode())
+    digest.update(form.model_dump_json(exclude={"files", "antenna"}).encode())
+    if form.antenna is not None:
+        digest.update(hashlib.file_digest(form.antenna.file, "sha256").digest())
+        form.antenna.file.seek(0)
     return digest.hexdigest()
 
 

@@ -217,7 +217,7 @@ class ImportRemark:
     english: ClassVar[Words] = Words(
         "{about?place_replaced=The place that was named replaces the one in"
         "|altitude_unknown=An altitude of 0 m AMSL is noted, because none is stated in"
-        "|bearings_stand=The place or antenna offset that was named changes nothing about the bearings in} {file}."
+        "|bearings_stand=The place or antenna that was named changes nothing about the bearings in} {file}."
     )
 
 

@@ -8,7 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from backend.events import AntennaFact, MissionDrafted, MissionEdited, MissionStarted, Recorded, RecordingImported
+from backend.events import (
+    AntennaFact,
+    BearingSource,
+    CraftSource,
+    ImportSource,
+    MissionDrafted,
+    MissionEdited,
+    MissionStarted,
+    Recorded,
+    RecordingImported,
+)
 from hardware.direction_finding.antenna import AntennaPattern
 
 
@@ -45,17 +55,39 @@ def correction_flown(recorded: Sequence[Recorded]) -> float:
 
 def antenna_flown(recorded: Sequence[Recorded]) -> AntennaPattern | None:
     """The last one that was flown or imported with; None when nobody kept it (missions of before 2026-11-22)."""
-    for record in reversed(recorded):
-        if isinstance(record.event, MissionStarted | RecordingImported) and record.event.antenna is not None:
-            fact = record.event.antenna
-            angle, gain = np.array(fact.relative_bearing_deg), np.array(fact.gain_db)
-            return AntennaPattern(
-                fact.name,
-                angle,
-                gain,
-                fact.offset_to_nose_deg,
-                fact.frequency_hz,
-                pointing_sigma_deg=fact.pointing_sigma_deg,
-                borrowed=fact.borrowed,
-            )
-    return None
+    known = list(antennas(recorded).values())
+    return known[-1] if known else None
+
+
+def antennas(recorded: Sequence[Recorded]) -> dict[BearingSource, AntennaPattern]:
+    """By source, the last that each was heard with, the newest at the end; without those of which nobody kept it."""
+    found: dict[BearingSource, AntennaPattern] = {}
+    for record in recorded:
+        match record.event:
+            case MissionStarted(craft_id=craft_id, antenna=AntennaFact() as fact):
+                source = CraftSource(craft_id=craft_id)
+            case RecordingImported(recording_id=recording_id, antenna=AntennaFact() as fact):
+                source = ImportSource(recording_id=recording_id)
+            case _:
+                continue
+        found.pop(source, None)
+        found[source] = _pattern(fact)
+    return found
+
+
+def same_pattern(one: AntennaPattern, other: AntennaPattern) -> bool:
+    """However they are mounted."""
+    angles = np.array_equal(one.relative_bearing_deg, other.relative_bearing_deg)
+    return angles and np.array_equal(one.gain_db, other.gain_db)
+
+
+def _pattern(fact: AntennaFact) -> AntennaPattern:
+    return AntennaPattern(
+        fact.name,
+        np.array(fact.relative_bearing_deg),
+        np.array(fact.gain_db),
+        fact.offset_to_nose_deg,
+        fact.frequency_hz,
+        pointing_sigma_deg=fact.pointing_sigma_deg,
+        borrowed=fact.borrowed,
+    )

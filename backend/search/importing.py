@@ -50,7 +50,7 @@ OTHER_FREQUENCY = 0.01
 class Upload:
     """recording_id: tells whether the same was imported before. place, at_s: as the operator names them, before the
     file's own; at_s UTC epoch seconds of the first sample. offset_deg: of the antenna to the nose. emitter_id
-    None: the first one."""
+    None: the first one. pattern: of the antenna that took the sweeps, None: ours did."""
 
     recording_id: str
     filename: str
@@ -59,6 +59,7 @@ class Upload:
     at_s: float | None = None
     offset_deg: float | None = None
     emitter_id: str | None = None
+    pattern: AntennaPattern | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,11 +123,15 @@ def import_fact(
 
 
 def import_facts(
-    mission_id: str, state: SearchState, upload: Upload, finder: DirectionFinder, pattern: AntennaPattern, by: str
+    mission_id: str, state: SearchState, upload: Upload, finder: DirectionFinder, ours: AntennaPattern, by: str
 ) -> Import:
     """Bearing or rejection of every sweep, and the belief after each bearing. Raises MissionInputError."""
     mission, recording = state.mission, upload.recording
     emitter, remarks, number = begun(state, upload, len(recording.sweeps))
+    pattern = ours if upload.pattern is None else upload.pattern
+    mismatch = None if upload.pattern is None else pattern.other_frequency(emitter.frequency_hz)
+    if mismatch is not None:
+        raise MissionInputError(carried(mismatch), "antenna")
     first_s = float(recording.sweeps[0].sweep.at_s[0])
     began_s = upload.at_s if upload.at_s is not None else (first_s if CLOCK_S <= first_s < LATEST_S else None)
     shift_s = 0.0 if began_s is None else began_s - first_s

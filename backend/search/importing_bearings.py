@@ -33,7 +33,7 @@ def bearing_facts(mission_id: str, state: SearchState, upload: Upload, by: str) 
     heard = [one for one in recording.bearings if _of(emitter, one)]
     if not heard:
         raise MissionInputError(reasons.HeardElsewhere(recording.bearings[0].frequency_hz or 0.0), "files")
-    if upload.place is not None or upload.offset_deg is not None:
+    if upload.place is not None or upload.offset_deg is not None or upload.pattern is not None:
         remarks.append(reasons.ImportRemark(upload.filename, "bearings_stand"))
     others = (one.frequency_hz for one in recording.bearings if not _of(emitter, one))
     elsewhere = sorted({hz for hz in others if hz is not None})

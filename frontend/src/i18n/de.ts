@@ -355,6 +355,7 @@ export const de: Record<MessageKey, string> = {
   "recording.explain":
     "UAV-RT-Drehung, CSV mit heading_deg und power_db, oder SigMF (Meta- und Datendatei zusammen, dazu eine CSV mit Zeit und Kurs, wenn die Aufnahme keinen enthält). Oder anderswo genommene Peilungen: eine Peildatei von UAV-RT oder uns, CSV mit lat, lon und bearing_deg, oder was ein KrakenSDR als CSV schrieb.",
   "recording.files": "Dateien",
+  "recording.antenna": "Antennendiagramm, wenn eine andere Antenne empfing",
   "recording.place": "Wo, wenn die Datei es nicht sagt",
   "recording.at": "Wann (UTC), wenn die Datei es nicht sagt",
   "recording.more": "Verdrehte Antenne, Kennung, Pulse",

@@ -115,6 +115,7 @@ export const pagesEn = {
   "recording.explain":
     "UAV-RT rotation file, CSV of heading_deg and power_db, or SigMF (meta and data file together, with a CSV of time and heading when it carries none). Or bearings that were taken elsewhere: a bearing file of UAV-RT or ours, CSV of lat, lon and bearing_deg, or what a KrakenSDR wrote as CSV.",
   "recording.files": "Files",
+  "recording.antenna": "Antenna pattern, if another antenna heard it",
   "recording.place": "Where, if the file does not tell",
   "recording.at": "When (UTC), if the file does not tell",
   "recording.more": "An antenna turned aside, a tag, pulses",

@@ -35,6 +35,14 @@ describe("recordingForm", () => {
     });
   });
 
+  it("carries the pattern of the antenna where one was chosen", () => {
+    const given = typed({});
+    given.append("antenna", new File([], ""));
+    expect([...(recordingForm(given) as FormData).keys()]).toEqual(["files"]);
+    given.set("antenna", new File(["{}"], "loop.json"));
+    expect(((recordingForm(given) as FormData).get("antenna") as File).name).toBe("loop.json");
+  });
+
   it("leaves out what the file tells itself", () => {
     expect([...(recordingForm(typed({ place: " ", at: "", tag: " " })) as FormData).keys()]).toEqual(["files"]);
   });

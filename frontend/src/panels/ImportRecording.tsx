@@ -32,6 +32,8 @@ export function recordingForm(given: FormData): FormData | string {
   const text = (name: string) => String(given.get(name) ?? "").trim();
   const form = new FormData();
   for (const file of files) form.append("files", file, file.name);
+  const antenna = given.get("antenna");
+  if (antenna instanceof File && antenna.size > 0) form.append("antenna", antenna, antenna.name);
   if (text("place")) {
     const read = parsePlace(text("place"));
     if (!read) return t("recording.badPlace");
@@ -137,6 +139,10 @@ export function ImportRecording() {
             <input type="file" name="files" multiple data-testid="recording-files" />
           </label>
           <WhichEmitter />
+          <label>
+            {t("recording.antenna")}
+            <input type="file" name="antenna" accept=".json,.csv,.tsv,.txt" data-testid="recording-antenna" />
+          </label>
           <label>
             {t("recording.place")}
             <input name="place" placeholder="50.6123, 7.2046" data-testid="recording-place" />

@@ -6972,13 +6972,15 @@ export interface components {
         /**
          * @description What goes with the files. lat, lon, at_utc: where and when it was recorded, when the files do not tell or tell it
          *     wrongly. tag: whose pulses count in a UAV-RT file (default: the tag heard most), whose bearings in a file of those
-         *     (needed when it holds several), else the sweep's name. offset_deg:
-         *     the antenna's front, clockwise of the nose. emitter_id: whose sweeps these are, None: the first emitter's; of
-         *     bearings: that of the only emitter, or of the only one on the file's frequency.
+         *     (needed when it holds several), else the sweep's name. offset_deg: the antenna's front, clockwise of the nose.
+         *     antenna: the pattern of the antenna that took the sweeps (as in hardware.direction_finding.pattern_file), None: ours
+         *     did. emitter_id: whose sweeps these are, None: the first emitter's; of bearings: that of the only emitter, or of the
+         *     only one on the file's frequency.
          *     frequency_hz, pulse_width_s, pulse_period_s: what to look for in IQ.
          */
         RecordingForm: {
             files: string[];
+            antenna?: string | null;
             lat?: number | null;
             lon?: number | null;
             at_utc?: string | null;

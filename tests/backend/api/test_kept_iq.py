@@ -11,15 +11,14 @@ import httpx
 import numpy as np
 import pytest
 import sigmf
+from recorded_turn import turn_sigmf
 
 from backend.store.engine import engine_for_once
 from backend.store.iq_folder import IqFolder
 from backend.store.retention import bury, thin_iq
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
-from hardware.readings import Place
-from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, Azimuth, load_sigmf, write_sigmf
+from hardware.sdr.sigmf_file import ARCHIVE, DATA, META, load_sigmf
 
-RATE_HZ = 4000.0
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.21, 50.6], [7.21, 50.61], [7.2, 50.61], [7.2, 50.6]]]}
 
 
@@ -31,16 +30,7 @@ async def mission_id(client: httpx.AsyncClient) -> str:
 
 @pytest.fixture(scope="module")
 def turn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The meta file of a turn with its headings."""
-    t = np.arange(int(12.0 * RATE_HZ)) / RATE_HZ
-    gain_db = load_pattern(SMALL_YAGI).gain_at(70.0 - 30.0 * t)
-    noise = np.random.default_rng(1).normal(size=(2, t.size)) * 1e-4
-    iq = 10.0 ** (gain_db / 20.0 - 1.0) * np.exp(2j * np.pi * 900.0 * t) + noise[0] + 1j * noise[1]
-    azimuths = [Azimuth(int(s * RATE_HZ), 0, 30.0 * s % 360.0) for s in np.arange(0.0, 12.0, 0.3)]
-    folder = tmp_path_factory.mktemp("turn")
-    return write_sigmf(
-        folder / "t", iq.astype(np.complex64), RATE_HZ, 868.2991e6, 1.78e9, azimuths, Place(50.605, 7.205)
-    )
+    return turn_sigmf(tmp_path_factory.mktemp("turn"))
 
 
 async def send(client: httpx.AsyncClient, mission_id: str, *files: Path) -> dict[str, object]:

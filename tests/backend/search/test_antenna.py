@@ -8,14 +8,16 @@ from ground import AREA, HOME
 
 from backend.events import (
     FIRST_CRAFT,
+    CraftSource,
     Event,
+    ImportSource,
     MissionDrafted,
     MissionEdited,
     MissionStarted,
     Recorded,
     RecordingImported,
 )
-from backend.search.antenna import antenna_fact, antenna_flown, corrected, correction_flown
+from backend.search.antenna import antenna_fact, antenna_flown, antennas, corrected, correction_flown
 from backend.spec import FIRST_EMITTER, MissionSpec, SensorSpec
 from hardware.direction_finding.antenna import AntennaPattern
 
@@ -68,6 +70,14 @@ def test_it_is_the_last_one_flown_or_imported_with() -> None:
         found = antenna_flown(recorded(DRAFTED, *events))
         assert found is not None
         assert found.name == name
+
+
+def test_each_source_has_its_own() -> None:
+    found = antennas(recorded(DRAFTED, started(YAGI), imported(LOOP)))
+    craft, file = CraftSource(craft_id=FIRST_CRAFT), ImportSource(recording_id="r")
+    assert {source: one.name for source, one in found.items()} == {craft: "yagi", file: "loop"}
+    assert found[craft].offset_to_nose_deg == YAGI.offset_to_nose_deg
+    assert antennas(recorded(DRAFTED, started(None))) == {}
 
 
 def test_of_a_mission_that_kept_none_there_is_none() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from uuid import uuid4
 
 import numpy as np
@@ -27,10 +28,12 @@ from backend.search.errors import MissionInputError
 from backend.search.importing import MOST_SWEEPS, Import, Upload, import_facts
 from backend.search.state import SearchState, evolve
 from backend.spec import MissionSpec
+from hardware.direction_finding.antenna import AntennaPattern
 from hardware.direction_finding.estimate import SparseDirectionFinder
 from hardware.direction_finding.pattern_file import SMALL_YAGI, load_pattern
 from hardware.direction_finding.recordings import RecordedSweep, Recording
-from hardware.readings import Place, Sweep
+from hardware.readings import BearingReading, Place, Sweep
+from hardware.reasons.pattern import PatternOfOtherFrequency
 from hardware.reasons.table import CellUnusable, PlaceNotStated
 
 TARGET = (30.0, 60.0)
@@ -93,6 +96,26 @@ def test_a_recording_is_of_the_emitter_that_is_named() -> None:
     with pytest.raises(MissionInputError) as refused:
         imported(upload(recorded(-80.0, 10.0), emitter_id="fox"), mission=mission)
     assert (refused.value.reason, refused.value.field) == (NoSuchEmitter("fox"), "emitter_id")
+
+
+def test_another_antennas_sweeps_are_heard_through_its_own_pattern() -> None:
+    heard_with: list[str] = []
+
+    class Listening(PointingFinder):
+        def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+            heard_with.append(pattern.name)
+            return super().estimate(sweep, pattern)
+
+    loop = replace(PATTERN, name="loop", frequency_hz=868.3e6)
+    other = replace(loop, frequency_hz=150e6)
+    found = imported(upload(recorded(-80.0, 10.0), pattern=loop), Listening(TARGET))
+    first = found.facts[0]
+    assert isinstance(first, RecordingImported)
+    assert first.antenna is not None
+    assert (heard_with, first.antenna.name) == (["loop"], "loop")
+    with pytest.raises(MissionInputError) as refused:
+        imported(upload(recorded(-80.0, 10.0), pattern=other))
+    assert (refused.value.field, refused.value.reason) == ("antenna", PatternOfOtherFrequency("loop", 150e6, 868.3e6))
 
 
 def test_a_rejected_sweep_is_a_fact_and_changes_no_belief() -> None:

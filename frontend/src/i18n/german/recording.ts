@@ -132,7 +132,7 @@ export const recording = {
     remedy: "In eine Mission einlesen, deren Gebiet sie umgibt, oder den richtigen Ort nennen.",
   },
   import_remark: {
-    text: "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, denn keine Höhe nennt die Datei|bearings_stand=Der genannte Ort oder Versatz der Antenne ändert nichts an den Peilungen in der Datei} {file}.",
+    text: "{about?place_replaced=Der genannte Ort ersetzt den aus der Datei|altitude_unknown=0 m über dem Meer wird vermerkt, denn keine Höhe nennt die Datei|bearings_stand=Der genannte Ort oder die Antenne ändert nichts an den Peilungen in der Datei} {file}.",
     remedy: "",
   },
   other_frequency: {
