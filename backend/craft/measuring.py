@@ -75,21 +75,11 @@ async def measure(
     if not any(heard.values()) and not (pulsed and listening.state == "ok"):
         raise ReceiverError(NothingHeardInTurn())
     taken_s = equipment.clock.now() - ordered_s
-    return tuple(
-        [
-            await _result(
-                equipment,
-                mission,
-                emitter,
-                heard[emitter.emitter_id],
-                place_number,
-                attempt,
-                turned,
-                taken_s,
-            )
-            for emitter in mission.emitters
-        ]
+    results = (
+        _result(equipment, mission, emitter, heard[emitter.emitter_id], place_number, attempt, turned, taken_s)
+        for emitter in mission.emitters
     )
+    return tuple(await asyncio.gather(*results))
 
 
 async def _result(

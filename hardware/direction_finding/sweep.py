@@ -185,14 +185,3 @@ def _largest_gap(ascending_deg: NDArray[np.float64]) -> tuple[float, float]:
     gaps = np.diff(ascending_deg, append=ascending_deg[0] + 360.0)
     widest = int(np.argmax(gaps))
     return float(gaps[widest]), float(ascending_deg[widest])
-
-
-def unheard_slices(heading_deg: NDArray[np.float64], slices: int = 16, pulses: int = 3) -> list[float]:
-    """Middles (degrees) of the slices of the circle that heard fewer than `pulses` samples; empty: all did.
-
-    For pulsed tags: a turn at a steady rate may pass a slice between two pulses.
-    """
-    width = 360.0 / slices
-    good = heading_deg[np.isfinite(heading_deg)] % 360.0
-    count = np.bincount(np.minimum((good / width).astype(np.int64), slices - 1), minlength=slices)
-    return [float((k + 0.5) * width) for k in np.flatnonzero(count < pulses)]

@@ -23,13 +23,19 @@ def mission(*emitters: EmitterSpec, pulses: int = 2, rate: float = 30.0) -> Miss
     return spec(emitters or (tag(),)).model_copy(update={"sensor": sensor})
 
 
-def turned(seconds: float, degrees: float = 360.0) -> list[HeadingSample]:
-    return [HeadingSample(t, degrees * t / seconds % 360.0) for t in np.arange(0.0, seconds, 0.1)]
+def turned(seconds: float, degrees: float = 360.0, start: float = 0.0) -> list[HeadingSample]:
+    return [HeadingSample(t, (start + degrees * t / seconds) % 360.0) for t in np.arange(0.0, seconds, 0.1)]
 
 
-def pulses(seconds: float, deaf: tuple[float, float] = (0.0, 0.0)) -> list[PowerSample]:
+def turned_in_steps(seconds: float, start: float, step: float = 10.0) -> list[HeadingSample]:
+    """The nose waits at each step."""
+    pace = 360.0 / seconds
+    return [HeadingSample(t, (start + step * (pace * t // step)) % 360.0) for t in np.arange(0.0, seconds, 0.1)]
+
+
+def pulses(seconds: float, deaf: tuple[float, float] = (0.0, 0.0), first: float = 0.5) -> list[PowerSample]:
     """Every pulse, those heard between `deaf` seconds as missed."""
-    moments = np.arange(0.5, seconds, PERIOD_S)
+    moments = np.arange(first, seconds, PERIOD_S)
     return [PowerSample(t, 150e6, -60.0, detected=not deaf[0] <= t < deaf[1]) for t in moments]
 
 
@@ -63,6 +69,24 @@ def test_bursts_every_fifty_seconds_are_turned_for_as_slowly_as_may_be() -> None
 @pytest.mark.parametrize("lost", [(8.0, 16.0), (0.0, 4.0)])
 def test_headings_that_missed_their_pulses_ask_for_another_turn(lost: tuple[float, float]) -> None:
     assert not complete(tag(), 2, pulses(36.0, lost), turned(36.0))
+
+
+@pytest.mark.parametrize("turning", [turned, turned_in_steps])
+@pytest.mark.parametrize("start", np.arange(0.0, 22.5, 2.5))
+def test_one_turn_is_enough_wherever_it_begins_and_whenever_the_tag_sends(turning, start: float) -> None:
+    seconds = 360.0 / turn_rate_deg_s(mission())
+    headings = turning(seconds, start=start)
+    asked_again = [
+        first
+        for first in np.arange(0.0, PERIOD_S, 0.1)
+        if not complete(tag(), 2, pulses(seconds, first=first), headings)
+    ]
+    assert asked_again == []
+
+
+def test_one_pulse_that_was_missed_is_worth_no_other_turn() -> None:
+    assert complete(tag(), 2, pulses(36.0, (8.0, 9.0)), turned(36.0))
+    assert not complete(tag(), 1, pulses(18.0, (8.0, 10.0)), turned(18.0)), "of one pulse none is left"
 
 
 def test_headings_that_were_listened_to_in_vain_for_long_ask_for_no_more() -> None:

@@ -18,7 +18,6 @@ from hardware.direction_finding.sweep import (
     assemble_sweep,
     bin_sweep,
     turned_deg,
-    unheard_slices,
 )
 from hardware.readings import HeadingSample, Place, PowerSample
 from hardware.reasons.receiver import NothingHeardInTurn
@@ -159,11 +158,3 @@ def test_turned_counts_more_than_one_turn_either_way() -> None:
     angle = np.arange(0.0, 500.0, 10.0)
     assert turned_deg(angle % 360.0) == pytest.approx(490.0)
     assert turned_deg(-angle % 360.0) == pytest.approx(490.0)
-
-
-def test_slices_that_heard_too_few_pulses_are_named() -> None:
-    heading = np.repeat(np.arange(11.25, 360.0, 22.5), 3)
-    assert unheard_slices(heading) == []
-    assert unheard_slices(heading[(heading < 90.0) | (heading > 135.0)]) == [101.25, 123.75]
-    assert unheard_slices(heading[1:]) == [11.25]
-    assert len(unheard_slices(np.array([np.nan]))) == 16
