@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Annotated
 
@@ -13,7 +13,6 @@ from backend.cli.edge import print_json, remark, stop
 from backend.search.localization import localization
 from backend.search.source_priors import unknown_errors
 from hardware.readings import Place
-from planner.belief.source_errors import ErrorPrior
 from planner.study.errors import StudyError
 from planner.study.moving import SPEEDS, moving_missions
 from planner.study.tags import TAGS, tags_missions
@@ -96,12 +95,8 @@ def study_row(
     known = known_model(model)
     if count < 1:
         raise StudyError(f"--missions must be 1 or more, got {count}")
-    if row in TAGS:
-        _check(row, known, flights, told, planner, shared)
-        prior = unknown_errors(suggested_mission(HOME).sensor.outlier_probability)
-        return _tags_row(row, count, known, first_seed, shared, prior)
     claims, knows = row_claims(row, range(first_seed, first_seed + count), known, flights, told, planner, shared)
-    return replace(truth_of(row, known, claims, knows), planner=truth_planner(planner))
+    return replace(truth_of(row, known, claims, knows), planner=truth_planner(planner), shared=shared)
 
 
 def row_claims(
@@ -113,10 +108,10 @@ def row_claims(
     planner: str = "fisher",
     shared: bool = False,
 ) -> tuple[list[Claim], str]:
-    """Mission by mission of a row with one emitter, and what was known of its sensor before; arguments and errors as of
-    `study_row`."""
+    """Mission by mission of a row, every tag's where it has several, and what was known of the sensor before; arguments
+    and errors as of `study_row`."""
     places = _check(row, model, flights, told, planner, shared)
-    wanted = None if row in SPEEDS else row_named(row)
+    wanted = None if row in SPEEDS or row in TAGS else row_named(row)
     mission = suggested_mission(HOME)
     prior, knows = unknown_errors(mission.sensor.outlier_probability), UNKNOWN
     task = localization(mission, HOME)
@@ -130,15 +125,17 @@ def row_claims(
         knows = f"{flights} flights"
         remark(f"{row}: learned from {knows}")
     claims: list[Claim] = []
-    flown = (
-        moving_missions(search, row, seeds, model, prior)
-        if wanted is None
-        else missions(search, wanted, seeds, model, prior)
-    )
-    for claim in flown:
-        claims.append(claim)
-        if len(claims) % REMARK_EVERY == 0 and len(claims) < len(seeds):
-            remark(f"{row}: {len(claims)} of {len(seeds)} missions")
+    flown: Iterator[list[Claim]]
+    if row in TAGS:
+        flown = tags_missions(row, seeds, model, shared=shared, prior=prior)
+    elif wanted is None:
+        flown = ([claim] for claim in moving_missions(search, row, seeds, model, prior))
+    else:
+        flown = ([claim] for claim in missions(search, wanted, seeds, model, prior))
+    for number, found in enumerate(flown, start=1):
+        claims.extend(found)
+        if number % REMARK_EVERY == 0 and number < len(seeds):
+            remark(f"{row}: {number} of {len(seeds)} missions")
     return claims, knows
 
 
@@ -152,17 +149,6 @@ def _check(row: str, model: Model, flights: int, told: bool, planner: str, share
     if shared and (row not in TAGS or model != "joint"):
         raise StudyError("--shared-errors goes with the joint model of several tags")
     return places
-
-
-def _tags_row(row: str, count: int, model: Model, first_seed: int, shared: bool, prior: ErrorPrior) -> Truth:
-    """Each tag is a claim; missions: how many were flown. prior: of the joint model."""
-    claims: list[Claim] = []
-    flown = tags_missions(row, range(first_seed, first_seed + count), model, shared=shared, prior=prior)
-    for number, found in enumerate(flown, start=1):
-        claims.extend(found)
-        if number % REMARK_EVERY == 0 and number < count:
-            remark(f"{row}: {number} of {count} missions")
-    return replace(truth_of(row, model, claims), missions=count, shared=shared)
 
 
 def known_model(name: str) -> Model:

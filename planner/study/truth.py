@@ -70,10 +70,12 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1], the last two of those that claimed.
+    """Of all missions of a row. claimed, in_c95, beyond_3x: shares in [0, 1] of the claims that could be made, one an
+    emitter, the last two of those that were.
 
-    in_c95_low, in_c95_high: Wilson's 95 % interval. beyond_low, beyond_high: the same of beyond_3x. beyond_believed:
-    what the beliefs themselves said of it at the claims. beyond_seeds: the missions beyond, to look at. beyond_3rms:
+    in_c95_low, in_c95_high: Wilson's 95 % interval, wider where the tags of a mission hang together. beyond_low,
+    beyond_high: the same of beyond_3x. beyond_believed: what the beliefs themselves said of it at the claims.
+    beyond_seeds: the missions beyond, to look at. beyond_3rms:
     share beyond three times the root mean square that the belief gives. mean_s: s until the claim or the last bearing.
     bias_inside: share in which the bias was within two of its stated standard deviations. prior: what was known of the
     sensor before. planner: who chose the places. shared: what one tag's bearings told of the compass counted for all.
@@ -224,14 +226,14 @@ def truth_of(row: str, model: Model, claims: Sequence[Claim], prior: str = UNKNO
     claimed = [c for c in claims if c.claimed]
     nothing = float("nan")
     inside = sum(c.in_c95 for c in claimed)
-    low, high = wilson(inside, len(claimed)) if claimed else (nothing, nothing)
+    low, high = _interval(claimed, [c.in_c95 for c in claimed])
     beyond = [c.seed for c in claimed if c.beyond]
-    beyond_low, beyond_high = wilson(len(beyond), len(claimed)) if claimed else (nothing, nothing)
+    beyond_low, beyond_high = _interval(claimed, [c.beyond for c in claimed])
     known = [c for c in claims if np.isfinite(c.bias_off_deg)]
     return Truth(
         row=row,
         model=model,
-        missions=len(claims),
+        missions=len({c.seed for c in claims}),
         claimed=len(claimed) / len(claims),
         in_c95=inside / len(claimed) if claimed else nothing,
         in_c95_low=low,
@@ -257,7 +259,26 @@ def _rounded(value: Any) -> Any:
     return round(value, 4) if isfinite(value) else None
 
 
-def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
+def _interval(claims: Sequence[Claim], hits: Sequence[bool]) -> tuple[float, float]:
+    """Wilson's interval of the share of hits, NaN without claims.
+
+    The claims of one mission (several tags) hang together. Those of n missions count as no more trials than give the
+    share the standard error that it has between missions,
+    se^2 = n / (n - 1) sum_m (hits_m - share claims_m)^2 / claims^2.
+    """
+    if not claims:
+        return float("nan"), float("nan")
+    _, mission, together = np.unique([c.seed for c in claims], return_inverse=True, return_counts=True)
+    trials, count = float(len(claims)), len(together)
+    share = sum(hits) / trials
+    if 1 < count < trials and 0.0 < share < 1.0:
+        off = np.bincount(mission, hits) - share * together
+        variance = count / (count - 1) * float(off @ off) / trials**2
+        trials = min(trials, share * (1.0 - share) / variance) if variance > 0.0 else trials
+    return wilson(share * trials, trials)
+
+
+def wilson(successes: float, trials: float, z: float = 1.96) -> tuple[float, float]:
     """Wilson's interval of a share (Wilson 1927)."""
     share, square = successes / trials, z * z / trials
     middle = (share + square / 2.0) / (1.0 + square)

@@ -21,7 +21,7 @@ def flown(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The seeds that were flown; every tenth mission is beyond. Pieces of ten missions."""
     seeds_flown: list[int] = []
 
-    def row_claims(name: str, seeds: range, *_: object) -> tuple[list[Claim], str]:
+    def row_claims(name: str, seeds: range, *_: object, shared: bool) -> tuple[list[Claim], str]:
         seeds_flown.extend(seeds)
         errors = {seed: 40.0 if seed % 10 == 0 else 5.0 for seed in seeds}
         return [Claim(s, True, True, e, 10.0, 12.0, 0.01, 4, 300.0, 1.0, 2.0) for s, e in errors.items()], "nothing"
@@ -71,3 +71,11 @@ def test_rows_that_are_not_flown_again_stay_in_the_record(flown: list[int], tmp_
     }
     assert [note.startswith("30 missions") for note in beyond.values()] == [True, False]
     assert str(before.commit) in remark
+
+
+def test_of_tags_a_time_is_wanted_and_of_moving_emitters_the_truth(flown: list[int], tmp_path: Path) -> None:
+    rows = [summed_up(Series(name, "joint"), 20, tmp_path, "one")[0] for name in ("tags_8", "moving_0.4")]
+    assert [found.shared for found in rows] == [True, False]
+    judged = {made.wanted.key: made.value for made in truth.figures(rows) if made.wanted is not None}
+    assert judged == {"eight_tags": 300.0, "moving": 100.0}
+    assert row(rows[0])[:3] == ("tags_8", "joint, shared", "nothing")

@@ -2,8 +2,9 @@
 
     python -m tests.benchmarks.truth --missions 1000 --out docs/measurements        (or: make truth)
 
-Every row is `crossfix study truth --row ROW`; the independent model flies the same missions for comparison. Rows of the
-record that are not flown again (`--only`) stay in it.
+Every row is `crossfix study truth --row ROW`; the independent model flies the same missions for comparison. Several
+tags share what they tell of the compass, as in new missions. Rows of the record that are not flown again (`--only`)
+stay in it.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from backend.cli.truth import known_model, row_claims
 from planner.study.error_worlds import ROWS
+from planner.study.moving import SPEEDS
+from planner.study.tags import TAGS
 from planner.study.truth import TOLD, UNKNOWN, Claim, Model, Truth, truth_of
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pages import markdown
@@ -31,8 +34,11 @@ JUDGED = ("independent", "bias5", "bias10", "bias5_outliers8", "bias5_outliers20
 LEARNED = ("right", "bias5", "bias5_outliers8")
 """The rows that are flown again after flights have taught, and told the true errors."""
 
-PIECE = 100
-"""Missions that are kept together."""
+SEVERAL = {"tags_4": "four_tags", "tags_8": "eight_tags"}
+"""The rows of which a time is wanted, by the key of the figure."""
+
+PIECE, FEW = 100, 10
+"""Missions that are kept together; of rows that take long, fewer."""
 
 COLUMNS = (
     Column(name="row"),
@@ -62,7 +68,7 @@ def row(found: Truth) -> tuple[Cell, ...]:
     believed, beyond_rms, bias = (None if said[name] is None else 100.0 * said[name] for name in names)
     return (
         found.row,
-        found.model,
+        f"{found.model}, shared" if found.shared else found.model,
         found.prior,
         found.missions,
         100.0 * found.claimed,
@@ -96,9 +102,14 @@ def figures(found: Sequence[Truth]) -> list[Figure]:
             told = f"{note}; the beliefs themselves say {100.0 * one.beyond_believed:.1f} %"
             made.append(wanted("truth_beyond", beyond, of=one.row, ci95=round(beyond_half(one), 2), note=told))
             made.append(wanted("truth_claimed", round(100.0 * one.claimed, 1), of=one.row, note=note))
+        elif one.row in SPEEDS:
+            made.append(wanted("moving", inside, of=one.row, ci95=half, note=note))
         else:
             made.append(plain(f"truth in C95, {one.row}", inside, "%", ci95=half, note=note))
-        made.append(plain(f"time until the claim, {one.row}", round(one.mean_s), "s", note=note))
+        if one.row in SEVERAL:
+            made.append(wanted(SEVERAL[one.row], round(one.mean_s), of="field scenario", note=note))
+        else:
+            made.append(plain(f"time until the claim, {one.row}", round(one.mean_s), "s", note=note))
     return [*made, *_lessons(found)]
 
 
@@ -124,13 +135,23 @@ class Series:
     flights: int = 0
     told: bool = False
 
+    @property
+    def shared(self) -> bool:
+        """Whether what one tag's bearings tell of the compass counts for all, as in new missions."""
+        return self.row in TAGS and self.model == "joint"
+
+    @property
+    def piece(self) -> int:
+        """How many missions are kept together."""
+        return FEW if self.row in TAGS or self.row in SPEEDS else PIECE
+
     def flown(self, seeds: range, kept: Path | None, commit: str) -> dict[str, Any]:
         """Claims, what was known before and the commit that flew, of these seeds; not flown again where it is kept."""
         path = self._path(seeds, kept)
         if path is not None and path.exists():
             return json.loads(path.read_text())
         print(f"{self.row}, {self.model}: seeds {seeds[0]} to {seeds[-1]}", file=sys.stderr, flush=True)
-        claims, knows = row_claims(self.row, seeds, self.model, self.flights, self.told)
+        claims, knows = row_claims(self.row, seeds, self.model, self.flights, self.told, shared=self.shared)
         piece = {"commit": commit, "known": knows, "claims": [asdict(claim) for claim in claims]}
         if path is not None:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -139,10 +160,11 @@ class Series:
 
     def pieces(self, missions: int, kept: Path | None, commit: str) -> Iterator[dict[str, Any]]:
         """Of seeds 1 to `missions`, and of the whole pieces after them as far as they are kept without a gap."""
-        for first in count(1, PIECE):
-            seeds = range(first, min(first + PIECE, missions + 1) if first <= missions else first + PIECE)
+        for first in count(1, self.piece):
+            last = min(first + self.piece - 1, missions) if first <= missions else first + self.piece - 1
+            seeds = range(first, last + 1)
             path = self._path(seeds, kept)
-            if first > missions and (missions % PIECE or path is None or not path.exists()):
+            if first > missions and (missions % self.piece or path is None or not path.exists()):
                 return
             yield self.flown(seeds, kept, commit)
 
@@ -155,7 +177,8 @@ def summed_up(series: Series, missions: int, kept: Path | None, commit: str) -> 
     """The row, and the commits that flew it."""
     pieces = list(series.pieces(missions, kept, commit))
     claims = [Claim(**claim) for piece in pieces for claim in piece["claims"]]
-    return truth_of(series.row, series.model, claims, pieces[0]["known"]), {piece["commit"] for piece in pieces}
+    found = replace(truth_of(series.row, series.model, claims, pieces[0]["known"]), shared=series.shared)
+    return found, {piece["commit"] for piece in pieces}
 
 
 def merged(before: Record | None, found: Sequence[Truth]) -> tuple[list[Figure], Table, str]:
@@ -184,13 +207,16 @@ def main() -> None:
     parser.add_argument(
         "--pieces",
         type=Path,
-        help=f"folder that keeps every {PIECE} missions as soon as they were flown; all that is kept of a row counts",
+        help=f"folder that keeps every {PIECE} missions ({FEW} of tags, of movers) as soon as they were flown; "
+        "all that is kept of a row counts",
     )
     add_out(parser)
     arguments = parser.parse_args()
     begun = begin(__file__)
     models: list[Model] = [known_model(name) for name in arguments.models.split(",")]
-    names = [name for name in ROWS.by_name if any(part in name for part in arguments.only.split(","))]
+    names = [
+        name for name in (*ROWS.by_name, *SPEEDS, *TAGS) if any(part in name for part in arguments.only.split(","))
+    ]
     series = [Series(name, model) for name in names for model in models]
     for name in (name for name in LEARNED if name in names and arguments.flights):
         series += [Series(name, "joint", flights=arguments.flights), Series(name, "joint", told=True)]

@@ -144,7 +144,7 @@ def test_shares_are_of_the_claims():
     claim = Claim(1, True, True, 5.0, 10.0, 12.0, 0.01, 4, 300.0, 1.0, 2.0)
     far = replace(claim, seed=2, in_c95=False, error_m=31.0, far_chance=0.04, bias_off_deg=5.0)
     never = replace(claim, seed=3, claimed=False, in_c95=False, error_m=99.0, far_chance=0.9)
-    found = truth_of("bias5", "joint", [claim, far, never, claim])
+    found = truth_of("bias5", "joint", [claim, far, never, replace(claim, seed=4)])
     assert found.claimed == 0.75
     assert found.in_c95 == pytest.approx(2.0 / 3.0)
     assert found.beyond_3x == pytest.approx(1.0 / 3.0)
@@ -154,6 +154,21 @@ def test_shares_are_of_the_claims():
     assert found.beyond_3rms == 0.0
     assert truth_of("bias5", "joint", [replace(far, error_m=37.0)]).beyond_3rms == 1.0
     assert found.bias_inside == 0.75
+
+
+def test_tags_of_one_mission_hang_together():
+    """Whoever misses with one misjudged compass three tags of four knows no more than of one."""
+    claim = Claim(1, True, True, 5.0, 10.0, 12.0, 0.01, 4, 300.0, 1.0, 2.0)
+    tags = [replace(claim, seed=seed) for seed in range(1, 13) for _ in range(4)]
+    together = [replace(one, in_c95=number not in (0, 1, 2, 4)) for number, one in enumerate(tags)]
+    apart = [replace(one, in_c95=number not in (0, 4, 8, 12)) for number, one in enumerate(tags)]
+    found, spread = truth_of("tags_4", "joint", together), truth_of("tags_4", "joint", apart)
+    assert (found.missions, found.in_c95) == (12, spread.in_c95) == (12, pytest.approx(44 / 48))
+    assert (spread.in_c95_low, spread.in_c95_high) == pytest.approx(wilson(44, 48))
+    between = np.sqrt(12 / 11 * ((3 - 1 / 3) ** 2 + (1 - 1 / 3) ** 2 + 10 / 9)) / 48
+    trials = found.in_c95 * (1.0 - found.in_c95) / between**2
+    assert (found.in_c95_low, found.in_c95_high) == pytest.approx(wilson(found.in_c95 * trials, trials))
+    assert found.in_c95_low < spread.in_c95_low
 
 
 def test_wilsons_interval():
