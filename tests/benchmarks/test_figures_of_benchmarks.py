@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from planner.study.table import summarize
-from tests.benchmarks import live_load, storage_faults, studies, takeover
+from tests.benchmarks import joint_speed, live_load, storage_faults, studies, takeover
 from tests.benchmarks.figures.circumstances import begin
 from tests.benchmarks.figures.pieces import numbers, rows_kept
 from tests.benchmarks.figures.reader import read
@@ -51,6 +51,11 @@ def test_the_fan_out_is_judged_by_its_p99_and_the_growth_of_memory() -> None:
     found = live_load.fanout_figures(FANOUT)
     assert met(found) == {"fanout": False, "fanout_memory": True}
     assert [figure.value for figure in found[:2]] == [265.0, 0.46]
+
+
+@pytest.mark.parametrize(("joint_ms", "right"), [(30.0, True), (31.0, False)])
+def test_a_plan_on_the_joint_belief_may_take_twice_one_on_the_plain_belief(joint_ms: float, right: bool) -> None:
+    assert met([joint_speed.over_plain(joint_ms, 15.0, count=3)]) == {"joint_plan_3600": right}
 
 
 def test_aborts_are_judged_by_their_p99() -> None:
