@@ -157,7 +157,7 @@ export const planner = {
     remedy: "Den Winkel legt der Einsatz fest.",
   },
   between_places: {
-    text: "Keine Regel spricht dagegen: Der Planer vergleicht Orte im Abstand von {spacing_m} mit begrenzt vielen simulierten Flügen, und deiner ist besser als das, was er fand.",
+    text: "Keine Regel spricht dagegen: Der Planer vergleicht Orte im Abstand von {spacing_m} mit begrenzt vielen simulierten Flügen, und Ihrer ist besser als das, was er fand.",
     remedy: "",
   },
 } satisfies Partial<ReasonTable>;
