@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from playwright.sync_api import FloatRect, expect
+from playwright.sync_api import FloatRect, Position, expect
 from screen import OpenScreen, Screen
 from served import Server
 
@@ -71,6 +71,18 @@ def test_on_a_tablet_the_map_has_half_the_screen(server: Server, open_screen: Op
     assert box(screen, "map")["height"] >= 0.5 * SIZES["tablet"][1]
     too_wide = "[...document.querySelectorAll('.panel')].filter((one) => one.scrollWidth > one.clientWidth + 1).length"
     assert screen.evaluate(too_wide) == 0
+
+
+def test_a_tap_marks_the_place_under_the_thumb_on_a_low_screen_too(server: Server, open_screen: OpenScreen) -> None:
+    low = {"viewport": {"width": 375, "height": 560}}
+    screen = open_screen(server, f"#/mission/{server.draft()}/bearings", **low)
+    chart = box(screen, "aim-map")
+    assert chart["width"] > 1.2 * chart["height"], "the square of the map leaves ground on both sides"
+    thumb: Position = {"x": 0.35 * chart["width"], "y": 0.4 * chart["height"]}
+    screen.part("aim-map").click(position=thumb)
+    mark = box(screen, "aim-here")
+    assert mark["x"] + mark["width"] / 2 == pytest.approx(chart["x"] + thumb["x"], abs=2)
+    assert mark["y"] + mark["height"] / 2 == pytest.approx(chart["y"] + thumb["y"], abs=2)
 
 
 @pytest.mark.parametrize("size", SIZES)

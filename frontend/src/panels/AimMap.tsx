@@ -79,8 +79,9 @@ export function AimMap({ area, others, advised, way, ways, here, bearing, sigma,
     [ways, frame.middle[0], frame.middle[1], frame.scale],
   );
   const tap = (event: MouseEvent & { currentTarget: SVGSVGElement }) => {
-    const box = event.currentTarget.getBoundingClientRect();
-    const point = frame.back(((event.clientX - box.left) / box.width) * SIZE, ((event.clientY - box.top) / box.height) * SIZE);
+    const toPicture = event.currentTarget.getScreenCTM()!.inverse(); // a low screen shows the square with ground on both sides
+    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(toPicture);
+    const point = frame.back(x, y);
     if (mode === "here") onHere({ lon: point[0], lat: point[1] });
     else if (here && distanceM(here, point) > 0.5) onDirection(bearingDeg(here, point));
   };
