@@ -98,8 +98,8 @@ function Pick<T extends string>({
   onPick: (one: T) => void;
 }) {
   return (
-    <fieldset class="report-pick">
-      <legend class="visually-hidden">{name}</legend>
+    <fieldset class="report-row">
+      <legend>{name}</legend>
       {values.map((one) => (
         <button type="button" key={one} data-testid={`report-${one}`} aria-pressed={one === value} onClick={() => onPick(one)}>
           {label(one)}
@@ -207,7 +207,6 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           </p>
         )}
       </header>
-      <AdviceCard missionId={missionId} here={here} />
       <AimMap
         area={spec?.area ?? null}
         others={bearings}
@@ -228,12 +227,10 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           setBearing(degrees);
         }}
       />
-      <div class="report-row">
+      <fieldset class="report-row">
+        <legend>{t("report.here")}</legend>
         <button type="button" data-testid="report-mode-here" aria-pressed={mode === "here"} onClick={() => setMode("here")}>
-          {t("report.tapHere")}
-        </button>
-        <button type="button" data-testid="report-mode-direction" aria-pressed={mode === "direction"} onClick={() => setMode("direction")}>
-          {t("report.tapDirection")}
+          {t("truth.tap")}
         </button>
         <button
           type="button"
@@ -243,6 +240,14 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         >
           {gps.state === "on" && gps.accuracy !== null ? t("report.gpsOn", { metres: Math.round(gps.accuracy) }) : t("report.gps")}
         </button>
+      </fieldset>
+      {gps.state === "denied" && <p role="alert">{t("report.gpsDenied")}</p>}
+      <AdviceCard missionId={missionId} here={here} />
+      <fieldset class="report-row">
+        <legend>{t("report.hear")}</legend>
+        <button type="button" data-testid="report-mode-direction" aria-pressed={mode === "direction"} onClick={() => setMode("direction")}>
+          {t("truth.tap")}
+        </button>
         <button
           type="button"
           data-testid="report-compass"
@@ -251,8 +256,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         >
           {t("report.compass")}
         </button>
-      </div>
-      {gps.state === "denied" && <p role="alert">{t("report.gpsDenied")}</p>}
+      </fieldset>
       {(compassState.value === "none" || compassState.value === "insecure" || compassState.value === "denied") && (
         <p role="alert" data-testid="report-compass-problem">
           {t(`report.compass.${compassState.value}`)}

@@ -24,7 +24,7 @@ function Said() {
   const along = given.along ?? "straight";
   const age = formatAge(Math.max(0, (shownTimeMs.value - Date.parse(given.given_at_utc)) / 1000));
   return (
-    <div data-testid="advice-said" data-state={state} class={state === "holds" ? "" : "muted"}>
+    <div data-testid="advice-said" data-state={state} class={`advice-said ${state === "holds" ? "" : "muted"}`}>
       <p>
         <strong>
           {t(`advice.go.${along}`, {
@@ -84,9 +84,9 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
     }
   };
   return (
-    <section class={`advice ${adviceFreshness.value === "holds" ? "" : "old"}`} data-testid="advice">
-      <div class="advice-ask">
-        <span>{t(here ? "advice.ask" : "advice.needsPlace")}</span>
+    <section data-testid="advice">
+      <fieldset class="report-row">
+        <legend>{t("advice.ask")}</legend>
         <button type="button" data-testid="advice-walking" disabled={!here || busy} onClick={() => void ask("walking")}>
           {t("advice.walking")}
         </button>
@@ -96,7 +96,7 @@ export function AdviceCard({ missionId, here }: { missionId: string; here: LonLa
         <button type="button" data-testid="advice-hopping" disabled={!here || busy} onClick={() => void ask("hopping")}>
           {t("advice.hopping")}
         </button>
-      </div>
+      </fieldset>
       {problem && <ProblemBox problem={problem} />}
       <Said />
     </section>
