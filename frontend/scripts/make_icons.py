@@ -12,7 +12,7 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 PUBLIC = Path(__file__).resolve().parents[1] / "public"
-SIZES = {"icon-192.png": 192, "icon-touch.png": 180}
+PLAIN, PLAIN_PX = "icon-192.png", 192
 MASKABLE, MASKABLE_PX = "icon-maskable.png", 512
 SAFE = 0.72
 """Of the width: what lies outside the middle 80 % may be cut off by a launcher (W3C manifest, maskable icons)."""
@@ -37,8 +37,7 @@ def main() -> None:
             few = drawn.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
             few.save(PUBLIC / name, optimize=True)
 
-        for name, px in SIZES.items():
-            draw(name, px, 1.0, GROUND if name == "icon-touch.png" else "transparent")
+        draw(PLAIN, PLAIN_PX, 1.0, "transparent")
         draw(MASKABLE, MASKABLE_PX, SAFE, GROUND)
         browser.close()
 
