@@ -17,7 +17,7 @@ export function ProfileRow() {
     <>
       {known.length > 0 && (
         <div class="field">
-          <label for="profile">{t("edit.profile")}</label>
+          <label for="profile">{t("edit.profile.use")}</label>
           <select id="profile" data-testid="profile" value="" onChange={(e) => use(e.currentTarget.value)}>
             <option value="">–</option>
             {known.map((p) => (

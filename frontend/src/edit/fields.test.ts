@@ -1,4 +1,5 @@
 import { expect, it } from "vitest";
+import type { MissionSpec } from "../wire";
 import { someSpec } from "../wire/examples";
 import { EMITTER, firstEmitter, PRIOR } from "./emitter";
 import { sections, shownUnit, shownValue, typedNumber } from "./fields";
@@ -9,6 +10,25 @@ it("every field of the form exists in the specification, so none edits nothing",
   const paths = sections.flatMap((s) => s.fields.map((field) => field.path));
   const ofEmitter = ["label", "frequency_hz", "kind", "prior"].map((name) => `${EMITTER}.${name}`);
   for (const path of [...paths, ...ofEmitter]) expect(get(someSpec(), path), path).not.toBeUndefined();
+});
+
+const asked = (spec: MissionSpec) =>
+  sections.flatMap((s) => s.fields.filter(({ when }) => when?.(spec) ?? true).map(({ path }) => path.replace("sensor.", "")));
+
+it("what does not apply is not asked for", () => {
+  const spec = someSpec();
+  const independent = set(spec, "sensor.bearing_errors", "independent");
+  for (const path of ["listen_on_the_way", "swing_on_the_way", "sweep_evidence", "shared_errors"])
+    expect(asked(independent)).not.toContain(path);
+  const joint = set(independent, "sensor.bearing_errors", "joint");
+  expect(asked(joint)).toContain("listen_on_the_way");
+  expect(asked(joint)).not.toContain("swing_on_the_way");
+  expect(asked(set(joint, "sensor.listen_on_the_way", true))).toContain("swing_on_the_way");
+  const [first] = joint.emitters;
+  expect(asked({ ...joint, emitters: [first!, { ...first!, emitter_id: "other" }] })).toContain("shared_errors");
+  const turning = set(spec, "sensor.sector_turns", true);
+  expect(asked(turning)).toContain("whole_turns");
+  expect(asked(set(turning, `${EMITTER}.kind`, "pulsed"))).not.toContain("sector_turns");
 });
 
 it("numbers are read as people type them", () => {

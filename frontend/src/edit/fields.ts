@@ -1,35 +1,35 @@
 // The form as a table: which value of the specification stands where, in which unit, within which limits.
 import type { MessageKey } from "../i18n";
 import type { UnitSystem } from "../units/quantities";
+import type { MissionSpec } from "../wire";
 
 export type Unit = "m" | "m/s" | "s" | "°" | "°/s" | "%" | "MHz" | "m/s²" | "times" | "places" | "bearings" | "";
 
-export interface NumberField {
-  kind: "number";
+interface Listed {
   path: string;
   label: MessageKey;
+  more?: boolean;
+  /** Where it does not apply it is not asked for; by default it applies. */
+  when?: (spec: MissionSpec) => boolean;
+}
+
+export interface NumberField extends Listed {
+  kind: "number";
   unit: Unit;
   /** Stored value = shown value x scale. */
   scale?: number;
   min?: number;
   max?: number;
   step?: number;
-  more?: boolean;
 }
 
-export interface ChoiceField {
+export interface ChoiceField extends Listed {
   kind: "choice";
-  path: string;
-  label: MessageKey;
   options: readonly { value: string; label: MessageKey | null }[];
-  more?: boolean;
 }
 
-export interface SwitchField {
+export interface SwitchField extends Listed {
   kind: "switch";
-  path: string;
-  label: MessageKey;
-  more?: boolean;
 }
 
 export type Field = NumberField | ChoiceField | SwitchField;
@@ -46,6 +46,11 @@ const number = (path: string, label: MessageKey, unit: Unit, limits: Partial<Num
   unit,
   ...limits,
 });
+
+const isJoint = ({ sensor }: MissionSpec) => sensor.bearing_errors === "joint";
+
+/** A tag's pulses, and several emitters at once, take whole turns. */
+const isOneCarrier = ({ emitters: [first, ...others] }: MissionSpec) => others.length === 0 && first?.kind === "carrier";
 
 export const sections: readonly Section[] = [
   {
@@ -81,10 +86,14 @@ export const sections: readonly Section[] = [
       number("sensor.turn_rate_deg_s", "edit.turnRate", "°/s", { min: 5, max: 90, more: true }),
       number("sensor.minimum_quality", "edit.quality", "", { min: 0, max: 1, step: 0.05, more: true }),
       number("sensor.maximum_retakes", "edit.retakes", "times", { min: 0, max: 10, step: 1, more: true }),
-      { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns" },
-      { kind: "switch", path: "sensor.listen_on_the_way", label: "edit.listenOnTheWay", more: true },
-      { kind: "switch", path: "sensor.swing_on_the_way", label: "edit.swingOnTheWay", more: true },
-      number("sensor.whole_turns", "edit.wholeTurns", "places", { min: 1, max: 20, step: 1, more: true }),
+      { kind: "switch", path: "sensor.sector_turns", label: "edit.sectorTurns", when: isOneCarrier },
+      number("sensor.whole_turns", "edit.wholeTurns", "places", {
+        min: 1,
+        max: 20,
+        step: 1,
+        more: true,
+        when: (spec) => isOneCarrier(spec) && spec.sensor.sector_turns === true,
+      }),
       {
         kind: "choice",
         path: "sensor.bearing_errors",
@@ -95,7 +104,13 @@ export const sections: readonly Section[] = [
         ],
         more: true,
       },
-      { kind: "switch", path: "sensor.shared_errors", label: "edit.sharedErrors", more: true },
+      {
+        kind: "switch",
+        path: "sensor.shared_errors",
+        label: "edit.sharedErrors",
+        more: true,
+        when: (spec) => isJoint(spec) && spec.emitters.length > 1,
+      },
       {
         kind: "choice",
         path: "sensor.sweep_evidence",
@@ -105,6 +120,15 @@ export const sections: readonly Section[] = [
           { value: "whole", label: "edit.sweepEvidence.whole" },
         ],
         more: true,
+        when: isJoint,
+      },
+      { kind: "switch", path: "sensor.listen_on_the_way", label: "edit.listenOnTheWay", more: true, when: isJoint },
+      {
+        kind: "switch",
+        path: "sensor.swing_on_the_way",
+        label: "edit.swingOnTheWay",
+        more: true,
+        when: (spec) => isJoint(spec) && spec.sensor.listen_on_the_way === true,
       },
     ],
   },

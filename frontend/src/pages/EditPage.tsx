@@ -72,8 +72,17 @@ function NameSection({ failed }: { failed: RequestFailed | null }) {
       )}
       <KindField />
       <MovementField failed={failed} />
+    </fieldset>
+  );
+}
+
+function EquipmentSection() {
+  const { sensor } = draft.value!.spec;
+  return (
+    <fieldset class="panel">
+      <legend>{t("edit.profile")}</legend>
       <ProfileRow />
-      {spec.sensor.bearing_errors === "joint" && <CompassCard offsetDeg={spec.sensor.bearing_offset_deg ?? 0} />}
+      {sensor.bearing_errors === "joint" && <CompassCard offsetDeg={sensor.bearing_offset_deg ?? 0} />}
     </fieldset>
   );
 }
@@ -128,12 +137,13 @@ function Sections({ failed }: { failed: RequestFailed | null }) {
   return (
     <>
       {sections.map((section) => {
-        const more = section.fields.filter((f) => f.more);
+        const asked = section.fields.filter(({ when }) => when?.(draft.value!.spec) ?? true);
+        const more = asked.filter((f) => f.more);
         const isOpen = more.some((f) => draft.value!.text[f.path] !== undefined || failed?.fieldMessage(f.path));
         return (
           <fieldset class="panel" key={section.title}>
             <legend>{t(section.title)}</legend>
-            {section.fields
+            {asked
               .filter((f) => !f.more)
               .map((field) => (
                 <FormField field={field} failed={failed} key={field.path} />
@@ -245,6 +255,7 @@ export function EditPage({ route }: { route: EditRoute }) {
               <NameSection failed={failed} />
               <AreaSection failed={failed} told={told} onTold={setTold} />
               <PreviewCard />
+              <EquipmentSection />
               <Sections failed={failed} />
             </>
           )}

@@ -61,7 +61,7 @@ export function FurtherWishes() {
           <option value="">{t("whatIf.planner.flown")}</option>
           {ERRORS.map((name) => (
             <option value={name} key={name}>
-              {t(`whatIf.errors.${name}` satisfies MessageKey)}
+              {t(`edit.bearingErrors.${name}` satisfies MessageKey)}
             </option>
           ))}
         </select>
