@@ -133,7 +133,7 @@ export function ImportRecording() {
             void submit(missionId, e.currentTarget);
           }}
         >
-          <p class="muted">{t("recording.explain")}</p>
+          <p class="muted lines">{t("recording.explain")}</p>
           <label>
             {t("recording.files")}
             <input type="file" name="files" multiple data-testid="recording-files" />

@@ -20,7 +20,7 @@ export function WaysCard({ missionId }: { missionId: string }) {
     <section class="panel ways" data-testid="ways" data-known={known.features.length > 0} aria-label={t("ways.title")}>
       <details>
         <summary class="button">{t("ways.title")}</summary>
-        <p class="muted">{t("ways.explain")}</p>
+        <p class="muted lines">{t("ways.explain")}</p>
         <p data-testid="ways-known">
           {known.features.length > 0
             ? t("ways.known", {
