@@ -389,7 +389,7 @@ export const en = {
   "alerts.unmute": "Tones are muted: sound them",
   "alerts.muted": "muted",
 
-  "menu.health": "Health of the server",
+  "menu.health": "Server health",
   "phase.draft": "draft",
   "phase.ready": "ready",
   "phase.ground": "on the ground",
@@ -622,7 +622,7 @@ export const en = {
   "command.keep_control": "Keep control",
   "command.release_control": "Give up control",
 
-  "menu.calibration": "How right it was",
+  "menu.calibration": "Accuracy so far",
   "timeline.pace": "Speed",
   "timeline.jump": "Jump to …",
   "timeline.jump.decision": "Decision",

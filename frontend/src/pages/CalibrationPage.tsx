@@ -162,7 +162,7 @@ export function CalibrationPage() {
   return (
     <div class="page" data-testid="calibration">
       <div class="page-head">
-        <h1>{t("calibration.title")}</h1>
+        <h1>{t("menu.calibration")}</h1>
         <Choose label="calibration.craft" value={craft} all={found?.crafts ?? []} onChoose={setCraft} />
         <Choose label="calibration.antenna" value={antenna} all={found?.antennas ?? []} onChoose={setAntenna} />
       </div>
