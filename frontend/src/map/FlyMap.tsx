@@ -57,11 +57,15 @@ function put(map: GlMap, name: SourceName, data: Features): void {
   map.getSource<GeoJSONSource>(name)?.setData(data);
 }
 
+/** Share of its strength at which a belief is drawn while no bearing has told anything: the outline says as much. */
+const BEFOREHAND = 0.4;
+
 function paintBelief(map: GlMap): void {
   const frame = shownBelief.value;
   const visible = frame !== null && !hidden.value.has("belief");
   map.setLayoutProperty("belief", "visibility", visible ? "visible" : "none");
   if (!frame) return;
+  map.setPaintProperty("belief", "raster-opacity", frame.bearings === 0 ? BEFOREHAND : 1);
   const image = new ImageData(beliefPixels(frame), frame.nx, frame.ny);
   map.getSource<ImageSource>("belief")!.updateImage({ image, coordinates: imageCorners(frame) });
   const givenMs = performance.now();

@@ -1,22 +1,33 @@
 import { expect, it } from "vitest";
-import { bearingDeg } from "../state/geometry";
+import { bearingDeg, boundsOf, distanceM, metresPerDegree } from "../state/geometry";
 import { missionAt } from "../state/mission";
 import { type MissionView, viewOf } from "../state/view";
 import type { MissionEvent } from "../wire";
 import type { LonLat } from "../wire/beliefFrame";
 import { excluded, record, someBearing, someBelief, someLeg, somePlan, someSpec } from "../wire/examples";
-import { candidateFeatures, measuredFeatures, planFeatures } from "./features";
+import { candidateFeatures, flightPoints, measuredFeatures, planFeatures } from "./features";
 
 const of = (state: MissionView, ...what: string[]) => measuredFeatures(state).features.filter((f) => what.includes(f.properties?.what));
 
 const drafted = { kind: "mission_drafted", spec: someSpec() } as const;
 const seen = (...events: MissionEvent[]) => viewOf(missionAt(record(drafted, ...events), Infinity));
 
-it("a bearing's line points where the bearing points, past the area", () => {
-  const state = seen(someBearing({ bearing_deg: 217 }));
-  const geometry = of(state, "main")[0]!.geometry;
-  const [from, to] = (geometry as GeoJSON.LineString).coordinates as [LonLat, LonLat];
-  expect(bearingDeg(from, to)).toBeCloseTo(217, 0);
+const mainLine = (state: MissionView) => (of(state, "main")[0]!.geometry as GeoJSON.LineString).coordinates as [LonLat, LonLat];
+
+it.each([217, 37])("a bearing's line points to %d and ends at the edge of where is flown", (bearing_deg) => {
+  const [west, south, east, north] = boundsOf(flightPoints(someSpec()))!;
+  const middle = { lon: (west + east) / 2, lat: (south + north) / 2 };
+  const [from, [lon, lat]] = mainLine(seen(someBearing({ bearing_deg, place: middle })));
+  expect(bearingDeg(from, [lon, lat])).toBeCloseTo(bearing_deg, 0);
+  const [mx, my] = metresPerDegree(lat);
+  const inside = [lon - west, east - lon].map((d) => d * mx).concat([lat - south, north - lat].map((d) => d * my));
+  expect(Math.min(...inside)).toBeCloseTo(0, 0);
+});
+
+it("a bearing that points out of where is flown is still seen", () => {
+  const [west, south] = boundsOf(flightPoints(someSpec()))!;
+  const [from, to] = mainLine(seen(someBearing({ bearing_deg: 225, place: { lon: west, lat: south } })));
+  expect(distanceM(from, to)).toBeGreaterThan(20);
 });
 
 it("the place of a bearing that somebody reported has their name, not a number", () => {

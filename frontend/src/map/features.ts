@@ -32,7 +32,7 @@ export function areaPoints(area: Area): LonLat[] {
   return area.type === "Polygon" ? (area.coordinates.flat() as LonLat[]) : (area.coordinates.flat(2) as LonLat[]);
 }
 
-/** Length of bearing lines: past the far end of the search area. */
+/** Past the far end of the search area, metres. */
 export function reachM(spec: MissionSpec | null): number {
   const box = spec && boundsOf(areaPoints(spec.area));
   return box ? 1.15 * distanceM([box[0], box[1]], [box[2], box[3]]) : 300;
@@ -83,25 +83,39 @@ function placeFeatures({ bearings }: Bearings): GeoJSON.Feature[] {
   return places.map(({ at, numbers }) => point(at, { what: "place", label: numbers.join(",") }));
 }
 
+/** How long a bearing's line is, metres: to the edge of where is flown, since nothing behind it is searched; a stub at least. */
+function rayLengths(spec: MissionSpec | null): (at: LonLat, bearing: number) => number {
+  const reach = reachM(spec);
+  if (!spec) return () => reach;
+  const flown = flightPoints(spec);
+  return (at, bearing) => {
+    const box = boundsOf([...flown, at])!;
+    const ahead = destination(at, bearing, 1);
+    const leaves = ([0, 1] as const).map((axis) => {
+      const step = ahead[axis] - at[axis];
+      return step === 0 ? reach : (box[step > 0 ? axis + 2 : axis]! - at[axis]) / step;
+    });
+    return Math.min(reach, Math.max(reach / 6, Math.min(...leaves)));
+  };
+}
+
 /** Lines and wedges (+- sigma), `quality` 0..1, `age` 0 for the newest. Other peaks of a sweep stay hypotheses. */
 function directionFeatures({ spec, bearings }: Bearings): GeoJSON.Feature[] {
-  const reach = reachM(spec);
+  const length = rayLengths(spec);
+  const ray = (at: LonLat, bearing: number) => [at, destination(at, bearing, length(at, bearing))];
   const used = bearings.filter((b) => !b.excluded);
   const counted = used.flatMap(({ fact }, i) => {
     const at = lonLat(fact.place);
     const shared = { quality: fact.quality, age: used.length - 1 - i };
     return [
-      polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, reach), { ...shared, what: "wedge" }),
-      line([at, destination(at, fact.bearing_deg, reach)], { ...shared, what: "main" }),
-      ...fact.peaks.map((peak) => line([at, destination(at, peak.bearing_deg, reach)], { ...shared, what: "peak", weight: peak.weight })),
+      polygon(wedge(at, fact.bearing_deg, fact.sigma_deg, length(at, fact.bearing_deg)), { ...shared, what: "wedge" }),
+      line(ray(at, fact.bearing_deg), { ...shared, what: "main" }),
+      ...fact.peaks.map((peak) => line(ray(at, peak.bearing_deg), { ...shared, what: "peak", weight: peak.weight })),
     ];
   });
   const leftOut = bearings
     .filter((b) => b.excluded)
-    .map(({ fact }) => {
-      const at = lonLat(fact.place);
-      return line([at, destination(at, fact.bearing_deg, reach)], { quality: fact.quality, age: 9, what: "excluded" });
-    });
+    .map(({ fact }) => line(ray(lonLat(fact.place), fact.bearing_deg), { quality: fact.quality, age: 9, what: "excluded" }));
   return [...counted, ...leftOut];
 }
 
@@ -180,18 +194,21 @@ export const measuredFeatures = (
     ...truthFeatures(mission),
   ]);
 
+/** The best candidates, whose times stand on the map; the table has them all. */
+const LABELLED = 5;
+
 export function candidateFeatures(mission: Pick<MissionView, "plan">, lit: number | null): Features {
   const plan = mission.plan?.fact;
   if (!plan) return collection([]);
   return collection(
     rankCandidates(plan)
       .toReversed()
-      .map(({ candidate, index, chosen }) =>
+      .map(({ candidate, index, chosen }, from, { length }) =>
         point(lonLat(candidate), {
           index,
           shade: roundShade(candidate, plan, chosen),
           lit: index === lit,
-          label: formatDuration(candidate.value_s),
+          label: from >= length - LABELLED || index === lit ? formatDuration(candidate.value_s) : "",
         }),
       ),
   );

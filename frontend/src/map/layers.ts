@@ -94,6 +94,10 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
     colours.rounds[4],
     colours.rounds[5],
   ];
+  /** A person's name stands below their place, a number in it. */
+  const named: ExpressionSpecification = ["case", [">", ["length", ["get", "label"]], 2], ["literal", [0, 1.5]], ["literal", [0, 0]]];
+  /** Below its dot; of the chosen one below the ring that it is dragged by. */
+  const underneath: ExpressionSpecification = ["case", ["==", ["get", "shade"], 5], ["literal", [0, 2]], ["literal", [0, 1.3]]];
   return [
     fill("no-fly", "plan", "no_fly", "fence", { "fill-color": colours.noFly, "fill-opacity": 0.25 }),
     ...(overMap ? borderHalos(colours) : []),
@@ -186,7 +190,7 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       type: "symbol",
       source: "candidates",
       filter: ["any", [">=", ["get", "shade"], 4], ["get", "lit"]],
-      layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-offset": [0, 1.3], "text-anchor": "top" },
+      layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-offset": underneath, "text-anchor": "top" },
       paint: { "text-color": colours.ink, "text-halo-color": colours.halo, "text-halo-width": 1.6 },
       metadata: { switch: "candidates" },
     },
@@ -215,8 +219,8 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
       type: "symbol",
       source: "measured",
       filter: of("place"),
-      layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-allow-overlap": true },
-      paint: { "text-color": colours.ink },
+      layout: { "text-field": ["get", "label"], "text-font": FONT, "text-size": 12, "text-offset": named, "text-allow-overlap": true },
+      paint: { "text-color": colours.ink, "text-halo-color": colours.halo, "text-halo-width": 1.6 },
     },
     {
       id: "estimate",
