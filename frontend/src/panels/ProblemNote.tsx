@@ -28,11 +28,12 @@ export const problemWords = (problem: Problem): string => `${detailOf(problem)} 
 export function ProblemText({ problem }: { problem: Problem }) {
   const title = problem.reason && TITLES[problem.status];
   const remedy = remedyOf(problem);
+  const saysMore = (e: Problem["errors"][number]) => reasonText(e.reason) !== detailOf(problem);
   const isAllInFields = problem.reason?.code === "request_invalid" && problem.errors.length > 0;
   return (
     <>
       <strong>{title ? t(title) : problem.title}.</strong> {!isAllInFields && detailOf(problem)}
-      {problem.errors.map((e) => (
+      {problem.errors.filter(saysMore).map((e) => (
         <div class="problem-field" key={e.field}>
           {e.field}: {reasonText(e.reason)}
         </div>
