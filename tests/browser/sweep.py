@@ -51,6 +51,55 @@ class Shown:
     flown: str
     """Over, and kept with its bearings."""
     held: str
+    tags: str
+    """Of eight tags, with bearings from a hand antenna; nothing flies."""
+
+
+TAGS = "\n".join(f"150.{number} hare {number}" for number in range(1, 9))
+
+ROADS = {"kind": "road"}, [[-0.004, -0.0012], [0.004, -0.0009], [0.006, 0.001]]
+RIVER = {"kind": "barrier"}, [[-0.004, 0.0002], [-0.001, 0.0004], [0.004, 0.0001]]
+BRIDGE = {"kind": "path"}, [[0.001, -0.001], [0.0012, 0.0012]]
+
+
+def ways(at: tuple[float, float]) -> bytes:
+    """A road, a river and a path over it, around a place (lon, lat), as GeoJSON."""
+    features = [
+        {
+            "type": "Feature",
+            "properties": kind,
+            "geometry": {"type": "LineString", "coordinates": [[at[0] + x, at[1] + y] for x, y in corners]},
+        }
+        for kind, corners in (ROADS, RIVER, BRIDGE)
+    ]
+    return json.dumps({"type": "FeatureCollection", "features": features}).encode()
+
+
+def search_of_tags(server: Server) -> str:
+    """A draft of eight tags, the first three heard twice by somebody with an antenna in their hand."""
+    address = server.url.rstrip("/") + "/api/missions"
+    spec = server.get("/api/defaults")["spec"]
+    first = spec["emitters"][0] | {"kind": "pulsed"}
+    named = (line.split(" ", 1) for line in TAGS.splitlines())
+    spec["emitters"] = [
+        first | {"emitter_id": f"emitter-{number}", "frequency_hz": float(mhz) * 1e6, "label": label}
+        for number, (mhz, label) in enumerate(named, 1)
+    ]
+    drafted = httpx.post(address, json=spec, timeout=60)
+    drafted.raise_for_status()
+    mission = drafted.json()["mission_id"]
+    lon, lat = spec["area"]["coordinates"][0][0]
+    for number in range(6):
+        report = {
+            "bearing_id": f"by-hand-{number}",
+            "by": "Ada",
+            "emitter_id": f"emitter-{number // 2 + 1}",
+            "place": {"lon": lon + 0.003 * (number % 2), "lat": lat},
+            "bearing_deg": (60.0, 320.0)[number % 2] - 6 * number,
+            "sigma_deg": 8,
+        }
+        httpx.post(f"{address}/{mission}/bearings", json=report, timeout=60).raise_for_status()
+    return mission
 
 
 def brought(server: Server) -> list[str]:
@@ -106,11 +155,56 @@ def last_bearing(screen: Screen) -> None:
 
 
 def sensor_opened(screen: Screen) -> None:
-    """What lies behind "more": the antenna's offset, the compass that emitters share."""
-    screen.map_ready("edit-map")
+    """What lies behind "more": the antenna's offset, the error that bearings share, what is heard on the way."""
+    suggested(screen)
     offset = screen.part("field-sensor-bearing_offset_deg")
     screen.page.locator("details.more").filter(has=offset).locator("summary").click()
-    screen.part("field-sensor-shared_errors").evaluate("(field) => field.scrollIntoView({ block: 'center' })")
+    screen.part("field-sensor-listen_on_the_way").check()
+    screen.part("field-sensor-swing_on_the_way").evaluate("(field) => field.scrollIntoView({ block: 'center' })")
+
+
+def suggested(screen: Screen) -> None:
+    """The form as it is at first, whatever an earlier picture typed."""
+    screen.map_ready("edit-map")
+    if screen.part("discard").is_visible():
+        screen.part("discard").click()
+
+
+def tags_typed(screen: Screen) -> None:
+    suggested(screen)
+    screen.part("field-emitters-0-kind").select_option("pulsed")
+    screen.part("emitter-list").fill(TAGS)
+    screen.part("emitter-list").blur()
+
+
+def moving(screen: Screen) -> None:
+    suggested(screen)
+    screen.part("field-emitters-0-movement").select_option("animal")
+    screen.part("field-localization-follow").scroll_into_view_if_needed()
+
+
+def advised(screen: Screen) -> None:
+    """Somebody on foot says where they stand and asks where to go."""
+    name = screen.part("report-name")
+    if name.is_visible():
+        name.fill("Ada")
+    screen.part("report-mode-here").click()
+    screen.part("aim-map").click(position={"x": 90, "y": 230})
+    screen.part("advice-walking").click()
+    expect(screen.part("advice-said")).to_be_visible()
+
+
+def ways_opened(screen: Screen) -> None:
+    screen.part("ways").locator("summary").click()
+    if screen.part("ways").get_attribute("data-known") == "false":
+        middle = httpx.get(f"{screen.url}/api/missions/{screen.page.url.split('/')[-2]}", timeout=60).json()
+        ring = middle["spec"]["area"]["coordinates"][0]
+        at = (sum(corner[0] for corner in ring[:4]) / 4, sum(corner[1] for corner in ring[:4]) / 4)
+        screen.part("ways-upload").set_input_files(
+            {"name": "valley.geojson", "mimeType": "application/geo+json", "buffer": ways(at)}
+        )
+        expect(screen.part("ways")).to_have_attribute("data-known", "true")
+    screen.part("ways").scroll_into_view_if_needed()
 
 
 def import_opened(screen: Screen) -> None:
@@ -172,8 +266,11 @@ def screens(at: Shown) -> dict[str, tuple[str, Prepare]]:
         "menu": ("#/", from_menu("menu")),
         "settings": ("#/", from_menu("settings")),
         "keys": ("#/", from_menu("keys")),
-        "new": ("#/new", editor_drawn),
+        "new": ("#/new", suggested),
         "sensor": ("#/new", sensor_opened),
+        "tags": ("#/new", tags_typed),
+        "moving": ("#/new", moving),
+        "eight": (f"#/mission/{at.tags}", map_drawn),
         "preflight": (f"#/mission/{at.draft}", checked),
         "import": (f"#/mission/{at.draft}", import_opened),
         "held": (f"#/mission/{at.held}", map_drawn),
@@ -183,6 +280,8 @@ def screens(at: Shown) -> dict[str, tuple[str, Prepare]]:
         "alerts": (f"#/mission/{at.held}", pressed("alerts")),
         "area": (f"#/mission/{at.held}/area", editor_drawn),
         "bearings": (f"#/mission/{at.held}/bearings", nothing),
+        "advised": (f"#/mission/{at.tags}/bearings", advised),
+        "ways": (f"#/mission/{at.tags}/bearings", ways_opened),
         "example": ("#/mission/example", on_its_way),
         "scene": (f"#/mission/{at.flown}", in_three_dimensions),
         "review": (f"#/mission/{at.flown}", last_bearing),
@@ -292,7 +391,7 @@ def main() -> None:
         draft = server.draft()
         wanted = arguments.only.split(",") if arguments.only else None
         held = held_flight(server, browser) if wanted is None or HELD & set(wanted) else draft
-        shown = screens(Shown(server, draft, flown, held))
+        shown = screens(Shown(server, draft, flown, held, search_of_tags(server)))
         for size in arguments.sizes.split(","):
             for theme in arguments.themes.split(","):
                 worn = {"theme": theme, "language": arguments.language, "scale": arguments.scale}
