@@ -254,7 +254,7 @@ export const de: Record<MessageKey, string> = {
   "advice.hopping": "Auto und Drohne",
   "advice.hop": "Dort: auf {altitude} steigen, eine Drehung, landen und weiterfahren ({time}).",
   "advice.go.straight": "{length} in Richtung {bearing}: {time}.",
-  "advice.go.around": "{length} gehen, um Unpassierbares herum, zu einem Ort {away} in Richtung {bearing}: {time}.",
+  "advice.go.around": "{length} um Hindernisse herum gehen, zu einem Ort {away} in Richtung {bearing}: {time}.",
   "advice.go.roads": "{length} auf Straßen fahren, zu einem Ort {away} in Richtung {bearing}: {time}.",
   "advice.unreached": "Zu {unreached} der {places} betrachteten Orte führt kein Weg.",
   "advice.brings": "Eine Peilung von dort senkt den erwarteten Fehler von {now} auf etwa {later}.",

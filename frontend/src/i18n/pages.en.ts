@@ -94,7 +94,7 @@ export const pagesEn = {
   "advice.hopping": "car and drone",
   "advice.hop": "There: up to {altitude}, one turn, down, and drive on ({time}).",
   "advice.go.straight": "Go {length} towards {bearing}: {time}.",
-  "advice.go.around": "Go {length}, around what cannot be crossed, to a place {away} towards {bearing}: {time}.",
+  "advice.go.around": "Go {length} around barriers, to a place {away} towards {bearing}: {time}.",
   "advice.go.roads": "Drive {length} by road to a place {away} towards {bearing}: {time}.",
   "advice.unreached": "No way leads to {unreached} of the {places} places looked at.",
   "advice.brings": "A bearing from there brings the expected error from {now} to about {later}.",

@@ -1,5 +1,5 @@
 // For somebody with an antenna in their hand: where you stand, where it points, how loud; one thumb, with or without a link.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { backspace, countAgain, keepSending, queue, report, unreached } from "../commands/reportBearings";
 import { asProblem } from "../commands/send";
 import { t } from "../i18n";
@@ -168,6 +168,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
   const [sharpness, setSharpness] = useState<Sharpness>("usual");
   const [loudness, setLoudness] = useState<Loudness>("clear");
   const [emitter, setEmitter] = useState<string | null>(null);
+  const who = useRef<HTMLDetailsElement>(null);
   const gps = useGps(setHere);
   useEffect(() => keepSending(), []);
   useEffect(() => stopCompass, []);
@@ -194,6 +195,10 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
       sigma_deg: SHARPNESS[sharpness],
       snr_db: LOUDNESS[loudness],
     });
+  };
+  const askName = () => {
+    who.current!.open = true;
+    who.current!.querySelector("input")!.focus();
   };
   const waiting = pending(queue.value);
   return (
@@ -321,7 +326,7 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
           </select>
         </label>
       )}
-      <details class="report-who" open={unnamed && signedIn === null}>
+      <details class="report-who" ref={who} open={unnamed && signedIn === null}>
         <summary>{signedIn ?? (reporter.name || t("report.who"))}</summary>
         {signedIn === null && (
           <label>
@@ -352,7 +357,13 @@ export function BearingsPage({ route }: { route: { missionId: string } }) {
         <button type="button" data-testid="report-back" disabled={!lastOf(queue.value, missionId)} onClick={() => backspace(missionId)}>
           ⌫ {t("report.back")}
         </button>
-        <button type="button" class="primary" data-testid="report-send" disabled={!ready} onClick={send}>
+        <button
+          type="button"
+          class="primary"
+          data-testid="report-send"
+          disabled={!ready && missing !== "name"}
+          onClick={missing === "name" ? askName : send}
+        >
           {missing === null && direction !== null
             ? t("report.send", { bearing: formatBearing(direction) })
             : t(`report.missing.${missing ?? "direction"}`)}

@@ -20,16 +20,17 @@ function Said() {
   const state = adviceFreshness.value;
   if (!given || !state) return null;
   if (given.localized) return <p data-testid="advice-done">{t("advice.localized")}</p>;
-  const units = settings.value.units;
-  const along = given.along ?? "straight";
+  const metres = (length: number | null | undefined) => formatLength(Math.round(length ?? 0), settings.value.units);
+  const known = given.along ?? "straight";
+  const along = known === "around" && metres(given.way_m) === metres(given.away_m) ? "straight" : known;
   const age = formatAge(Math.max(0, (shownTimeMs.value - Date.parse(given.given_at_utc)) / 1000));
   return (
     <div data-testid="advice-said" data-state={state} class={`advice-said ${state === "holds" ? "" : "muted"}`}>
       <p>
         <strong>
           {t(`advice.go.${along}`, {
-            length: formatLength(given.way_m ?? 0, units),
-            away: formatLength(given.away_m ?? 0, units),
+            length: metres(given.way_m),
+            away: metres(given.away_m),
             bearing: formatBearing(given.bearing_deg ?? 0),
             time: formatDuration(given.move_s ?? 0),
           })}
@@ -38,15 +39,15 @@ function Said() {
       {given.hop && (
         <p data-testid="advice-hop">
           {t("advice.hop", {
-            altitude: formatLength(given.hop.altitude_m, units),
+            altitude: metres(given.hop.altitude_m),
             time: formatDuration(given.hop.up_s + given.hop.turn_s + given.hop.down_s),
           })}
         </p>
       )}
       <p>
         {t("advice.brings", {
-          now: formatLength(given.error_now_m ?? 0, units),
-          later: formatLength(given.error_then_m ?? 0, units),
+          now: metres(given.error_now_m),
+          later: metres(given.error_then_m),
         })}{" "}
         {given.expected_time_s !== null && t("advice.until", { time: formatDuration(given.expected_time_s) })}
       </p>
@@ -54,7 +55,7 @@ function Said() {
         <p data-testid="advice-unreached">{t("advice.unreached", { unreached: given.unreached, places: given.places })}</p>
       )}
       <small>
-        {t(`advice.state.${state}`, { age })} {state === "holds" && along === "straight" && t("advice.straight")}
+        {t(`advice.state.${state}`, { age })} {state === "holds" && known === "straight" && t("advice.straight")}
       </small>
     </div>
   );
