@@ -68,7 +68,7 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
         <caption class="visually-hidden">{t("plan.candidates")}</caption>
         <thead>
           <tr>
-            <th scope="col">{t("plan.place")}</th>
+            <th scope="col">{t("plan.candidate")}</th>
             <th scope="col">{t("plan.value")}</th>
             <th scope="col">{t("plan.error")}</th>
             <th scope="col">{t("plan.rollouts")}</th>
