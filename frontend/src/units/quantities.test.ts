@@ -3,7 +3,8 @@ import { formatAge, formatArea, formatBearing, formatDuration, formatLength, for
 
 it("lengths keep a decimal while they are small", () => {
   expect(formatLength(9.84, "metric")).toBe("9.8 m");
-  expect(formatLength(313, "metric")).toBe("313 m");
+  expect(formatLength(313.4, "metric")).toBe("313 m");
+  expect(formatLength(50, "metric")).toBe("50 m");
   expect(formatLength(2500, "metric")).toBe("2.50 km");
   expect(formatLength(10, "imperial")).toBe("32.8 ft");
   expect(formatLength(3218.688, "imperial")).toBe("2.00 mi");

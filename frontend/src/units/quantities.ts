@@ -24,8 +24,8 @@ function grouped(value: number, digits = 0): string {
 
 export const formatNumber = grouped;
 
-/** Two significant places for small values, none for large ones. */
-const digitsFor = (value: number) => (Math.abs(value) < 100 ? 1 : 0);
+/** A decimal for small values that have any: a goal of 50 m was set, not measured. */
+const digitsFor = (value: number) => (Math.abs(value) < 100 && !Number.isInteger(value) ? 1 : 0);
 
 export function formatLength(metres: number, units: UnitSystem): string {
   if (units === "imperial") {
