@@ -15,6 +15,7 @@ from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.maps.ways_folder import WaysFolder
 from backend.spec import LonLat, MissionSpec, Polygon
+from backend.store.ways_files import WaysFiles
 from backend.wire.ways import MissionWays
 from backend.workers import Workers
 
@@ -23,7 +24,7 @@ router = APIRouter(prefix="/api/missions/{mission_id}/ways", tags=["planning"], 
 
 def ways_folder(services: ServicesDep) -> WaysFolder:
     """One for each request; all of it is on disk."""
-    return WaysFolder(services.settings.data_dir / "ways", services.settings.disk_low_bytes)
+    return WaysFolder(WaysFiles.of_settings(services.settings), services.settings.disk_low_bytes)
 
 
 WaysFolderDep = Annotated[WaysFolder, Depends(ways_folder)]

@@ -20,6 +20,7 @@ from backend.maps.ways import read_ways
 from backend.reasons.request import BodyTooLarge
 from backend.search.ground_ways import Traced
 from backend.spec import LonLat
+from backend.store.ways_files import WaysFiles
 from backend.wire.ways import MissionWays
 from backend.workers import Workers
 
@@ -28,19 +29,19 @@ from backend.workers import Workers
 class WaysFolder:
     """reserve_bytes: disk that no upload may take, kept for the journal."""
 
-    directory: Path
+    files: WaysFiles
     reserve_bytes: int = 0
 
     def json(self, mission_id: str) -> bytes:
         """Of MissionWays, as it was stored; empty ways when there are none."""
         try:
-            return self.path(mission_id).read_bytes()
+            return self.files.path(mission_id).read_bytes()
         except FileNotFoundError:
             return MissionWays().model_dump_json().encode()
 
     def traced(self, mission_id: str) -> tuple[Traced, ...]:
         """Shapes; read once until they change."""
-        path = self.path(mission_id)
+        path = self.files.path(mission_id)
         try:
             return _traced(path, path.stat().st_mtime_ns)
         except FileNotFoundError:
@@ -48,7 +49,7 @@ class WaysFolder:
 
     def forget(self, mission_id: str) -> None:
         """Nothing happens when there are none. Raises OSError."""
-        self.path(mission_id).unlink(missing_ok=True)
+        self.files.forget([mission_id])
 
     async def store(
         self,
@@ -61,7 +62,7 @@ class WaysFolder:
         workers: Workers,
     ) -> MissionWays:
         """Read an upload and keep what it holds in the place of what was there. Raises MapRefused, WorkStopped."""
-        async with received(body, announced_bytes, self.directory, self.reserve_bytes, _look, now) as upload:
+        async with received(body, announced_bytes, self.files.directory, self.reserve_bytes, _look, now) as upload:
             return await workers.run(self.keep_file, mission_id, area, upload.path, name, now)
 
     def keep_file(self, mission_id: str, area: Sequence[LonLat], path: Path, name: str, now: datetime) -> MissionWays:
@@ -70,12 +71,8 @@ class WaysFolder:
         Raises MapRefused.
         """
         ways = read_ways(path.read_bytes(), area, name, now)
-        replace_text(self.path(mission_id), ways.model_dump_json())
+        replace_text(self.files.path(mission_id), ways.model_dump_json())
         return ways.model_copy(update={"features": []})
-
-    def path(self, mission_id: str) -> Path:
-        """Of its file, if there is one."""
-        return self.directory / f"{mission_id}.json"
 
 
 @lru_cache(maxsize=4)

@@ -19,6 +19,7 @@ from backend.store.reading import why
 from backend.store.retention import keep_thin
 from backend.store.spool import Spool, SpoolForeign, SpoolTaken, claim
 from backend.store.told_folder import ToldFolder
+from backend.store.ways_files import WaysFiles
 from planner.reason import ReasonedError
 
 CLAIM_PATIENCE_S = 3.0
@@ -92,8 +93,9 @@ async def _opened(settings: Settings, url: str, now: Callable[[], float]) -> Asy
     try:
         await journal.start_up()
         beside.append(asyncio.create_task(journal.run()))
-        folders = IqFolder.of_settings(settings), ToldFolder.of_settings(settings)
-        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, *folders)))
+        others = ToldFolder.of_settings(settings), WaysFiles.of_settings(settings)
+        iq = IqFolder.of_settings(settings)
+        beside.append(asyncio.create_task(keep_thin(engine, settings.keep_sweeps_days, iq, *others)))
         yield journal
     finally:
         for task in beside:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from sqlalchemy import ColumnElement, delete, func, select, true, tuple_
 from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
@@ -21,7 +22,6 @@ from backend.store.digest import to_us
 from backend.store.iq_folder import IqFolder
 from backend.store.paths import MOST_POINTS, packed_path
 from backend.store.tables import events, missions, paths, sweeps, tracks
-from backend.store.told_folder import ToldFolder
 
 log = logging.getLogger("crossfix.store")
 
@@ -157,28 +157,45 @@ async def bury(engine: AsyncEngine, keep_days: float, now: datetime) -> int:
         await asyncio.sleep(PAUSE_S)
 
 
+class Beside(Protocol):
+    """Files that are kept beside the database, by mission."""
+
+    def missions(self) -> list[str]:
+        """Of which anything is kept."""
+        ...
+
+    def forget(self, mission_ids: Collection[str]) -> None:
+        """All of them. Raises OSError."""
+        ...
+
+
+async def forget_gone(engine: AsyncEngine, beside: Beside) -> list[str]:
+    """What is kept of missions that are gone. Their ids. Raises what the driver raises, OSError."""
+    return await _forget(engine, beside, true())
+
+
 async def thin_iq(engine: AsyncEngine, iq: IqFolder, keep_days: float | None, now: datetime) -> list[str]:
     """Take the IQ of missions that are older than the rule, and of those that are gone. Their ids. Raises what the
     driver raises. keep_days None: IQ of missions that are there is kept for ever."""
-    return await _take_files(engine, iq, true() if keep_days is None else ~_old(keep_days, now))
+    return await _forget(engine, iq, true() if keep_days is None else ~_old(keep_days, now))
 
 
-async def _take_files(engine: AsyncEngine, folder: IqFolder | ToldFolder, stays: ColumnElement[bool]) -> list[str]:
-    """What a folder keeps of other missions than those that stay. Their ids."""
-    kept = await asyncio.to_thread(folder.missions)
+async def _forget(engine: AsyncEngine, beside: Beside, stays: ColumnElement[bool]) -> list[str]:
+    """What is kept beside the database of missions that are not there, or not to stay."""
+    kept = await asyncio.to_thread(beside.missions)
     staying: set[str] = set()
     async with engine.connect() as connection:
         for at in range(0, len(kept), AT_ONCE):
             named = missions.c.mission_id.in_(kept[at : at + AT_ONCE])
             staying |= set(await connection.scalars(select(missions.c.mission_id).where(named & stays)))
     taken = [mission_id for mission_id in kept if mission_id not in staying]
-    await asyncio.to_thread(folder.forget, taken)
+    await asyncio.to_thread(beside.forget, taken)
     return taken
 
 
-async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, told: ToldFolder) -> None:
+async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, *others: Beside) -> None:
     """Beside a running server: soon after its start, then every few hours. Runs until cancelled; no error ends it.
-    keep_days None: raw sweeps are kept for ever; paths are packed all the same.
+    keep_days None: raw sweeps are kept for ever; paths are packed all the same. others: kept as long as the mission.
 
     The wall's clock counts, as everywhere in retention: a sped-up mission is no older for it.
     """
@@ -187,14 +204,8 @@ async def keep_thin(engine: AsyncEngine, keep_days: float | None, iq: IqFolder, 
         await asyncio.sleep(wait_s)
         wait_s = EVERY_S
         now = datetime.now(UTC)
-        chores = (
-            _bury,
-            pack_paths,
-            partial(_take_iq, iq, keep_days),
-            partial(_take_told, told),
-            partial(_take_sweeps, keep_days),
-        )
-        for chore in chores:
+        beside = (partial(_take_iq, iq, keep_days), *(partial(_take_gone, other) for other in others))
+        for chore in (_bury, pack_paths, *beside, partial(_take_sweeps, keep_days)):
             try:
                 await chore(engine, now)
             except Exception:
@@ -211,8 +222,8 @@ async def _take_iq(iq: IqFolder, keep_days: float | None, engine: AsyncEngine, n
     await thin_iq(engine, iq, keep_days, now)
 
 
-async def _take_told(told: ToldFolder, engine: AsyncEngine, _: datetime) -> None:
-    await _take_files(engine, told, true())
+async def _take_gone(beside: Beside, engine: AsyncEngine, _now: datetime) -> None:
+    await forget_gone(engine, beside)
 
 
 async def _take_sweeps(keep_days: float | None, engine: AsyncEngine, now: datetime) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from datetime import UTC, datetime, timedelta
 
 import httpx
 import pytest
@@ -11,6 +12,9 @@ from shapely import LineString, Point, box
 
 from backend.api.suggestion import suggested_mission
 from backend.spec import Polygon
+from backend.store.engine import engine_for_once
+from backend.store.retention import bury, forget_gone
+from backend.store.ways_files import WaysFiles
 from hardware.frame import LocalFrame
 from hardware.readings import Place
 
@@ -147,3 +151,20 @@ async def test_hostile_files_are_refused_and_what_was_there_stays(client: httpx.
     assert (await client.get(address)).json()["roads_m"] > 0
     nowhere = await client.post("/api/missions/none/ways", content=file_of(feature("road", "LineString", *ROAD)))
     assert nowhere.status_code == 404
+
+
+async def test_ways_stay_with_a_deleted_mission_and_go_when_it_is_buried(client, mission, settings) -> None:
+    assert (await uploaded(client, mission, feature("path", "LineString", *ROAD))).status_code == 201
+    ways = WaysFiles.of_settings(settings)
+    (ways.directory / "stranger.json").write_bytes(ways.path(mission).read_bytes())
+    engine = engine_for_once(settings.async_database_url, 60.0)
+    late = datetime.now(UTC) + timedelta(days=400)
+    try:
+        assert await forget_gone(engine, ways) == ["stranger"]
+        assert (await client.delete(f"/api/missions/{mission}")).status_code == 204
+        assert await forget_gone(engine, ways) == [], "it can be restored, with its ways"
+        assert await bury(engine, 30.0, late) == 1
+        assert await forget_gone(engine, ways) == [mission]
+    finally:
+        await engine.dispose()
+    assert list(ways.directory.iterdir()) == []

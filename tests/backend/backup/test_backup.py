@@ -39,7 +39,12 @@ SWEEP = Sweep(
     np.array([10.0, 10.5, 11.0]), np.array([0.0, 15.0, 30.0]), np.array([-80.0, math.nan, -70.0]), 868e6, HOME, 140.0
 )
 POINTS = [TrackPoint(1.7e9 + n, 50.0 + n * 1e-5, 7.0, 140.0, 40.0, None, 80.0, "AUTO \U0001f681") for n in range(4)]
-FILES = {"maps/0123.pmtiles": b"PMTiles\x03" + bytes(5000), "maps/0123.json": b"{}", "terrain/flown/ab": b"heights"}
+FILES = {
+    "maps/0123.pmtiles": b"PMTiles\x03" + bytes(5000),
+    "maps/0123.json": b"{}",
+    "terrain/flown/ab": b"heights",
+    "ways/flown.json": b"{}",
+}
 
 
 def hold(n: int) -> HoldOrdered:

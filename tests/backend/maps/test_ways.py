@@ -15,6 +15,7 @@ from backend.maps.ways import MOST_POSITIONS, kind_of, read_ways
 from backend.maps.ways_folder import WaysFolder
 from backend.reasons.maps import NotReadableAs, PartLeftOut
 from backend.reasons.ways import FarFromSearch, NeitherWayNorBarrier, NoWaysInFile, WaysTooFar, WaysTooMany
+from backend.store.ways_files import WaysFiles
 from backend.wire.ways import MissionWays
 
 NOW = datetime(2026, 5, 1, 12, tzinfo=UTC)
@@ -173,7 +174,7 @@ def test_more_positions_than_can_be_planned_on_are_refused() -> None:
 
 
 def test_the_last_upload_counts_until_it_is_forgotten(tmp_path: Path) -> None:
-    folder = WaysFolder(tmp_path)
+    folder = WaysFolder(WaysFiles(tmp_path))
     assert folder.traced("m-1") == ()
     assert MissionWays.model_validate_json(folder.json("m-1")) == MissionWays()
     for content, kinds in (

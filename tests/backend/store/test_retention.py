@@ -20,6 +20,7 @@ from backend.store.engine import engine_for_once
 from backend.store.iq_folder import IqFolder
 from backend.store.retention import old_sweeps, thin
 from backend.store.told_folder import ToldFolder
+from backend.store.ways_files import WaysFiles
 from hardware.readings import Sweep
 
 DRAFT = MissionDrafted(spec=SPEC)
@@ -84,8 +85,8 @@ async def test_a_chore_that_fails_keeps_none_of_the_others_from_its_turn(bench, 
         monkeypatch.setattr(retention, name, failing)
     monkeypatch.setattr(retention, "FIRST_AFTER_S", 0.0)
     engine = engine_for_once(bench.url, 60.0)
-    folders = IqFolder(tmp_path / "iq"), ToldFolder(tmp_path / "told")
-    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, *folders))
+    others = ToldFolder(tmp_path / "told"), WaysFiles(tmp_path)
+    keeping = asyncio.create_task(retention.keep_thin(engine, 30.0, IqFolder(tmp_path / "iq"), *others))
     async with asyncio.timeout(60):
         while (await old_sweeps(engine, 30.0, datetime.now(UTC))).sweeps:  # noqa: ASYNC110 (it says nothing)
             await asyncio.sleep(0.05)
