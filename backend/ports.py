@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
@@ -61,6 +61,17 @@ class FactRefused(ReasonedError, ValueError):
     """The journal will never take this: the fact makes no sense, or another writer has used its place."""
 
 
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """What the list says of a mission, for which none of its facts is read. started_at_s: UTC epoch seconds, None
+    before. crafts: what each that is engaged did last."""
+
+    started_at_s: float | None
+    ended: bool
+    deleted: bool
+    crafts: Mapping[str, Phase]
+
+
 class Journal(Protocol):
     """Append-only facts. `append` returns only when they are durable; nothing is published before that."""
 
@@ -74,6 +85,14 @@ class Journal(Protocol):
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
         """The events after number `after`, in order; empty for an unknown mission. Raises JournalUnavailable."""
+        ...
+
+    async def listed(self, mission_id: str) -> Listed | None:
+        """None for an unknown mission. Raises JournalUnavailable."""
+        ...
+
+    async def append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        """As `append`, to a mission whose facts cannot be read: what they follow is known from the list alone."""
         ...
 
     async def save_sweep(

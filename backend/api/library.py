@@ -11,7 +11,7 @@ from fastapi import APIRouter, Query, Response
 from pydantic import TypeAdapter
 
 from backend.api.dependencies import MissionId, PrincipalDep, ServicesDep
-from backend.api.missions import get_mission
+from backend.api.missions import get_mission, mission_line
 from backend.api.problems import PROBLEM_RESPONSES
 from backend.api.services import Services
 from backend.ports import JournalDamaged
@@ -20,7 +20,7 @@ from backend.search.told import FACTS_NEEDED, Told, told
 from backend.store.digest import MissionDigest
 from backend.store.reading import Wanted
 from backend.wire.library import Calibration, MissionLabels, TruthTold
-from backend.wire.resources import Mission
+from backend.wire.resources import Mission, MissionSummary
 
 router = APIRouter(prefix="/api", tags=["library"], responses=PROBLEM_RESPONSES)
 
@@ -48,15 +48,16 @@ async def tell_truth(mission_id: MissionId, told: TruthTold, services: ServicesD
 
 @router.delete("/missions/{mission_id}", status_code=204)
 async def delete_mission(mission_id: MissionId, services: ServicesDep, principal: PrincipalDep) -> None:
-    """Take a mission out of the list; for thirty days it can be restored. 409 while it flies."""
+    """Take a mission out of the list, one whose facts are damaged, too; for thirty days it can be restored. 409 while
+    it flies."""
     await services.missions.review.delete(mission_id, principal.name)
 
 
 @router.post("/missions/{mission_id}/restore")
-async def restore_mission(mission_id: MissionId, services: ServicesDep, principal: PrincipalDep) -> Mission:
-    """Bring a deleted mission back into the list."""
+async def restore_mission(mission_id: MissionId, services: ServicesDep, principal: PrincipalDep) -> MissionSummary:
+    """Bring a deleted mission back into the list; one whose facts are damaged, too."""
     await services.missions.review.restore(mission_id, principal.name)
-    return await get_mission(mission_id, services)
+    return await mission_line(services, mission_id)
 
 
 @router.get("/calibration", response_model=Calibration)

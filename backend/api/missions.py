@@ -22,7 +22,7 @@ from backend.spec import MissionSpec
 from backend.store.digest import MissionDigest, to_us
 from backend.store.reading import PlaceInList, Wanted
 from backend.wire.library import ResultName
-from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, PreflightReply
+from backend.wire.resources import AntennaCheckRequest, Mission, MissionList, MissionSummary, PreflightReply
 
 _NUMBER = r"-?[0-9]{1,3}(\.[0-9]{1,12})?"
 BOX = rf"^{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}$"
@@ -44,6 +44,13 @@ async def _mission(services: Services, mission_id: str) -> Mission:
     kept = await asyncio.to_thread(services.iq.sizes, [mission_id])
     recorded = await services.journal.read_kinds(mission_id, summary.DETAIL_KINDS)
     return summary.mission(digest, kept.get(mission_id, 0), recorded)
+
+
+async def mission_line(services: Services, mission_id: str) -> MissionSummary:
+    """As the list has it, without a look at its facts. Raises MissionNotFound."""
+    digest = await stored_mission(services, mission_id)
+    kept = await asyncio.to_thread(services.iq.sizes, [mission_id])
+    return summary.mission_summary(digest, kept.get(mission_id, 0))
 
 
 @router.get("")

@@ -11,7 +11,7 @@ from backend.mission.effects import Effect
 from backend.mission.inputs import Input
 from backend.mission.machine import transition
 from backend.mission.state import MissionState, fold
-from backend.ports import Journal, Publisher
+from backend.ports import Journal, Listed, Publisher
 from backend.search.area import corner_of
 from backend.search.effects import Record
 from backend.search.errors import MissionInputError, MissionNotFound
@@ -59,6 +59,17 @@ class Records:
         recorded = await self._journal.append(mission_id, events)
         self._publisher.events(recorded)
         return recorded[-1].seq
+
+    async def append_unread(self, mission_id: str, events: Sequence[Event]) -> None:
+        """To a mission whose facts cannot be read; see ports.Journal."""
+        self._publisher.events(await self._journal.append_unread(mission_id, events))
+
+    async def listed(self, mission_id: str) -> Listed:
+        """Raises MissionNotFound."""
+        listed = await self._journal.listed(mission_id)
+        if listed is None:
+            raise MissionNotFound(mission_id)
+        return listed
 
     async def settle_beliefs(self, mission_id: str) -> None:
         """On the ground nobody folds the beliefs when bearings come or go, or the area under them changes."""

@@ -6,9 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from backend.events import (
+    Event,
     MissionDeleted,
+    MissionEnded,
     MissionLabelled,
     MissionRestored,
+    PhaseChanged,
     Recorded,
     ReviewFact,
     Supposition,
@@ -20,7 +23,8 @@ from backend.events.review import TruthWay
 from backend.mission.flights import Flights
 from backend.mission.learning import learn_from_truth
 from backend.mission.records import Records
-from backend.reasons import refusals
+from backend.ports import JournalDamaged
+from backend.reasons import Interrupted, refusals
 from backend.reasons.search import WhichEmitter
 from backend.search.errors import MissionConflict, MissionInputError
 from backend.search.inputs import Reviewed
@@ -93,14 +97,36 @@ class Review:
     async def delete(self, mission_id: str, by: str) -> None:
         """Out of the list, to be restored for some days. Raises MissionConflict while it is under way."""
         async with self.records.lock(mission_id):  # no start comes in between
-            state, _ = await self.records.load(mission_id)
+            try:
+                state, _ = await self.records.load(mission_id)
+            except JournalDamaged:
+                await self._delete_unread(mission_id, by)
+                return
             if self.flights.running(mission_id) is not None or state.search.stage == "open":
                 raise MissionConflict(refusals.StillUnderWay())
             await self.records.give(mission_id, state, Reviewed(MissionDeleted(by=by)))
 
     async def restore(self, mission_id: str, by: str) -> None:
         """Into the list again."""
-        await self._record(mission_id, MissionRestored(by=by))
+        try:
+            await self._record(mission_id, MissionRestored(by=by))
+        except JournalDamaged:
+            async with self.records.lock(mission_id):
+                if (await self.records.listed(mission_id)).deleted:
+                    await self.records.append_unread(mission_id, [MissionRestored(by=by)])
+
+    async def _delete_unread(self, mission_id: str, by: str) -> None:
+        """One whose facts are damaged. No craft flies for it, whatever it did last: none came back with it."""
+        listed, why = await self.records.listed(mission_id), Interrupted("unreadable")
+        facts: list[Event] = [
+            PhaseChanged(craft_id=craft_id, before=phase, after="ground", reason=why)
+            for craft_id, phase in listed.crafts.items()
+        ]
+        if listed.started_at_s is not None and not listed.ended:
+            flown_s = self.flights.equipment.clock.now() - listed.started_at_s
+            facts.append(MissionEnded(outcome="failed", reason=why, mission_time_s=flown_s))
+        if not listed.deleted:
+            await self.records.append_unread(mission_id, [*facts, MissionDeleted(by=by)])
 
     async def _record(self, mission_id: str, fact: ReviewFact) -> None:
         if self.flights.running(mission_id) is not None:

@@ -132,7 +132,7 @@ class MissionDamaged:
     code: Literal["mission_damaged"] = "mission_damaged"
     english: ClassVar[Words] = Words(
         "What is stored of mission {mission_id} is damaged and cannot be read: {detail}.",
-        "The other missions are not touched by that; a backup may hold this one whole.",
+        "The other missions are not touched by that; a backup may hold this one whole. It can be deleted in the list.",
     )
 
 

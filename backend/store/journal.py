@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 from sqlalchemy.ext.asyncio import AsyncEngine
 
 from backend.events import Event, MissionBroughtIn, Recorded
-from backend.ports import FactRefused, JournalDamaged, JournalUnavailable, Kept, TrackPoint
+from backend.ports import FactRefused, JournalDamaged, JournalUnavailable, Kept, Listed, TrackPoint
 from backend.reasons.storage import FactUnfit, WrittenElsewhere
 from backend.store.brought import Brought, bring_in
 from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
@@ -119,6 +119,21 @@ class SqlJournal:
             self._written[mission_id] = known
             self._forget_ended()
         return recorded
+
+    async def append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        """As append, to a mission whose facts cannot be read. Raises FactRefused for one that is not there."""
+        return await self._whole(self._append_unread(mission_id, events))
+
+    async def _append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        async with self._lock:
+            digest = await self._stored.mission(mission_id)
+            last = max((row.seq for e in self._delivery.waiting_events(mission_id) for row in e.rows), default=0)
+            last = max(last, 0 if digest is None else digest.last_seq)
+            if digest is None:
+                raise FactRefused(FactUnfit("journal", f"there is no mission {mission_id}"))
+            entry = _entry(mission_id, last + 1, datetime.fromtimestamp(self._now(), UTC), events)
+            await self._delivery.store(entry)
+            return to_records(mission_id, entry.rows)
 
     async def bring_in(self, brought: Brought, by: str) -> bool:
         """A mission of another installation, with the times it had there, and the fact that it was brought in. All of
@@ -263,6 +278,15 @@ class SqlJournal:
         if mission_id in self._written:
             return self._written[mission_id].digest
         return await self._stored.mission(mission_id)
+
+    async def listed(self, mission_id: str) -> Listed | None:
+        """See ports.Journal."""
+        digest = await self.mission(mission_id)
+        if digest is None:
+            return None
+        started_at_s = None if digest.started_at_us is None else digest.started_at_us / 1e6
+        deleted = digest.entry.deleted_at_us is not None
+        return Listed(started_at_s, digest.ended_at_us is not None, deleted, digest.crafts)
 
     async def missions(self) -> list[MissionDigest]:
         """All missions, newest first."""

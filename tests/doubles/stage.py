@@ -30,6 +30,7 @@ from backend.ports import (
     Grounds,
     JournalUnavailable,
     Lessons,
+    Listed,
     NoGrounds,
     NoLessons,
     SectorShown,
@@ -80,6 +81,16 @@ class MemoryJournal:
 
     async def read(self, mission_id: str, after: int = 0) -> list[Recorded]:
         return self.stored.get(mission_id, [])[after:]
+
+    async def append_unread(self, mission_id: str, events: Sequence[Event]) -> list[Recorded]:
+        return await self.append(mission_id, events)
+
+    async def listed(self, mission_id: str) -> Listed | None:
+        if mission_id not in self.stored:
+            return None
+        state = self.state(mission_id)
+        crafts = {craft.craft_id: craft.phase for craft in state.engaged}
+        return Listed(state.search.started_at_s, state.search.stage == "ended", state.search.deleted, crafts)
 
     async def save_sweep(
         self,

@@ -1697,7 +1697,7 @@ export const reasonsEn: ReasonTable = {
   },
   mission_damaged: {
     text: "What is stored of mission {mission_id} is damaged and cannot be read: {detail}.",
-    remedy: "The other missions are not touched by that; a backup may hold this one whole.",
+    remedy: "The other missions are not touched by that; a backup may hold this one whole. It can be deleted in the list.",
   },
   database_unfit: {
     text: "The database {database} cannot be used: {detail}.",

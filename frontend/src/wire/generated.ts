@@ -486,7 +486,8 @@ export interface paths {
         post?: never;
         /**
          * Delete Mission
-         * @description Take a mission out of the list; for thirty days it can be restored. 409 while it flies.
+         * @description Take a mission out of the list, one whose facts are damaged, too; for thirty days it can be restored. 409 while it
+         *     flies.
          */
         delete: operations["delete_mission"];
         options?: never;
@@ -939,7 +940,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Mission
-         * @description Bring a deleted mission back into the list.
+         * @description Bring a deleted mission back into the list; one whose facts are damaged, too.
          */
         post: operations["restore_mission"];
         delete?: never;
@@ -10755,7 +10756,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Mission"];
+                    "application/json": components["schemas"]["MissionSummary"];
                 };
             };
             /** @description What went wrong and how to mend it */

@@ -4,6 +4,18 @@ from __future__ import annotations
 
 from uuid import uuid4
 
+import pytest
+from facts import HOME
+from sqlalchemy import text
+
+from backend.events import Event, MissionLabelled, MissionStarted, PhaseChanged
+from backend.reasons.flight import Ordered
+from backend.store.engine import make_engine
+from backend.store.journal import SqlJournal
+from backend.store.spool import Spool
+
+NOW_S = 1_700_000_000.0
+
 AREA = {"type": "Polygon", "coordinates": [[[7.2, 50.6], [7.204, 50.6], [7.204, 50.602], [7.2, 50.602], [7.2, 50.6]]]}
 FAR = {"type": "Polygon", "coordinates": [[[8.2, 51.6], [8.204, 51.6], [8.204, 51.602], [8.2, 51.602], [8.2, 51.6]]]}
 
@@ -168,3 +180,57 @@ async def test_the_truth_is_told_and_the_last_word_counts(client):
     assert (checked["missions"], checked["not_found"], checked["fixes"]) == (1, 1, [])
     wrong = {**told, "emitter_id": "nobody"}
     assert (await client.put(f"/api/missions/{mission_id}/truth", json=wrong)).status_code == 422
+
+
+async def damaged(settings, mission_id: str, *facts: Event) -> None:
+    """With these facts besides, written by a server before; then its draft is no text any more."""
+    spool = Spool(settings.data_dir / "before.spool", 64 * 1024)
+    before = SqlJournal(make_engine(settings.async_database_url, 60.0), spool, lambda: NOW_S, timeout_s=60.0)
+    await before.append(mission_id, facts)
+    await before.close()
+    engine = make_engine(settings.async_database_url, 60.0)
+    async with engine.execution_options(write=True).begin() as connection:
+        await connection.execute(
+            text("UPDATE events SET body = :body WHERE mission_id = :mission_id AND seq = 1"),
+            {"body": b"\x78\x9c no text", "mission_id": mission_id},
+        )
+    await engine.dispose()
+
+
+def forgotten(services, mission_id: str) -> None:
+    """By this server's memory, as after a restart."""
+    services.journal._written.pop(mission_id, None)
+
+
+IN_FLIGHT = (
+    MissionStarted(craft_id="craft-1", by="ben", home=HOME, home_amsl_m=100.0, software="0"),
+    PhaseChanged(craft_id="craft-1", before="ground", after="flying", reason=Ordered("start", "ben")),
+)
+
+
+@pytest.mark.parametrize("facts", [(), IN_FLIGHT], ids=["a draft", "never landed"])
+async def test_a_damaged_mission_says_so_and_is_deleted_and_brought_back_like_any_other(
+    client, services, settings, facts
+):
+    mission_id = await draft(client, name="bad")
+    await draft(client, name="good")
+    forgotten(services, mission_id)
+    await damaged(settings, mission_id, *facts, MissionLabelled(name="bad", tags=[], notes="", by="ben"))
+    forgotten(services, mission_id)
+    opened = await client.get(f"/api/missions/{mission_id}")
+    assert (opened.status_code, opened.json()["reason"]["code"]) == (500, "mission_damaged")
+    assert "deleted" in opened.json()["remedy"]
+    for _ in range(2):  # again changes nothing
+        assert (await client.delete(f"/api/missions/{mission_id}")).status_code == 204
+        assert await names(client) == {"good"}
+        assert await names(client, deleted=True) == {"bad"}
+    (line,) = (await client.get("/api/missions", params={"deleted": True})).json()["missions"]
+    assert not line["flying"], "so that it is buried when its time is up"
+    assert line["outcome"] == ("failed" if facts else None)
+    assert line["last_seq"] == (7 if facts else 3)
+    for _ in range(2):
+        back = await client.post(f"/api/missions/{mission_id}/restore")
+        assert (back.status_code, back.json()["deleted_at_utc"]) == (200, None)
+        assert await names(client) == {"bad", "good"}
+    assert (await client.delete("/api/missions/none")).status_code == 404
+    assert (await client.post("/api/missions/none/restore")).status_code == 404

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime, timedelta
 
 import pytest
 from facts import HOME, SPEC
@@ -12,7 +13,7 @@ from sqlalchemy import text
 
 from backend.backup.making import make_backup
 from backend.backup.restoring import restore
-from backend.events import MissionDrafted, MissionEdited, NetsNoted
+from backend.events import MissionDeleted, MissionDrafted, MissionEdited, MissionRestored, NetsNoted
 from backend.ports import FactRefused, JournalDamaged, TrackPoint
 from backend.reasons.storage import DatabaseLater, MissionDamaged
 from backend.settings import Settings
@@ -22,6 +23,8 @@ from backend.store.engine import make_engine
 from backend.store.journal import SqlJournal
 from backend.store.opening import DatabaseUnusable, open_journal
 from backend.store.packed import MARK
+from backend.store.reading import Wanted
+from backend.store.retention import bury
 from backend.store.tables import paths
 from hardware.fence import Nets
 
@@ -85,6 +88,31 @@ async def test_nets_are_owed_though_another_mission_is_damaged(bench) -> None:
     await damage(bench.url, "bad", 3)
     journal = await bench.open("other.spool")
     assert [record.mission_id for record in await journal.of_nets()] == ["good"]
+
+
+async def test_a_damaged_mission_takes_what_needs_none_of_its_facts(bench) -> None:
+    bench.timeout_s = PATIENCE_S
+    await write(await bench.open())
+    await damage(bench.url, "bad", 2)
+    journal = await bench.open("other.spool")
+    with pytest.raises(JournalDamaged):
+        await journal.append("bad", [MissionDeleted(by="anna")])
+    (deleted,) = await journal.append_unread("bad", [MissionDeleted(by="anna")])
+    assert deleted.seq == 4
+    listed = await journal.listed("bad")
+    assert listed is not None
+    assert listed.deleted
+    assert {digest.mission_id for digest in await journal.page(10)} == {"good"}
+    assert {digest.mission_id for digest in await journal.page(10, wanted=Wanted(deleted=True))} == {"bad"}
+    assert (await journal.append_unread("bad", [MissionRestored(by="ben")]))[0].seq == 5
+    assert {digest.mission_id for digest in await journal.page(10)} == {"bad", "good"}
+    engine = make_engine(bench.url, PATIENCE_S)
+    await journal.append_unread("bad", [MissionDeleted(by="anna")])
+    assert await bury(engine, 30.0, datetime.now(UTC) + timedelta(days=40)) == 1, "gone like any other"
+    await engine.dispose()
+    assert await journal.read("bad") == []
+    with pytest.raises(FactRefused, match="there is no mission"):
+        await journal.append_unread("bad", [MissionRestored(by="ben")])
 
 
 async def test_a_text_that_is_no_fact_is_damage_too(bench) -> None:
