@@ -12,6 +12,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection, AsyncEngine
 
 from backend.auth.registry import Invitation, MachineToken, Person, Session
 from backend.store import tables
+from backend.store.engine import dispose
 from backend.store.patience import patience
 from backend.store.reading import unavailable
 
@@ -72,7 +73,7 @@ class Records:
 
     async def close(self) -> None:
         """Its connections."""
-        await self._engine.dispose()
+        await dispose(self._engine)
 
     async def _done(self, work: Callable[[AsyncConnection], Awaitable[Any]]) -> Any:
         try:

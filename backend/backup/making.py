@@ -21,7 +21,7 @@ from backend.backup.archive import BLOCK_BYTES, ArchiveWriter
 from backend.backup.manifest import DATABASE, FILES, FORMAT, PATTERN, SPOOL, BackupError, Manifest, of_the_machine
 from backend.backup.rows import lines_of, reflected, revision_of
 from backend.settings import Settings
-from backend.store.engine import engine_for_once
+from backend.store.engine import dispose, engine_for_once
 from backend.store.reading import why
 from backend.store.spool import SpoolForeign, entries_beside
 from backend.version import VERSION
@@ -90,7 +90,7 @@ async def _write(
     try:
         revision = await _write_tables(engine, archive, progress)
     finally:
-        await engine.dispose()
+        await dispose(engine)
     with archive.part(SPOOL) as part:
         for payload in waiting:
             part.write(payload + b"\n")

@@ -58,7 +58,7 @@ async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[in
     from sqlalchemy import make_url
 
     from backend.store import retention
-    from backend.store.engine import engine_for_once, shrink
+    from backend.store.engine import dispose, engine_for_once, shrink
     from backend.store.iq_folder import IqFolder
     from backend.store.opening import DatabaseUnusable, claimed
 
@@ -82,5 +82,5 @@ async def _thin(settings: Settings, keep_days: float, dry_run: bool) -> tuple[in
                     "the server runs: the freed space is used again, and the file shrinks when this is run without it"
                 )
     finally:
-        await engine.dispose()
+        await dispose(engine)
     return taken.missions, taken.sweeps, taken.size_bytes

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import time
+from collections.abc import Iterable
 from pathlib import Path
+from threading import Thread
 from typing import Any
+from weakref import WeakKeyDictionary
 
+import aiosqlite
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Engine, create_engine, event, make_url
+from sqlalchemy import Connection, Dialect, Engine, create_engine, event, make_url
 from sqlalchemy.ext.asyncio import AsyncEngine, create_async_engine
 from sqlalchemy.pool import NullPool
 
@@ -37,6 +42,7 @@ def make_engine(url: str, timeout_s: float) -> AsyncEngine:
         _make_folder(url)
         engine = create_async_engine(url, connect_args={"timeout": SHORTER * timeout_s})
         _configure_sqlite(engine.sync_engine)
+        _keep_threads(engine.sync_engine)
         return engine
     return create_async_engine(
         url,
@@ -53,6 +59,43 @@ def make_direct_engine(engine: AsyncEngine, timeout_s: float) -> Engine:
     direct = create_engine(url, connect_args={"timeout": SHORTER * timeout_s})
     _configure_sqlite(direct)
     return direct
+
+
+_threads: WeakKeyDictionary[Dialect, set[Thread]] = WeakKeyDictionary()
+"""Of every connection to SQLite, by what all variants of an engine share."""
+ENDS_S = 5.0
+
+
+def _keep_threads(engine: Engine) -> None:
+    """Each connection to SQLite is a thread, which answers to the event loop; also one whose caller has given up."""
+    known = _threads.setdefault(engine.dialect, set())
+
+    def connect(*args: Any, **named: Any) -> aiosqlite.Connection:
+        connection = aiosqlite.connect(*args, **named)
+        thread: Thread = connection._thread  # pyright: ignore[reportPrivateUsage] (as SQLAlchemy does)
+        thread.daemon = True
+        known.difference_update([one for one in known if one.ident is not None and not one.is_alive()])
+        known.add(thread)
+        return connection
+
+    @event.listens_for(engine, "do_connect")
+    def with_thread(_dialect: Dialect, _record: Any, _args: Any, named: dict[str, Any]) -> None:
+        named["async_creator_fn"] = connect
+
+
+async def dispose(engine: AsyncEngine) -> None:
+    """The engine's connections are closed when it returns, those too of whoever was cut off in the middle: the thread
+    of such a one would else answer to an event loop that has ended."""
+    await engine.dispose()
+    under_way = [thread for thread in _threads.get(engine.dialect, ()) if thread.is_alive()]
+    if under_way:
+        await asyncio.to_thread(_join, under_way)
+
+
+def _join(threads: Iterable[Thread]) -> None:
+    until = time.monotonic() + ENDS_S
+    for thread in threads:
+        thread.join(max(0.0, until - time.monotonic()))
 
 
 def _make_folder(url: str) -> None:
@@ -91,6 +134,7 @@ def engine_for_once(url: str, timeout_s: float) -> AsyncEngine:
     if make_url(url).get_backend_name() == "sqlite":
         _make_folder(url)
         _configure_sqlite(engine.sync_engine)
+        _keep_threads(engine.sync_engine)
     return engine
 
 
@@ -123,7 +167,7 @@ async def _upgrade(url: str, timeout_s: float, revision: str) -> None:
         async with engine.execution_options(write=True).begin() as connection:
             await connection.run_sync(_run_alembic, revision)
     finally:
-        await engine.dispose()
+        await dispose(engine)
 
 
 def _config() -> Config:

@@ -23,6 +23,7 @@ from backend.reasons.storage import FactUnfit, WrittenElsewhere
 from backend.store.brought import Brought, bring_in
 from backend.store.delivery import RETRY_FIRST_S, DatabaseAway, DatabaseReport, Delivery
 from backend.store.digest import MissionDigest, fold
+from backend.store.engine import dispose
 from backend.store.entries import (
     Entry,
     EventsEntry,
@@ -247,7 +248,7 @@ class SqlJournal:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         self._spool.close()
         await self._delivery.close()
-        await self._engine.dispose()
+        await dispose(self._engine)
 
     # Reading: missions in flight from memory, the rest from the database
 
