@@ -145,20 +145,20 @@ def _files(settings: Settings) -> Iterator[tuple[str, Path]]:
                 not of_the_machine(relative)
                 and path.is_file()
                 and not path.is_symlink()
-                and not _is_database(settings, path)
+                and not is_database(settings, path)
             ):
                 yield FILES + relative, path
     if settings.antenna_pattern is not None:
         yield PATTERN + settings.antenna_pattern.name, settings.antenna_pattern
 
 
-def _is_database(settings: Settings, path: Path) -> bool:
-    """An SQLite file under a name of its own, and what lies beside it."""
+def is_database(settings: Settings, path: Path) -> bool:
+    """An SQLite file under a name of its own, or what SQLite keeps beside it."""
     url = make_url(settings.async_database_url)
     if url.get_backend_name() != "sqlite":
         return False
     database = Path(url.database or "").resolve()
-    return path.resolve().parent == database.parent and path.name.startswith(database.name)
+    return path.resolve().parent == database.parent and path.name.lower().startswith(database.name.lower())
 
 
 def _copy(archive: ArchiveWriter, name: str, path: Path) -> None:

@@ -16,7 +16,8 @@ names, and what waited for the database."""
 LONGEST_NAME = 400
 
 OF_THE_MACHINE = ("crossfix.sqlite", "journal.spool", "simulated_vehicle.json", "recovery.json", "logs/", ".restoring-")
-"""Beginnings of names at the top of the data directory that belong to one running server: never in an archive."""
+"""Beginnings of names at the top of the data directory that belong to one running server: never in an archive, in
+capitals neither (some disks take them for the same)."""
 
 
 class BackupError(RuntimeError):
@@ -60,7 +61,7 @@ class Manifest(BaseModel):
 
 def of_the_machine(name: str) -> bool:
     """A path inside the data directory that no archive holds. Unfinished uploads are neither."""
-    return name.startswith(OF_THE_MACHINE) or name.endswith(".part")
+    return name.lower().startswith(OF_THE_MACHINE) or name.endswith(".part")
 
 
 def checked_name(name: str) -> str:

@@ -6,23 +6,25 @@ import asyncio
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Collection, Generator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from sqlalchemy import Connection, Text, make_url, select
+from sqlalchemy import Connection, Text, select, text
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from backend.backup.archive import Archive
+from backend.backup.making import is_database
 from backend.backup.manifest import DATABASE, FILES, PATTERN, SPOOL, BackupError, Member, of_the_machine
-from backend.backup.rows import reflected, write_lines
+from backend.backup.rows import VERSION_TABLE, reflected, revision_of, write_lines
 from backend.settings import AUDIT_FILE, Settings
-from backend.store.engine import engine_for_once, known_revisions, migrate
+from backend.store.engine import bring_forward, dispose, engine_for_once, known_revisions, migrate
 from backend.store.opening import DatabaseUnusable, claimed
 from backend.store.reading import why
 from backend.store.spool import Spool, SpoolForeign, SpoolFull, SpoolTaken, entries_beside
+from backend.store.tables import metadata
 from planner.reason import sentence_of
 
 ANSWERS_S = 30.0
@@ -52,6 +54,7 @@ def restore(settings: Settings, source: Path, progress: Callable[[str], None] = 
     """
     with Archive(source) as archive:
         _must_be_known(archive)
+        _must_stay_clear(archive, settings)
         _must_have_room(archive, settings)
         progress("checking the archive")
         archive.verify()
@@ -78,9 +81,22 @@ def _must_be_known(archive: Archive) -> None:
         )
 
 
+def _must_stay_clear(archive: Archive, settings: Settings) -> None:
+    """Of the database, which may lie in the data directory under any name: nothing of an archive is opened as one."""
+    for member in archive.manifest.members:
+        if (place := _place(member)) is not None and is_database(settings, settings.data_dir / place):
+            raise BackupError(
+                f"the archive holds a part named {member.name[:80]!r}, where this server keeps its database: "
+                "name another database (--database)"
+            )
+
+
 def _must_have_room(archive: Archive, settings: Settings) -> None:
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
-    free = shutil.disk_usage(settings.data_dir).free - settings.disk_low_bytes
+    try:
+        settings.data_dir.mkdir(parents=True, exist_ok=True)
+        free = shutil.disk_usage(settings.data_dir).free - settings.disk_low_bytes
+    except OSError as error:
+        raise BackupError(f"nothing can be written in {settings.data_dir}: {error.strerror or error}") from error
     tables = sum(member.size_bytes for member in archive.manifest.members if member.rows is not None)
     needed = archive.manifest.size_bytes + tables  # the database writes its rows twice: its log, then its file
     if needed > free:
@@ -95,30 +111,30 @@ async def _put_back(archive: Archive, settings: Settings, progress: Callable[[st
     _must_hold_no_files(settings)
     engine = engine_for_once(url, ANSWERS_S)
     try:
-        async with engine.connect() as connection:
-            new = await _must_hold_no_rows(connection)
-        if new:
-            await migrate(url, revision=archive.manifest.schema_revision)
-        with _unpacked(archive, settings) as keep:
+        async with engine.execution_options(write=True).begin() as connection:
+            there = await connection.run_sync(_must_hold_no_rows)
+            if there not in (None, archive.manifest.schema_revision):
+                await connection.run_sync(_drop_empty_tables)
+        await migrate(url, revision=archive.manifest.schema_revision)
+        with _spool_cleared_on_error(settings), _unpacked(archive, settings) as keep:
             async with engine.execution_options(write=True).begin() as connection:
                 await _write_tables(connection, archive, progress)
+                await _bring_forward(connection)
                 progress("files")
                 pattern = keep()  # before the rows are committed: they are what a server finds
                 _write_spool(archive, settings)
-        await migrate(url)
     finally:
-        await engine.dispose()
+        await dispose(engine)
     counted = {member.name: member.rows or 0 for member in members}
     files = sum(member.name.startswith((FILES, PATTERN)) for member in members)
     return Restored(counted.get(f"{DATABASE}missions.jsonl", 0), archive.manifest.rows, files, pattern)
 
 
 def _must_hold_no_files(settings: Settings) -> None:
-    database = Path(make_url(settings.async_database_url).database or "").name
     found = [
         path.relative_to(settings.data_dir).as_posix()
         for path in sorted(settings.data_dir.rglob("*"))
-        if path.is_file() and not path.name.startswith(database)
+        if path.is_file() and not is_database(settings, path)
     ]
     foreign = [name for name in found if not of_the_machine(name) and name != AUDIT_FILE]
     if foreign:
@@ -132,35 +148,55 @@ def _must_hold_no_files(settings: Settings) -> None:
         )
 
 
-async def _must_hold_no_rows(connection: AsyncConnection) -> bool:
-    """True for a database without tables: it gets the archive's schema. Raises BackupError when a table holds a row,
-    or is none of ours."""
+def _must_hold_no_rows(connection: Connection) -> str | None:
+    """The revision of its schema, None for a database without tables. Raises BackupError when a table holds a row, or
+    is none of ours."""
+    tables = reflected(connection).sorted_tables
+    for table in tables:
+        if connection.execute(select(table).limit(1)).first() is not None:
+            raise BackupError(
+                f"the database is not empty (table {table.name} holds rows): restore into a new one (--database)"
+            )
+    revision = revision_of(connection)
+    if tables and revision is None:
+        raise BackupError(
+            f"the database holds tables of something else ({tables[0].name}): restore into a new one (--database)"
+        )
+    return revision
 
-    def look(connection: Connection) -> bool:
-        tables = reflected(connection).sorted_tables
-        for table in tables:
-            if connection.execute(select(table).limit(1)).first() is not None:
-                raise BackupError(
-                    f"the database is not empty (table {table.name} holds rows): restore into a new one (--database)"
-                )
-        return not tables
 
-    return await connection.run_sync(look)
+def _drop_empty_tables(connection: Connection) -> None:
+    """Of another schema than the archive's, whose own is made instead."""
+    ours = [table for table in reversed(reflected(connection).sorted_tables) if table.name in metadata.tables]
+    for table in ours:
+        table.drop(connection)
+    connection.execute(text(f"DROP TABLE {VERSION_TABLE}"))
+
+
+async def _bring_forward(connection: AsyncConnection) -> None:
+    """The rows of an older archive. In their transaction: where that fails, nothing of them is left."""
+    try:
+        await connection.run_sync(bring_forward)
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
+        raise BackupError(
+            f"what the archive holds cannot be brought to today's schema ({type(error).__name__}: {why(error)}): "
+            "it was not made by Crossfix, or is damaged"
+        ) from error
 
 
 async def _write_tables(connection: AsyncConnection, archive: Archive, progress: Callable[[str], None]) -> None:
-    metadata = await connection.run_sync(reflected)
+    reflection = await connection.run_sync(reflected)
     if archive.manifest.schema_revision < PACKED_SINCE:  # the migrations on the way read plain text
-        metadata.tables["events"].c.body.type = Text()
+        reflection.tables["events"].c.body.type = Text()
     listed = {
         member.name.removeprefix(DATABASE).removesuffix(".jsonl"): member
         for member in archive.manifest.members
         if member.name.startswith(DATABASE)
     }
-    unknown = sorted(set(listed) - set(metadata.tables))
+    unknown = sorted(set(listed) - set(reflection.tables))
     if unknown:
         raise BackupError(f"the archive holds a table {unknown[0][:60]!r} that its schema does not have")
-    for table in metadata.sorted_tables:
+    for table in reflection.sorted_tables:
         if member := listed.get(table.name):
             progress(table.name)
             with closing(archive.lines(member)) as lines:
@@ -176,8 +212,8 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
     root = settings.data_dir
     folder = Path(tempfile.mkdtemp(prefix=".restoring-", dir=root))
     moved: list[Path] = []
-    audit, aside = root / AUDIT_FILE, root / AUDIT_BEFORE
     places = {member: _place(member) for member in archive.manifest.members if _place(member)}
+    audit, aside = root / AUDIT_FILE, root / _free(AUDIT_BEFORE, places.values())
 
     def keep() -> Path | None:
         pattern = None
@@ -186,6 +222,8 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
         for member, place in places.items():
             target = root / str(place)
             target.parent.mkdir(parents=True, exist_ok=True)
+            if target.exists():
+                raise BackupError(f"{target} is there already, and stays as it is")
             os.replace(folder / str(place), target)
             moved.append(target)
             pattern = target if member.name.startswith(PATTERN) else pattern
@@ -211,6 +249,11 @@ def _unpacked(archive: Archive, settings: Settings) -> Generator[Callable[[], Pa
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _free(name: str, taken: Collection[str | None]) -> str:
+    """Of an archive that was made after a restore before."""
+    return name if name not in taken else _free(f"another-{name}", taken)
+
+
 def _place(member: Member) -> str | None:
     """Inside the data directory; None for what is no file there. Names were checked when the archive was opened."""
     if member.name.startswith(PATTERN):
@@ -218,15 +261,24 @@ def _place(member: Member) -> str | None:
     return member.name.removeprefix(FILES) if member.name.startswith(FILES) else None
 
 
+@contextmanager
+def _spool_cleared_on_error(settings: Settings) -> Generator[None]:
+    """The next start must not meet facts of missions that did not come back."""
+    try:
+        yield
+    except BaseException:
+        if settings.spool_path.exists():
+            with closing(Spool(settings.spool_path, 0)) as spool:
+                spool.clear()
+        raise
+
+
 def _write_spool(archive: Archive, settings: Settings) -> None:
     """The next start stores what had waited; what had been stored meanwhile is known by its number."""
     waiting = [line for member in archive.manifest.members if member.name == SPOOL for line in archive.lines(member)]
     if not waiting:
         return
-    spool = Spool(settings.spool_path, settings.spool_reserve_bytes)
-    try:
+    with closing(Spool(settings.spool_path, settings.spool_reserve_bytes)) as spool:
         spool.clear()
         for payload in waiting:
             spool.append(payload)
-    finally:
-        spool.close()

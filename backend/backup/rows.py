@@ -96,7 +96,15 @@ async def write_lines(connection: AsyncConnection, table: Table, lines: Iterable
     """Into an empty table; returns how many rows. Raises BackupError for what is no row of this table."""
     written = 0
     for batch in _batches(table, iter(lines)):
-        await connection.execute(insert(table), batch)
+        try:
+            await connection.execute(insert(table), batch)
+        except (
+            ValueError,
+            TypeError,
+            ArithmeticError,
+            RecursionError,
+        ) as error:
+            raise BackupError(f"a value of table {table.name} cannot be stored: {error}") from error
         written += len(batch)
     return written
 

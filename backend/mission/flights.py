@@ -34,7 +34,6 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.records import Records
 from backend.mission.runner import MissionRunner
 from backend.mission.state import MissionState
-from backend.ports import JournalDamaged
 from backend.reasons import Interrupted, Reason
 from backend.reasons.refusals import AnotherMissionFlies, MissionOver, ServerIsEnding, WasDeleted
 from backend.reasons.safety import AlreadyInAir
@@ -282,7 +281,7 @@ class Flights:
                     await self._recover(mission_id)
                 else:
                     await self._close_interrupted(mission_id, Interrupted("later_mission"))
-            except JournalDamaged as error:
+            except ValueError as error:  # damaged, or facts of which no mission can be made
                 log.error("mission %s does not come back, and its craft fly for none: %s", mission_id, error)
         for craft_id, craft in self.equipment.crafts.items():
             if self.craft(craft_id) is None:

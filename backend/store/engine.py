@@ -144,6 +144,12 @@ async def migrate(url: str, timeout_s: float = 30.0, revision: str = "head") -> 
     await asyncio.to_thread(_migrate_in_thread, url, timeout_s, revision)
 
 
+def bring_forward(connection: Connection) -> None:
+    """To the current schema, within the caller's transaction. Raises LaterSchema, and whatever a row that no Crossfix
+    wrote brings about."""
+    _run_alembic(connection, "head")
+
+
 async def shrink(engine: AsyncEngine) -> None:
     """Give the file's unused pages back to the disk. SQLite only; nobody else may use the file."""
     async with engine.connect() as connection:
