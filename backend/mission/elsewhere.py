@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 from backend.commands import Author, ChangeArea, CommandRequest
 from backend.craft.inputs import WorkFailed
-from backend.craft.runner import CraftRunner
 from backend.events import Event
 from backend.mission.effects import Effect
 from backend.mission.inputs import ToCraft
@@ -17,9 +16,6 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.runner import MissionRunner
 from backend.search.effects import SearchElsewhere
 from backend.search.other_area import task_or_reason
-
-LOOK_S = 0.2
-"""Of the wall: how often it is asked whether nets may be set after a restart."""
 
 Running = Callable[[], MissionRunner | None]
 """The runner of the mission; None when it does not fly, or no longer."""
@@ -49,15 +45,6 @@ class Elsewhere:
                 await self._hang_nets(runner)
             return runner, asked
 
-    async def hang_again(self, runner: MissionRunner) -> None:
-        """After a restart nobody knows whether the nets of the last area hung: they are looked at, and set where they
-        differ, once every vehicle is heard and nobody else flies it. Until then nothing flies on."""
-        while not all(map(_may_be_set, runner.crafts.values())) and not runner.finished.is_set():  # noqa: ASYNC110
-            await asyncio.sleep(LOOK_S)
-        async with self._one:
-            if runner.nets_changing and not runner.finished.is_set():
-                await self._hang_nets(runner)
-
     async def _hang_nets(self, runner: MissionRunner) -> None:
         """When they do not hang, the autopilot refuses what lies beyond those before, and says so."""
 
@@ -73,10 +60,3 @@ class Elsewhere:
                     runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
         finally:
             runner.nets_changing = False
-
-
-def _may_be_set(craft: CraftRunner) -> bool:
-    """A smaller fence would take the vehicle from a pilot who flies beyond it."""
-    heard = craft.equipment.vehicle.telemetry()
-    who, given_back = heard.authority.who, heard.authority.given_back
-    return heard.connected and (who in ("ours", "nobody") or (who == "pilot" and given_back))

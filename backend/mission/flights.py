@@ -305,12 +305,9 @@ class Flights:
             if known is not None:
                 known.vehicle.restore(craft.authority)
                 runner.join(known)
-        runner.nets_changing = search.elsewhere
         runner.give(ServerCameBack())
         runner.recover()
         self._fly(runner)
-        if search.elsewhere:
-            self._tasks.append(asyncio.create_task(self.elsewhere.hang_again(runner)))
         await asyncio.to_thread(lay_out_ways, task.first)
         log.warning("mission %s is back, in %s", mission_id, runner.state.phase)
 

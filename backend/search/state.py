@@ -131,8 +131,8 @@ class SearchState:
 
     muted: sources whose bearings count for no emitter.
 
-    place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds. elsewhere: its area
-    was changed in flight. deleted: out of the list, to be restored for some days.
+    place_number: the highest so far, of all craft. started_at_s, ended_at_s: UTC epoch seconds. deleted: out of the
+    list, to be restored for some days.
     """
 
     spec: MissionSpec | None = None
@@ -149,7 +149,6 @@ class SearchState:
     alerts_raised: int = 0
     outcome: Outcome | None = None
     outcome_reason: Reason | None = None
-    elsewhere: bool = False
     deleted: bool = False
 
     @property
@@ -267,7 +266,7 @@ def evolve(state: SearchState, event: Event, at_s: float) -> SearchState:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(_with_spec(state, spec), passed=False, antenna=None)
         case AreaChanged(search=search):
-            changed = replace(_with_spec(state, state.mission.searching(search)), elsewhere=True)
+            changed = _with_spec(state, state.mission.searching(search))
             return _each(changed, lambda emitter: replace(emitter, localized_at_s=None, claim=None, claimed_at_s=None))
         case PreflightChecked(passed=passed):
             return replace(state, passed=passed) if state.stage in ("draft", "ready") else state

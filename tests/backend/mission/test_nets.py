@@ -213,38 +213,3 @@ async def test_an_order_that_is_sent_again_hangs_no_nets_of_an_area_of_before(st
     hanging = stage.vehicle.nets
     assert (await stage.room.flights.command(mission_id, first, author)).accepted, "it was"
     assert stage.vehicle.nets == hanging
-
-
-async def test_after_a_restart_in_a_change_nothing_flies_on_before_its_nets_hang(stage: Stage, monkeypatch) -> None:
-    mission_id = await held(stage)
-    done = slow_link(stage, monkeypatch)
-    changing = asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0)))
-    await stage.until(mission_id, "nets_noted", 2)
-    changing.cancel()
-    stage.vehicle.stuck = False
-    await stage.restart()
-    await stage.until_phase(mission_id, "hold")
-    reply = await order(stage, mission_id, commands.Resume())
-    assert (reply.accepted, reply.reason) == (False, NetsChanging())
-    done.set()
-    await stage.until_true(lambda: not stage.active.nets_changing)
-    assert stage.vehicle.nets == stage.journal.of_kind(mission_id, NetsNoted)[1].after
-    assert (await order(stage, mission_id, commands.Resume())).accepted
-
-
-async def test_after_a_restart_no_net_is_changed_under_a_pilot(stage: Stage, monkeypatch) -> None:
-    mission_id = await held(stage)
-    done = slow_link(stage, monkeypatch)
-    changing = asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0)))
-    await stage.until(mission_id, "nets_noted", 2)
-    changing.cancel()
-    done.set()
-    stage.vehicle.pilot_takes_over()
-    await stage.until_phase(mission_id, "manual")
-    set_before = len(stage.vehicle.nets_set)
-    await stage.restart()
-    await asyncio.sleep(1.0)
-    assert len(stage.vehicle.nets_set) == set_before
-    stage.vehicle.pilot_gives_back()
-    await stage.until_true(lambda: not stage.active.nets_changing)
-    assert stage.vehicle.nets == stage.journal.of_kind(mission_id, NetsNoted)[1].after
