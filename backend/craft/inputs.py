@@ -247,6 +247,18 @@ class Broke:
 
 
 @dataclass(frozen=True, slots=True)
+class NetsUp:
+    """The autopilot has the nets of the area that is searched now."""
+
+
+@dataclass(frozen=True, slots=True)
+class NetsNotTaken:
+    """It has not, and is given them again."""
+
+    because: Reason
+
+
+@dataclass(frozen=True, slots=True)
 class Restarted:
     """The server came back, and this is who flies now. on_ground: the vehicle says that it stands there, disarmed."""
 
@@ -296,6 +308,8 @@ CraftInput = (
     | Landed
     | TimerExpired
     | Broke
+    | NetsUp
+    | NetsNotTaken
     | Restarted
     | Leaving
     | Abandoned

@@ -11,6 +11,7 @@ from typing import assert_never
 
 from backend.craft import low_battery, orders
 from backend.craft.effects import CancelTimer, CancelWork, CraftEffect, StartTimer
+from backend.craft.hanging import nets_looked_at
 from backend.craft.inputs import (
     Abandoned,
     Arrived,
@@ -32,6 +33,8 @@ from backend.craft.inputs import (
     Leaving,
     LinkDown,
     LinkUp,
+    NetsNotTaken,
+    NetsUp,
     NothingToPlan,
     PlaceNotTaken,
     Planned,
@@ -145,6 +148,8 @@ def _take(step: CraftStep, given: CraftInput) -> None:
                 alert(step, "failure", "warning", because)
                 if craft.phase in AUTOMATIC:
                     hold(step, because)
+        case NetsUp() | NetsNotTaken():
+            nets_looked_at(step, given)
         case AuthorityHeard(authority=authority):
             authority_heard(step, authority)
         case FailsafeEnded(mode=mode):

@@ -200,6 +200,8 @@ def _override(step: CraftStep, given: CraftOrdered, command: Override) -> None:
         raise Refused(PilotControls())
     if craft.phase in HOMEWARD:
         raise Refused(refusals.OnTheWayHome())
+    if craft.nets_wait:
+        raise Refused(refusals.NetsChanging())
     _refuse_place_refused_before(craft, command.place)
     _refuse_objections(step, given)
     # a second climb from the ground, like the first, ends before anything flies elsewhere
@@ -279,7 +281,9 @@ def resume_refusal(craft: CraftState, search: SearchState) -> Reason | None:
         return refusals.MissionOver()
     if craft.phase not in ("hold", "manual"):
         return refusals.NotHeld()
-    return NoLink() if "vehicle" in craft.links_down else None
+    if "vehicle" in craft.links_down:
+        return NoLink()
+    return refusals.NetsChanging() if craft.nets_wait and search.stage != "ended" else None
 
 
 def _not_started(search: SearchState) -> Reason:

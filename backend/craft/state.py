@@ -9,6 +9,7 @@ from backend.events import (
     AbortOrdered,
     AlertCleared,
     AlertRaised,
+    AntennaFact,
     AreaChanged,
     AuthorityChanged,
     AutomaticChanged,
@@ -27,6 +28,7 @@ from backend.events import (
     MissionDrafted,
     MissionEdited,
     MissionStarted,
+    NetsHung,
     OrderDone,
     OrderNotDone,
     OrderTried,
@@ -63,6 +65,8 @@ class CraftState:
     refused_in_a_row: how many of the last ones were refused. return_reason: why it is on its way home. ladder: of the
     hold, return or landing that was ordered last; None once something else has come of it. counting_down: it returns
     soon because its battery runs low; countdown_stopped: somebody has stopped that, which they may once a flight.
+    antenna: that it has flown with; None: nobody kept it.
+    nets_wait: the autopilot's own fence is not known to be that of the search area.
     """
 
     craft_id: str
@@ -84,6 +88,8 @@ class CraftState:
     ladder: Ladder | None = None
     counting_down: bool = False
     countdown_stopped: bool = False
+    nets_wait: bool = False
+    antenna: AntennaFact | None = None
     authority: Authority = NOBODY
     links_down: frozenset[Link] = frozenset()
     open_alerts: tuple[OpenAlert, ...] = ()
@@ -129,9 +135,12 @@ def evolve(state: CraftState, event: Event) -> CraftState:
         case MissionDrafted(spec=spec) | MissionEdited(spec=spec):
             return replace(state, automatic=spec.flight.automatic, maximum_retakes=spec.sensor.maximum_retakes)
         case AreaChanged():
-            return replace(state, chosen=None, accepted=False, avoid=(), refused=(), refused_in_a_row=0)
-        case MissionStarted():
-            return replace(state, engaged=True, searching=True)
+            cleared = replace(state, chosen=None, accepted=False, avoid=(), refused=(), refused_in_a_row=0)
+            return replace(cleared, nets_wait=state.engaged)
+        case NetsHung():
+            return replace(state, nets_wait=False)
+        case MissionStarted(antenna=antenna):
+            return replace(state, engaged=True, searching=True, nets_wait=False, antenna=antenna)
         case PhaseChanged(after=after, reason=reason):
             back = reason if after == "returning" else state.return_reason
             up = after != "ground"

@@ -48,7 +48,7 @@ from hardware.reasons.vehicle_news import AutopilotSaidMore, AutopilotWords, Clo
 
 OF_THE_FLIGHT: tuple[Topic, ...] = (
     "vehicle", "receiver", "console", "payload", "gps", "pilot", "battery", "place", "failure", "safety", "ground",
-    "order", "autopilot", "clock",
+    "order", "autopilot", "clock", "nets", "antenna",
 )  # fmt: skip
 """Topics that are over once the vehicle is down."""
 UNSURE_PLACE_M = 5.0

@@ -67,7 +67,7 @@ from backend.events.mission import (
     Outcome,
     ServerRestarted,
 )
-from backend.events.nets import NetsNoted, NetsPutBack
+from backend.events.nets import NetsHung, NetsNoted, NetsPutBack
 from backend.events.on_the_way import HeardOnTheWay, StretchFact
 from backend.events.orders import (
     AbortOrdered,
@@ -149,6 +149,7 @@ __all__ = [
     "MissionPhase",
     "MissionRestored",
     "MissionStarted",
+    "NetsHung",
     "NetsNoted",
     "NetsPutBack",
     "OrderDone",
@@ -199,6 +200,7 @@ Event = Annotated[
     | AntennaChecked
     | MissionStarted
     | NetsNoted
+    | NetsHung
     | NetsPutBack
     | PhaseChanged
     | TookOff

@@ -27,6 +27,8 @@ Topic = Literal[
     "storage",
     "autopilot",
     "clock",
+    "nets",
+    "antenna",
 ]
 """What an alert is about: a later one on the same topic, of the same craft or emitter, takes its place.
 Of "autopilot" a few stand side by side, one a text."""

@@ -1,4 +1,4 @@
-"""The vehicle's own nets: what its owner had set, and that it was put back."""
+"""The vehicle's own nets: what its owner had set, that the mission's hang, and that it was put back."""
 
 from __future__ import annotations
 
@@ -17,6 +17,13 @@ class NetsNoted(Fact):
     craft_id: Id
     before: Nets
     after: Nets
+
+
+class NetsHung(Fact):
+    """In flight, after the search area changed: the autopilot has the mission's nets again, read back."""
+
+    kind: Literal["nets_hung"] = "nets_hung"
+    craft_id: Id
 
 
 class NetsPutBack(Fact):

@@ -4,11 +4,13 @@ the other, so that the nets that hang in the end are those of the area that is s
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from backend.commands import Author, ChangeArea, CommandRequest
-from backend.craft.inputs import WorkFailed
+from backend.craft.inputs import NetsNotTaken, NetsUp
+from backend.craft.safety import staying_vetoes
 from backend.events import Event
 from backend.mission.effects import Effect
 from backend.mission.inputs import ToCraft
@@ -16,6 +18,11 @@ from backend.mission.nets import NetsKeeper
 from backend.mission.runner import MissionRunner
 from backend.search.effects import SearchElsewhere
 from backend.search.other_area import task_or_reason
+
+log = logging.getLogger("crossfix.mission")
+
+AGAIN_S = 2.0
+"""Of the wall: how often it is asked whether nets that do not hang yet can be hung."""
 
 Running = Callable[[], MissionRunner | None]
 """The runner of the mission; None when it does not fly, or no longer."""
@@ -45,18 +52,30 @@ class Elsewhere:
                 await self._hang_nets(runner)
             return runner, asked
 
+    async def run(self, active: Running) -> None:
+        """Hangs what was left undone, by a link that failed or a server that went away meanwhile. Until cancelled."""
+        while True:
+            await asyncio.sleep(AGAIN_S)
+            async with self._one:
+                runner = active()
+                if runner is not None:
+                    try:
+                        await self._hang_nets(runner)
+                    except Exception:
+                        log.exception("the nets of the search area could not be looked after; tried again")
+
     async def _hang_nets(self, runner: MissionRunner) -> None:
-        """When they do not hang, the autopilot refuses what lies beyond those before, and says so."""
+        """Of every craft that waits for them."""
 
         async def record(event: Event) -> None:
             runner.outbox.record([event])
             await runner.outbox.flushed()
 
-        runner.nets_changing = True
-        try:
-            for craft_id, craft in list(runner.crafts.items()):
-                trouble = await self.nets.change(craft.equipment, runner.task, record)
-                if trouble is not None:
-                    runner.give(ToCraft(craft_id, WorkFailed("plan", trouble, in_air=True)))
-        finally:
-            runner.nets_changing = False
+        for craft_id, craft in list(runner.crafts.items()):
+            async with self.nets.one(craft_id):
+                if not runner.waits_for_nets(craft_id):
+                    continue
+                trouble = next(iter(staying_vetoes(craft.limits, craft.watch.situation())), None)
+                if trouble is None:
+                    trouble = await self.nets.change(runner.mission_id, craft.equipment, runner.task, record)
+                runner.give(ToCraft(craft_id, NetsUp() if trouble is None else NetsNotTaken(trouble)))

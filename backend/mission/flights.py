@@ -274,6 +274,7 @@ class Flights:
         """Bring back what was in the air when the server went away: in hold, unless somebody else flies it."""
         await self.nets.recall()
         self._tasks.append(asyncio.create_task(self.nets.run(self.starting, lambda: self.active is not None)))
+        self._tasks.append(asyncio.create_task(self.elsewhere.run(lambda: self.active)))
         unfinished = await self.equipment.journal.unfinished()
         for mission_id in unfinished:
             try:

@@ -50,6 +50,7 @@ class NetsKeeper:
     records: Records
     owed: dict[str, Owed] = field(default_factory=dict[str, Owed])
     """By craft."""
+    _locks: dict[str, asyncio.Lock] = field(default_factory=dict[str, asyncio.Lock])
 
     async def recall(self) -> None:
         """After a restart: what was noted and never put back."""
@@ -68,35 +69,44 @@ class NetsKeeper:
             owed = self.owed[noted.craft_id] = Owed(mission_id, noted.before, [])
         owed.ours.append(noted.after)
 
+    def one(self, craft_id: str) -> asyncio.Lock:
+        """Over the nets of one craft: what is put back after a landing is not overtaken by a change in flight."""
+        return self._locks.setdefault(craft_id, asyncio.Lock())
+
     async def put_up(self, mission_id: str, craft: CraftEquipment, task: SearchTask) -> Reason | None:
         """The mission's nets into the autopilot, read back. Why not, None when they hang. Nothing is set before the
         owner's are noted durably. Under the lock of the mission."""
+
+        async def record(event: Event) -> None:
+            await self.records.append(mission_id, [event])
+
+        async with self.one(craft.craft_id):
+            try:
+                if craft.craft_id in self.owed:
+                    await self._settle(craft)
+                await self._hang(mission_id, craft, task, None, record)
+            except HardwareError as error:
+                return carried(error.reason)
+        return None
+
+    async def change(self, mission_id: str, craft: CraftEquipment, task: SearchTask, record: Record) -> Reason | None:
+        """In flight, for another search area; what the owner had set bounds it as before. As put_up; under `one`."""
+        owed = self.owed.get(craft.craft_id)
         try:
-            if craft.craft_id in self.owed:
-                await self._settle(craft)
-            plan = await craft.vehicle.plan_nets(mission_nets(limits_of(task)))
-            noted = NetsNoted(craft_id=craft.craft_id, before=plan.before, after=plan.after)
-            await self.records.append(mission_id, [noted])
-            self._note(mission_id, noted)
-            await craft.vehicle.set_nets(plan.after)
+            await self._hang(mission_id, craft, task, None if owed is None else owed.before, record)
         except HardwareError as error:
             return carried(error.reason)
         return None
 
-    async def change(self, craft: CraftEquipment, task: SearchTask, record: Record) -> Reason | None:
-        """In flight, for another search area; what the owner had set bounds it as before."""
-        owed = self.owed.get(craft.craft_id)
-        if owed is None:
-            return None
-        try:
-            plan = await craft.vehicle.plan_nets(mission_nets(limits_of(task)), owed.before)
-            noted = NetsNoted(craft_id=craft.craft_id, before=plan.before, after=plan.after)
-            await record(noted)
-            self._note(owed.mission_id, noted)
-            await craft.vehicle.set_nets(plan.after)
-        except HardwareError as error:
-            return carried(error.reason)
-        return None
+    async def _hang(
+        self, mission_id: str, craft: CraftEquipment, task: SearchTask, own: Nets | None, record: Record
+    ) -> None:
+        """own: the owner's, None where those in the autopilot are. Raises HardwareError."""
+        plan = await craft.vehicle.plan_nets(mission_nets(limits_of(task)), own)
+        noted = NetsNoted(craft_id=craft.craft_id, before=plan.before, after=plan.after)
+        await record(noted)
+        self._note(mission_id, noted)
+        await craft.vehicle.set_nets(plan.after)
 
     async def _settle(self, craft: CraftEquipment) -> None:
         """Put back what is still as a mission left it; what somebody else has changed since stays as it is."""
@@ -111,10 +121,11 @@ class NetsKeeper:
             craft = self.equipment.crafts.get(craft_id)
             if craft is None or not _stands(craft):
                 continue
-            try:
-                await self._settle(craft)
-            except (HardwareError, JournalUnavailable, FactRefused) as error:
-                log.warning("%s: its own fence is not put back yet: %s", craft_id, error)
+            async with self.one(craft_id):
+                try:
+                    await self._settle(craft)
+                except (HardwareError, JournalUnavailable, FactRefused) as error:
+                    log.warning("%s: its own fence is not put back yet: %s", craft_id, error)
 
     async def run(self, starting: asyncio.Lock, flies: Callable[[], bool]) -> None:
         """Settles whenever it can be. starting: nobody starts meanwhile. flies: a mission is in the air."""

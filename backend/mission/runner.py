@@ -11,12 +11,13 @@ import logging
 from collections.abc import Sequence
 from functools import partial
 
-from backend.commands import Author, CommandRequest, ForCraft, Override, Resume
+from backend.commands import Author, CommandRequest, ForCraft, Override
 from backend.craft import inputs as craft_inputs
 from backend.craft.equipment import CraftEquipment
 from backend.craft.measuring import Measured
+from backend.craft.orders import resume_refusal
 from backend.craft.runner import CraftRunner
-from backend.craft.safety import limits_of, staying_vetoes
+from backend.craft.safety import limits_of, resume_vetoes, staying_vetoes
 from backend.craft.state import CraftState
 from backend.events import BeliefUpdated, Event, Recorded
 from backend.logs import about
@@ -61,8 +62,6 @@ class MissionRunner:
         self.crafts: dict[str, CraftRunner] = {}
         self.finished = asyncio.Event()
         self.told = ToldForecasts()
-        self.nets_changing = False
-        """The autopilot's own fence is not yet that of the search area."""
 
     @property
     def state(self) -> MissionState:
@@ -126,12 +125,10 @@ class MissionRunner:
     def command(self, request: CommandRequest, author: Author, holder_gone: bool = False) -> tuple[Effect, ...]:
         """An operator's command; safety's objections are found first."""
         command, contexts = request.command, dict[str, Context]()
-        moves = isinstance(command, Override | Resume)
-        changing = (NetsChanging(),) if moves and self.nets_changing else ()
         if isinstance(command, ForCraft):
             contexts = {
                 craft_id: Context(
-                    craft.objections(command) + changing,
+                    craft.objections(command),
                     on_ground=craft.equipment.vehicle.telemetry().in_air is False,
                     altitude_amsl_m=craft.altitude_of(command),
                     foretold=self.told.of(self._state.search, command.place) if isinstance(command, Override) else None,
@@ -157,6 +154,12 @@ class MissionRunner:
             veto for craft in self.crafts.values() for veto in staying_vetoes(limits, craft.watch.situation())
         )
         return self.give(commanded(Context(objections)))
+
+    def waits_for_nets(self, craft_id: str) -> bool:
+        """Nothing else keeps the craft from being resumed: a pilot who flies is not fenced in."""
+        craft, telemetry = self._state.crafts[craft_id], self.crafts[craft_id].equipment.vehicle.telemetry()
+        only_nets = resume_refusal(craft, self._state.search) == NetsChanging()
+        return only_nets and telemetry.connected and not resume_vetoes(telemetry)
 
     def recover(self) -> None:
         """After a restart: each craft of ours in hold, unless somebody else flies it or it has come down as ordered."""

@@ -80,7 +80,8 @@ class AreaOnlyInHold:
 class NetsChanging:
     code: Literal["nets_changing"] = "nets_changing"
     english: ClassVar[Words] = Words(
-        "The autopilot is still being given the fence of the new search area.", "Go on when it has it, in some seconds."
+        "The autopilot does not have the fence of the new search area yet.",
+        "It is given it until it has it; return and landing do not wait.",
     )
 
 

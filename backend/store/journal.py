@@ -298,9 +298,10 @@ class SqlJournal:
         return await self._stored.page(most, before, wanted)
 
     async def of_nets(self) -> list[Recorded]:
-        """Of the newest missions, oldest first: who flies a hundred missions puts the nets of the first back before."""
+        """Of the newest missions and of those in flight, oldest first: who flies a hundred missions puts the nets of
+        the first back before."""
         newest = await self._patiently(lambda: self._stored.missions(NETS_MISSIONS))
-        known = {digest.mission_id for digest in newest} | set(self._written)
+        known = {digest.mission_id for digest in newest} | set(self._written) | set(await self.unfinished())
         stored = [d.mission_id for d in reversed(newest)] + sorted(known - {d.mission_id for d in newest})
         found: list[Recorded] = []
         for each in stored:

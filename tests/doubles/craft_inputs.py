@@ -124,6 +124,8 @@ def _every_input(number: int, attempt: int, measured: int) -> tuple[inputs.Craft
         inputs.Landed(),
         *(inputs.TimerExpired(name) for name in TIMERS),
         inputs.Broke(BROKE),
+        inputs.NetsUp(),
+        inputs.NetsNotTaken(VETO),
         *(inputs.Restarted(authority, on_ground) for authority in AUTHORITIES for on_ground in (False, True)),
         *(inputs.Leaving(homeward) for homeward in (False, True)),
         inputs.Abandoned(Interrupted("later_mission")),

@@ -954,6 +954,7 @@ export const de: Record<MessageKey, string> = {
   "event.mission_started": "Gestartet von {by}",
   "event.phase_changed": "{phase}: {reason}",
   "event.nets_noted": "Der eigene Zaun des Autopiloten wurde vermerkt; der der Mission tritt an seine Stelle",
+  "event.nets_hung": "Der Autopilot hat den Zaun der Mission",
   "event.nets_put_back": "Der eigene Zaun des Autopiloten wurde wiederhergestellt, wie er war",
   "event.nets_left": "Der eigene Zaun des Autopiloten wurde wiederhergestellt, wo ihn seither niemand geändert hatte",
   "event.took_off": "Abgehoben auf {height}",

@@ -536,6 +536,7 @@ export const en = {
   "event.mission_started": "Started by {by}",
   "event.phase_changed": "{phase}: {reason}",
   "event.nets_noted": "The autopilot's own fence was noted; the mission's takes its place",
+  "event.nets_hung": "The autopilot has the mission's fence",
   "event.nets_put_back": "The autopilot's own fence was put back as it was",
   "event.nets_left": "The autopilot's own fence was put back where nobody had changed it since",
   "event.took_off": "Took off to {height}",

@@ -1265,8 +1265,8 @@ export const reasonsEn: ReasonTable = {
     remedy: "Hold, then change it.",
   },
   nets_changing: {
-    text: "The autopilot is still being given the fence of the new search area.",
-    remedy: "Go on when it has it, in some seconds.",
+    text: "The autopilot does not have the fence of the new search area yet.",
+    remedy: "It is given it until it has it; return and landing do not wait.",
   },
   no_proposed_place: {
     text: "No place is proposed.",

@@ -83,6 +83,8 @@ function wordsOf(event: MissionEvent, units: UnitSystem): string {
       return t("event.mission_started", { by: byWords(event.by) });
     case "nets_noted":
       return t("event.nets_noted");
+    case "nets_hung":
+      return t("event.nets_hung");
     case "nets_put_back":
       return t(event.whole ? "event.nets_put_back" : "event.nets_left");
     case "phase_changed":

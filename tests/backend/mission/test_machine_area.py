@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from facts import (
     OTHER_AREA,
+    OURS,
     SPEC,
     VETO,
     bearing,
@@ -14,11 +15,13 @@ from walks import PHASES, Walk, of_craft, refusal, sent, walk_in
 
 from backend import commands
 from backend.craft import effects, inputs
-from backend.events import CommandRefused
-from backend.mission.inputs import Context
+from backend.craft.orders import resume_refusal
+from backend.events import AlertRaised, CommandRefused, NetsHung
+from backend.mission.inputs import Context, ServerCameBack
 from backend.mission.state import fold
+from backend.reasons.refusals import NetsChanging
 from backend.search.effects import SearchElsewhere, UpdateBelief
-from backend.spec import FIRST_EMITTER
+from backend.spec import FIRST_EMITTER, SearchArea
 
 
 @pytest.mark.parametrize("phase", PHASES)
@@ -49,8 +52,54 @@ def test_bearings_count_on_in_another_area_and_what_was_planned_for_the_old_is_v
     assert walk.search.emitters[FIRST_EMITTER].bearing_ids == ("b1",)
     assert (walk.craft.chosen, walk.search.beliefs_current, walk.craft.automatic) == (None, False, False)
     walk.believe()
+    walk.to_craft(inputs.NetsUp())
     assert of_craft(walk.command(commands.Resume()))[-1] == effects.PlanNext(3, ())
     assert fold(walk.recorded) == walk.state
+
+
+def changed() -> Walk:
+    walk = Walk().to("hold")
+    walk.command(commands.ChangeArea(search=OTHER_AREA))
+    walk.believe()
+    return walk
+
+
+@pytest.mark.parametrize("restarts", [0, 1, 2])
+def test_nothing_is_resumed_before_the_nets_of_the_new_area_hang_whatever_server_hangs_them(restarts: int) -> None:
+    walk = changed()
+    for _ in range(restarts):
+        assert fold(walk.recorded) == walk.state
+        walk.give(ServerCameBack())
+        walk.to_craft(inputs.Restarted(OURS))
+        walk.believe()
+    assert resume_refusal(walk.craft, walk.search) == NetsChanging(), "so the page says what is waited for"
+    assert refusal(walk.command(commands.Resume())) == NetsChanging()
+    for order in (commands.Return(), commands.Hold()):
+        assert refusal(walk.command(order)) is None
+    walk.to_craft(inputs.NetsUp())
+    assert refusal(walk.command(commands.Resume())) is None
+
+
+def test_nets_that_are_not_taken_are_said_once_until_they_are() -> None:
+    walk = changed()
+    for _ in range(3):
+        walk.to_craft(inputs.NetsNotTaken(VETO))
+    (raised,) = walk.of_kind(AlertRaised)
+    assert (raised.topic, raised.reason) == ("nets", VETO)
+    assert refusal(walk.command(commands.Resume())) == NetsChanging()
+    walk.to_craft(inputs.NetsUp())
+    assert walk.craft.open_alerts == ()
+    walk.to_craft(inputs.NetsUp())
+    assert len(walk.of_kind(NetsHung)) == 1
+
+
+def test_an_area_changed_again_waits_again_and_a_new_start_waits_for_nothing() -> None:
+    walk = changed()
+    walk.to_craft(inputs.NetsUp())
+    walk.command(commands.ChangeArea(search=SearchArea(**{**OTHER_AREA.model_dump(), "fence_margin_m": 77.0})))
+    assert walk.craft.nets_wait
+    joined = Walk(SPEC).start("craft-2")
+    assert not joined.state.crafts["craft-2"].nets_wait
 
 
 def test_objections_refuse_another_area() -> None:

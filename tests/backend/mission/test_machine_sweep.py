@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from walks import PHASES, Walk, answer, belief_ready, commanded, refusal, walk_in
 
 from backend import commands
-from backend.craft import inputs
+from backend.craft import effects, inputs
 from backend.events import MissionEnded
 from backend.mission.effects import Effect, OfCraft, Reply
 from backend.mission.inputs import Commanded, Context, Input, ServerCameBack, ToCraft
@@ -31,6 +31,8 @@ from backend.mission.state import MissionState, fold
 from backend.reasons.search import Localized
 from backend.search.effects import Record
 from backend.search.inputs import BearingsArrived, BeliefReady, Edited, NotStored, PreflightDone, SearchOver
+
+SEARCHES = (effects.TakeOff, effects.FlyTo, effects.Measure)
 
 
 def every_input(state: MissionState) -> list[Input]:
@@ -84,6 +86,15 @@ def check_rules(before: MissionState, given_: Input, after: MissionState, asked:
         counted = expired == inputs.TimerExpired("battery_return") and craft.counting_down
         lower = isinstance(expired, inputs.BatteryLow) and expired.stage != "return"
         assert ordered or timer or refused or counted or lower, f"{given_} moved a held vehicle"
+    if craft.nets_wait and before.search.outcome is None:
+        searching = [e for e in moved if isinstance(e, SEARCHES)]
+        assert not searching, f"{given_} flew on before the nets of the new area hang"
+        if isinstance(command, commands.Resume | commands.Override) and given_.command_id not in before.answered:
+            assert refusal(asked) is not None
+    kept = next(iter(after.crafts.values())).nets_wait
+    hung = isinstance(given_, ToCraft) and isinstance(given_.given, inputs.NetsUp)
+    started = isinstance(command, commands.Start)
+    assert kept or not craft.nets_wait or hung or started, f"{given_} forgot that the nets do not hang"
     if before.search.outcome is not None:
         assert after.search.outcome == before.search.outcome
         assert after.phase == before.phase
@@ -107,6 +118,19 @@ def test_every_input_is_answered_in_every_phase(phase: str) -> None:
         for again in every_input(after):
             twice, more = transition(after, again, 2_001.0)
             check_rules(after, again, twice, more)
+
+
+def test_in_another_area_every_input_is_answered_before_its_nets_hang_and_after_a_restart_too() -> None:
+    """Three steps: what comes first (a server that was away, say), and all that may follow."""
+    walk = Walk().to("hold")
+    walk.command(commands.ChangeArea(search=OTHER_AREA))
+    assert walk.craft.nets_wait
+    for first in every_input(walk.state):
+        between, asked = transition(walk.state, first, 2_000.0)
+        check_rules(walk.state, first, between, asked)
+        for given_ in every_input(between):
+            after, asked = transition(between, given_, 2_001.0)
+            check_rules(between, given_, after, asked)
 
 
 @settings(max_examples=150, deadline=None)

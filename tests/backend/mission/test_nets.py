@@ -180,6 +180,72 @@ async def test_nothing_flies_on_before_the_nets_of_the_new_area_hang(stage: Stag
     assert (await order(stage, mission_id, commands.Resume())).accepted
 
 
+async def test_a_server_killed_while_the_nets_change_hangs_them_when_it_is_back(stage: Stage, monkeypatch) -> None:
+    mission_id = await held(stage)
+    before = stage.vehicle.nets
+    slow_link(stage, monkeypatch)
+    changing = asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0)))
+    await stage.until(mission_id, "nets_noted", 2)
+    changing.cancel()
+    monkeypatch.undo()
+    monkeypatch.setattr("backend.mission.elsewhere.AGAIN_S", 0.05)
+    stage.vehicle.nets_refused = FenceReadBackDifferent(3)
+    await stage.restart()
+    await stage.until(mission_id, "server_restarted")
+    await stage.until_true(lambda: stage.active.state.craft.open_alerts != ())
+    assert [raised.reason for raised in stage.active.state.craft.open_alerts] == [FenceReadBackDifferent(3)]
+    assert stage.vehicle.nets == before
+    reply = await order(stage, mission_id, commands.Resume())
+    assert (reply.accepted, reply.reason) == (False, NetsChanging())
+    assert stage.room.display.status().crafts[0].resume_refused == NetsChanging(), "the page says it"
+    stage.vehicle.nets_refused = None
+    await stage.until(mission_id, "nets_hung")
+    assert stage.vehicle.nets == stage.journal.of_kind(mission_id, NetsNoted)[-1].after != before
+    assert all(noted.before == OWN for noted in stage.journal.of_kind(mission_id, NetsNoted))
+    assert stage.active.state.craft.open_alerts == ()
+    stage.vehicle.stuck = False
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+
+
+async def test_no_net_is_hung_around_a_pilot_and_one_who_gives_back_is_resumed_after_it(
+    stage: Stage, monkeypatch
+) -> None:
+    mission_id = await held(stage)
+    monkeypatch.setattr("backend.mission.elsewhere.AGAIN_S", 0.05)
+    stage.vehicle.nets_refused = FenceReadBackDifferent(3)
+    await stage.restart()
+    assert (await order(stage, mission_id, elsewhere(90.0))).accepted
+    before = stage.vehicle.nets
+    stage.vehicle.pilot_takes_over()
+    await stage.until_phase(mission_id, "manual")
+    stage.vehicle.nets_refused = None
+    await asyncio.sleep(0.5)
+    assert stage.vehicle.nets == before
+    stage.vehicle.pilot_gives_back()
+    await stage.until(mission_id, "nets_hung")
+    stage.vehicle.stuck = False
+    assert (await order(stage, mission_id, commands.Resume())).accepted
+
+
+async def test_a_change_that_a_landing_overtakes_leaves_the_owners_nets(stage: Stage, monkeypatch) -> None:
+    """The change still speaks to the autopilot when the craft is down."""
+    mission_id = await held(stage)
+    done = slow_link(stage, monkeypatch)
+    changing = asyncio.ensure_future(order(stage, mission_id, elsewhere(90.0)))
+    await stage.until(mission_id, "nets_noted", 2)
+    stage.vehicle.stuck = False
+    await order(stage, mission_id, commands.Land())
+    await stage.until_phase(mission_id, "landing")
+    stage.vehicle.touch_down()
+    await stage.until_true(lambda: not stage.journal.state(mission_id).engaged)
+    await asyncio.sleep(0.2)
+    done.set()
+    await changing
+    await stage.until(mission_id, "nets_put_back")
+    await asyncio.sleep(0.2)
+    assert stage.vehicle.nets == OWN
+
+
 async def test_of_two_changes_at_once_the_nets_are_those_of_the_area_that_is_searched(
     stage: Stage, monkeypatch
 ) -> None:

@@ -69,8 +69,8 @@ export const safety = {
   },
   on_the_ground: { text: "Das Fluggerät ist am Boden.", remedy: "" },
   nets_changing: {
-    text: "Der Autopilot bekommt gerade noch den Zaun des neuen Suchgebiets.",
-    remedy: "Weitermachen, wenn er ihn hat, in einigen Sekunden.",
+    text: "Der Autopilot hat den Zaun des neuen Suchgebiets noch nicht.",
+    remedy: "Er bekommt ihn, bis er ihn hat; Rückkehr und Landung warten nicht.",
   },
   area_only_in_hold: {
     text: "Das Suchgebiet lässt sich nur ändern, während die Mission hält.",
