@@ -18,7 +18,7 @@ from backend.events import (
     SweepRejected,
 )
 from backend.reasons import Reason
-from backend.reasons.flight import StepName, WatchBroke, Way
+from backend.reasons.flight import OtherAntenna, StepName, WatchBroke, Way
 from backend.spec import LearnedErrors, Place
 from hardware.authority import Authority
 from hardware.reasons.vehicle_news import AutopilotWords, ClockRateOdd
@@ -260,10 +260,12 @@ class NetsNotTaken:
 
 @dataclass(frozen=True, slots=True)
 class Restarted:
-    """The server came back, and this is who flies now. on_ground: the vehicle says that it stands there, disarmed."""
+    """The server came back, and this is who flies now. on_ground: the vehicle says that it stands there, disarmed.
+    other_antenna: that the server was given another one than the craft has flown with."""
 
     authority: Authority
     on_ground: bool = False
+    other_antenna: OtherAntenna | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -172,8 +172,8 @@ def _take(step: CraftStep, given: CraftInput) -> None:
             _timer(step, given)
         case Restarted() if craft.comes_down_as_ordered and given.on_ground:
             come_down(step, craft.return_reason or flight.Proceeds("way_home"))
-        case Restarted(authority=authority):
-            restarted(step, authority)
+        case Restarted():
+            restarted(step, given)
         case Leaving(homeward=homeward):
             needs_us = craft.phase in AUTOMATIC or (craft.phase == "returning" and not homeward)
             if craft.engaged and needs_us and not craft.taken_over and craft.authority.who != "failsafe":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from backend.craft.effects import CancelTimer, CancelWork
+from backend.craft.inputs import Restarted
 from backend.craft.state import AUTOMATIC, failsafe_has, ours_to_order, pilot_has
 from backend.craft.step import CraftStep, alert, cancel_timers, clear_alerts, clear_failsafe, insist
 from backend.events import AuthorityChanged
@@ -45,12 +46,14 @@ def _failsafe_flies(step: CraftStep, reason: flight.FailsafeFlies) -> None:
     step.go("hold", reason)
 
 
-def restarted(step: CraftStep, heard: Authority) -> None:
+def restarted(step: CraftStep, given: Restarted) -> None:
     """Rule 4: back in hold with the same belief; a vehicle that a pilot flies is not touched."""
-    craft = step.craft
+    craft, heard = step.craft, given.authority
     if not craft.engaged:
         return
-    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps", "clock")
+    clear_alerts(step, "vehicle", "receiver", "console", "payload", "gps", "clock", "antenna")
+    if given.other_antenna is not None:
+        alert(step, "antenna", "caution", given.other_antenna)
     if kept_of(heard) != kept_of(craft.authority):
         step.record(AuthorityChanged(craft_id=craft.craft_id, authority=heard))
     if craft.taken_over:

@@ -31,7 +31,9 @@ from backend.mission.state import MissionState
 from backend.mission.told_forecasts import ToldForecasts
 from backend.ports import TrackPoint
 from backend.reasons import Reason
+from backend.reasons.flight import OtherAntenna
 from backend.reasons.refusals import NetsChanging
+from backend.search.antenna import antenna_fact
 from backend.search.effects import Record, SearchElsewhere, UpdateBelief
 from backend.search.inputs import NotStored
 from backend.search.state import SearchState
@@ -70,7 +72,9 @@ class MissionRunner:
 
     def join(self, craft: CraftEquipment) -> CraftRunner:
         """A craft flies for this mission from now on; its receiver listens at once."""
-        craft_id, craft = craft.craft_id, craft.flown_with(self.task.mission.sensor)
+        craft_id = craft.craft_id
+        flying = {one.craft_id: one.antenna for one in self._state.engaged}
+        craft = craft.flown_with(self.task.mission.sensor, flying.get(craft_id))
         runner = self.crafts[craft_id] = CraftRunner(
             self.mission_id,
             craft,
@@ -166,8 +170,15 @@ class MissionRunner:
         for craft in self.crafts.values():
             telemetry = craft.equipment.vehicle.telemetry()
             on_ground = telemetry.connected and telemetry.in_air is False and telemetry.armed is False
-            back = craft_inputs.Restarted(telemetry.authority, on_ground)
+            other_antenna = self._other_antenna(craft.equipment)
+            back = craft_inputs.Restarted(telemetry.authority, on_ground, other_antenna)
             self.give(ToCraft(craft.equipment.craft_id, back))
+
+    def _other_antenna(self, flown: CraftEquipment) -> OtherAntenna | None:
+        """None: the server was given the same one, to the last value."""
+        given = self._equipment.crafts[flown.craft_id].flown_with(self.task.mission.sensor).pattern
+        same = antenna_fact(given) == antenna_fact(flown.pattern)
+        return None if same else OtherAntenna(flown.pattern.name, given.name)
 
     def leave(self) -> None:
         """The server is about to end: what only flies on with it is held, a return by our own way points too."""

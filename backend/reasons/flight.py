@@ -161,6 +161,19 @@ class Landed:
 
 
 @dataclass(frozen=True, slots=True)
+class OtherAntenna:
+    """After a restart. flown, given: names of the patterns, which may be the same for two contents of a file."""
+
+    flown: str
+    given: str
+    code: Literal["other_antenna"] = "other_antenna"
+    english: ClassVar[Words] = Words(
+        "The server was restarted with another antenna pattern ({given}); this mission keeps its own ({flown}).",
+        "Where the antenna itself was changed, land and begin another mission.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class StepBroke:
     """A fault of ours, not of the equipment; the log has the traceback."""
 
@@ -223,6 +236,7 @@ FlightReason = (
     | FailsafeFlies
     | FailsafeStopped
     | Landed
+    | OtherAntenna
     | StepBroke
     | WatchBroke
     | PlaceUnsure

@@ -35,6 +35,19 @@ def antenna_fact(pattern: AntennaPattern) -> AntennaFact:
     )
 
 
+def pattern_of(fact: AntennaFact) -> AntennaPattern:
+    """What `antenna_fact` was made of."""
+    return AntennaPattern(
+        fact.name,
+        np.array(fact.relative_bearing_deg),
+        np.array(fact.gain_db),
+        fact.offset_to_nose_deg,
+        fact.frequency_hz,
+        pointing_sigma_deg=fact.pointing_sigma_deg,
+        borrowed=fact.borrowed,
+    )
+
+
 def corrected(pattern: AntennaPattern, offset_deg: float) -> AntennaPattern:
     """Turned so that bearings come out smaller by what they are known to read too large by, clockwise.
 
@@ -71,7 +84,7 @@ def antennas(recorded: Sequence[Recorded]) -> dict[BearingSource, AntennaPattern
             case _:
                 continue
         found.pop(source, None)
-        found[source] = _pattern(fact)
+        found[source] = pattern_of(fact)
     return found
 
 
@@ -79,15 +92,3 @@ def same_pattern(one: AntennaPattern, other: AntennaPattern) -> bool:
     """However they are mounted."""
     angles = np.array_equal(one.relative_bearing_deg, other.relative_bearing_deg)
     return angles and np.array_equal(one.gain_db, other.gain_db)
-
-
-def _pattern(fact: AntennaFact) -> AntennaPattern:
-    return AntennaPattern(
-        fact.name,
-        np.array(fact.relative_bearing_deg),
-        np.array(fact.gain_db),
-        fact.offset_to_nose_deg,
-        fact.frequency_hz,
-        pointing_sigma_deg=fact.pointing_sigma_deg,
-        borrowed=fact.borrowed,
-    )

@@ -35,7 +35,7 @@ from backend.craft.safety import BatteryStage
 from backend.craft.state import CraftState
 from backend.events import Link
 from backend.reasons import Interrupted
-from backend.reasons.flight import StepName, Way
+from backend.reasons.flight import OtherAntenna, StepName, Way
 from backend.search.state import SearchState
 from hardware.reasons.vehicle import PlaceNotTaken
 from hardware.reasons.vehicle_news import (
@@ -127,6 +127,7 @@ def _every_input(number: int, attempt: int, measured: int) -> tuple[inputs.Craft
         inputs.NetsUp(),
         inputs.NetsNotTaken(VETO),
         *(inputs.Restarted(authority, on_ground) for authority in AUTHORITIES for on_ground in (False, True)),
+        *(inputs.Restarted(authority, other_antenna=OtherAntenna("a", "b")) for authority in AUTHORITIES),
         *(inputs.Leaving(homeward) for homeward in (False, True)),
         inputs.Abandoned(Interrupted("later_mission")),
     )

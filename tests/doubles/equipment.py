@@ -299,7 +299,8 @@ class HummingReceiver:
 
 
 class PointingFinder:
-    """Knows where the emitters are. The first `rejected` sweeps are refused. others: targets by frequency."""
+    """Knows where the emitters are. The first `rejected` sweeps are refused. others: targets by frequency. patterns:
+    that it was asked with."""
 
     def __init__(
         self,
@@ -310,8 +311,10 @@ class PointingFinder:
         self.target = target
         self.rejected = rejected
         self.others = dict(others or {})
+        self.patterns: list[AntennaPattern] = []
 
     def estimate(self, sweep: Sweep, pattern: AntennaPattern) -> BearingReading:
+        self.patterns.append(pattern)
         east, north = FRAME.to_enu(sweep.position)
         target = self.others.get(sweep.frequency_hz, self.target)
         bearing = math.degrees(math.atan2(target[0] - east, target[1] - north)) % 360.0

@@ -1106,6 +1106,10 @@ export const reasonsEn: ReasonTable = {
     remedy:
       "{during?hold=Resume to take off again, abort to end the mission.|automatic=Resume to take off again, abort to end the mission.|*=}",
   },
+  other_antenna: {
+    text: "The server was restarted with another antenna pattern ({given}); this mission keeps its own ({flown}).",
+    remedy: "Where the antenna itself was changed, land and begin another mission.",
+  },
   step_broke: {
     text: "{step?take_off=Taking off|fly=Flying|measure=Measuring|plan=Planning|belief=Updating the belief|hold=Holding|return=Returning|land=Landing} failed inside Crossfix.",
     remedy: "Look at the vehicle and resume, or order the return.",

@@ -51,6 +51,10 @@ export const flight = {
     remedy:
       "{during?hold=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|automatic=Fortsetzen, um wieder abzuheben; abbrechen, um die Mission zu beenden.|*=}",
   },
+  other_antenna: {
+    text: "Der Server ist mit einem anderen Antennendiagramm neu gestartet ({given}); diese Mission behält ihres ({flown}).",
+    remedy: "Wurde die Antenne selbst gewechselt: landen und eine neue Mission beginnen.",
+  },
   step_broke: {
     text: "{step?take_off=Das Abheben|fly=Der Flug|measure=Das Messen|plan=Das Planen|belief=Das Erneuern der Karte|hold=Das Halten|return=Die Rückkehr|land=Die Landung} ist in Crossfix gescheitert.",
     remedy: LOOK,
