@@ -486,8 +486,8 @@ export interface paths {
         post?: never;
         /**
          * Delete Mission
-         * @description Take a mission out of the list, one whose facts are damaged, too; for thirty days it can be restored. 409 while it
-         *     flies.
+         * @description Take a mission out of the list, one whose facts are damaged, too; for thirty days it can be restored. 409 while
+         *     it flies.
          */
         delete: operations["delete_mission"];
         options?: never;
