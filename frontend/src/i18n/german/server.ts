@@ -124,7 +124,8 @@ export const server = {
   },
   mission_damaged: {
     text: "Was von der Mission {mission_id} gespeichert ist, ist beschädigt und nicht lesbar: {detail}.",
-    remedy: "Die anderen Missionen betrifft das nicht; eine Sicherung enthält diese vielleicht noch ganz. In der Liste lässt sie sich löschen.",
+    remedy:
+      "Die anderen Missionen betrifft das nicht; eine Sicherung enthält diese vielleicht noch ganz. In der Liste lässt sie sich löschen.",
   },
   database_later: {
     text: "Ein neueres Crossfix hat die Datenbank {database} geschrieben (Schema {revision}).",
