@@ -134,6 +134,7 @@ def centre_of(area: spec.Area) -> Place:
     corners = [point for rings in polygons for ring in rings for point in ring]
     if not corners:
         raise MissionInputError(reasons.AreaEmpty("area"), "area")
-    lon = [c[0] for c in corners]
+    first = corners[0][0]
+    lon = [first + math.remainder(c[0] - first, 360.0) for c in corners]  # an area may lie across the antimeridian
     lat = [c[1] for c in corners]
-    return Place(math.fsum((min(lat), max(lat))) / 2, math.fsum((min(lon), max(lon))) / 2)
+    return Place(math.fsum((min(lat), max(lat))) / 2, math.remainder(math.fsum((min(lon), max(lon))) / 2, 360.0))

@@ -120,3 +120,8 @@ def test_the_middle_of_an_area() -> None:
     assert (middle.lat, middle.lon) == pytest.approx((50.05, 7.1))
     with refusing(reasons.AreaEmpty("area"), MissionInputError):
         centre_of(Polygon(coordinates=[]))
+
+
+def test_the_middle_of_an_area_across_the_antimeridian_lies_in_it() -> None:
+    middle = centre_of(Polygon(coordinates=[[(179.99, -17.0), (-179.97, -17.0), (-179.97, -16.9), (179.99, -16.9)]]))
+    assert (middle.lon, middle.lat) == (pytest.approx(-179.99), pytest.approx(-16.95))
