@@ -24,7 +24,7 @@ from shapely.ops import nearest_points
 from backend.events import BearingMeasured
 from backend.reasons import Reason, carried
 from backend.search import area
-from backend.search.ground_ways import LaidOut, Traced, along_roads, ground_of, on_foot
+from backend.search.ground_ways import LaidOut, Traced, along_roads, ground_of, on_foot, within_reach
 from backend.search.localization import Localization
 from backend.search.planning import in_nine_of_ten
 from backend.spec import LonLat, Place
@@ -127,6 +127,7 @@ def advise(task: Localization, measured: Sequence[BearingMeasured], here: Place,
     bearings = task.planner_bearings(measured)
     belief = task.planning_belief(bearings)
     hop = _hop(task) if going.hops else None
+    going = replace(going, traced=within_reach(going.traced, task.frame, _around(task, 0.0)))
     around = _around(task, BESIDE_ROAD_M if going.on_roads and going.traced else AROUND_M)
     if not going.traced:
         around = around.union(Point(start)).convex_hull

@@ -168,3 +168,15 @@ async def test_ways_stay_with_a_deleted_mission_and_go_when_it_is_buried(client,
     finally:
         await engine.dispose()
     assert list(ways.directory.iterdir()) == []
+
+
+async def test_where_the_search_has_moved_far_away_nothing_is_known_of_the_ground(client, mission) -> None:
+    await uploaded(client, mission, feature("barrier", "Polygon", *RIVER))
+    assert (await asked(client, mission)).json()["along"] == "around"
+    spec = (await client.get(f"/api/missions/{mission}")).json()["spec"]
+    spec["area"]["coordinates"] = [[[lon + 1.0, lat] for lon, lat in lon_lat(*SQUARE)]]
+    assert (await client.put(f"/api/missions/{mission}/spec", json=spec)).status_code == 200
+    at = FRAME.to_geo(*HERE)
+    body = {"place": {"lat": at.lat, "lon": at.lon + 1.0}}
+    told = (await client.post(f"/api/missions/{mission}/advice", json=body, timeout=60)).json()
+    assert told["along"] == "straight"
