@@ -7,7 +7,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import AsyncGenerator, AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 
@@ -89,7 +89,7 @@ async def received(
 
     if announced_bytes is not None:
         must_fit(announced_bytes)
-    await anyio.to_thread.run_sync(_remove_abandoned, directory, now.timestamp())
+    await anyio.to_thread.run_sync(remove_abandoned, directory, now.timestamp())
     upload = await anyio.to_thread.run_sync(Upload, directory)
     try:
         held = bytearray()
@@ -107,16 +107,21 @@ async def received(
         upload.discard()
 
 
-def _remove_abandoned(directory: Path, now_s: float) -> None:
+def remove_abandoned(directory: Path, now_s: float) -> None:
+    """The rests of uploads that died with their server."""
     for part in directory.glob(".upload-*.part"):
-        if now_s - part.stat().st_mtime > ABANDONED_S:
-            part.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # another upload has ended meanwhile
+            if now_s - part.stat().st_mtime > ABANDONED_S:
+                part.unlink()
 
 
 def replace_text(path: Path, text: str) -> None:
     """All of it or nothing. Raises OSError."""
     part = path.with_suffix(f"{path.suffix}.part")
-    part.write_text(text, "utf-8")
+    with part.open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
     os.replace(part, path)
 
 

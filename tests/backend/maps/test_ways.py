@@ -11,6 +11,7 @@ import pytest
 from shapely.geometry import shape
 
 from backend.maps.refusal import MapRefused
+from backend.maps.upload import remove_abandoned
 from backend.maps.ways import MOST_POSITIONS, kind_of, read_ways
 from backend.maps.ways_folder import WaysFolder
 from backend.reasons.maps import NotReadableAs, PartLeftOut
@@ -189,3 +190,18 @@ def test_the_last_upload_counts_until_it_is_forgotten(tmp_path: Path) -> None:
     folder.forget("m-1")
     folder.forget("m-1")
     assert folder.traced("m-1") == ()
+
+
+def test_notes_of_another_version_keep_nobody_from_the_ways(tmp_path: Path) -> None:
+    folder = WaysFolder(tmp_path)
+    path = tmp_path / "upload"
+    path.write_bytes(json.dumps(road((7.001, 50.001), (7.002, 50.001))).encode())
+    folder.keep_file("m", AREA, path, "w", NOW)
+    told = json.loads(folder.json("m"))
+    folder.path("m").write_text(json.dumps(told | {"notes": [{"code": "of_a_later_version"}]}))
+    assert [one.kind for one in folder.traced("m")] == ["road"]
+
+
+def test_the_rest_of_an_upload_that_ends_meanwhile_is_no_trouble(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(Path, "glob", lambda folder, pattern: iter([folder / ".upload-x.part"]))
+    remove_abandoned(tmp_path, 0.0)
