@@ -265,7 +265,7 @@ def _evidence(x, y, seen, on_way, profiles, bias, spacing, scale, rate, prior, o
     for c in range(len(x)):
         table[:] = prior
         log = _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
-        weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
+        log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
         out.log[c] = outliers + log + np.log(_sums(table, len(rate), out.bias[c], out.scale[c], out.rate[c]))
 
 
@@ -296,7 +296,7 @@ def _node_evidence(x, y, before, seen, on_way, profiles, bias, spacing, scale, r
         table[:] = 1.0
         log = before[c]
         log += _of_cell(x[c], y[c], seen, bias[0], spacing, odds, reach, shares, tables, past, table, density)
-        weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
+        log += weigh_stretches(x[c], y[c], on_way, bias, spacing, scale, rate, sums, table)
         if log > top:
             _scaled(found, np.exp(top - log))
             top = log

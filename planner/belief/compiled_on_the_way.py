@@ -16,6 +16,8 @@ from planner.on_the_way import DIRECTIONS, FREEDOM, NEAR_M
 
 PER_RADIAN = DIRECTIONS / (2.0 * np.pi)
 FINE_ENOUGH = np.deg2rad(2.0)
+RESCALED_EVERY = 16
+"""Stretches: none multiplies by less than the rate of outliers, or by more than a bearing's peak."""
 SUMS = 4
 """Of weights, weighted residuals, their squares, and logarithms of variances."""
 
@@ -66,10 +68,23 @@ def _summed(x, y, heard, k, bias, step, sums):
 
 
 @jit
+def _rescaled(table):
+    """Divides by the largest of the table, and returns its logarithm."""
+    top = table.max()
+    if top <= 0.0:
+        return 0.0
+    for r in range(table.shape[0]):
+        for b in range(table.shape[1]):
+            table[r, b] /= top
+    return np.log(top)
+
+
+@jit
 def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, table):
-    """Multiplies (1 - e) f / c + e of every stretch into table (k e, b), for the emitter at (x, y). sums: (SUMS, n)
-    scratch, n of `coarse_nodes`."""
-    rates, stride = len(rate), stride_of(spacing)
+    """Multiplies (1 - e) f / c + e of every stretch into table (k e, b), for the emitter at (x, y), but for a factor
+    whose logarithm is returned: hundreds of stretches leave the range of numbers. sums: (SUMS, n) scratch, n of
+    `coarse_nodes`."""
+    rates, stride, weighed, log = len(rate), stride_of(spacing), 0, 0.0
     for k in range(len(heard.worth)):
         if _near(x, y, heard, k):
             continue
@@ -90,3 +105,7 @@ def weigh_stretches(x, y, heard, bias, spacing, scale, rate, sums, table):
                 ratio = np.exp(sums[2, n] * (1.0 - part) + sums[2, n + 1] * part)
                 for e in range(rates):
                     table[s * rates + e, b] *= (1.0 - rate[e]) * ratio + rate[e]
+        weighed += 1
+        if weighed % RESCALED_EVERY == 0:
+            log += _rescaled(table)
+    return log

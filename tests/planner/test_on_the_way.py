@@ -141,6 +141,20 @@ def test_the_compiled_evidence_is_that_of_the_readable_one() -> None:
         assert np.ptp(plain.log - without.log) > 1.0
 
 
+def test_hundreds_of_stretches_stay_within_the_range_of_numbers() -> None:
+    """A mission of twenty legs of 480 m has as many."""
+    x, y = np.array([80.0, -120.0, 200.0]), np.array([90.0, 60.0, -10.0])
+    stretches = [stretch(330.0, noise=2.0, seed=k) for k in range(900)]
+    grid = nodes(ErrorPrior(), SIGMA, 900)
+    fast = compiled_evidence.evidence(x, y, sightings([]), grid, stretches)
+    plain = evidence.evidence(x, y, sightings([]), grid, stretches)
+    assert np.ptp(plain.log) > 710.0, "the case would show nothing"
+    assert fast.log == pytest.approx(plain.log, rel=0.02)
+    assert all(np.isfinite(part).all() for part in fast)
+    told = compiled_evidence.node_evidence(x, y, np.zeros(3), sightings([]), grid, stretches)
+    assert np.isfinite(told).all()
+
+
 def test_one_wrong_stretch_is_one_outlier() -> None:
     """However many readings it has, it cannot speak against a place louder than an outlier's rate allows."""
     grid = nodes(ErrorPrior(rate=np.array([0.1]), rate_weight=ONE), SIGMA, 5)
