@@ -165,6 +165,7 @@ export function missionLayers(colours: Palette, overMap = false): Drawn[] {
     line("excluded", "measured", "excluded", "bearings", { "line-color": colours.bearingLow, "line-width": 1, "line-dasharray": [1, 4] }),
     line("c95-halo", "measured", "c95", "belief", { "line-color": colours.halo, "line-width": 5, "line-opacity": 0.7 }),
     line("c95", "measured", "c95", "belief", { "line-color": colours.c95, "line-width": 2.2 }),
+    line("emitter-c95-edge", "measured", "emitter_c95", "belief", { "line-color": colours.ink, "line-width": 4, "line-opacity": 0.4 }),
     line("emitter-c95", "measured", "emitter_c95", "belief", { "line-color": ["get", "colour"], "line-width": 2 }),
     fill("roses", "measured", "rose", "roses", {
       "fill-color": colours.rose,
