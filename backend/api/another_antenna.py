@@ -75,6 +75,7 @@ async def another_antenna(
     if wanted.pattern is None and wanted.offset_to_nose_deg is None:
         return None
     heard = [r.event for r in recorded if isinstance(r.event, BearingMeasured | SweepRejected)]
+    of: dict[BearingSource, AntennaPattern]
     if wanted.pattern is None:
         of = antennas(recorded)
         flew = [one for source, one in of.items() if isinstance(source, CraftSource)]

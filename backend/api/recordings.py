@@ -187,7 +187,7 @@ def _identity(names: dict[Path, str], form: RecordingForm) -> str:
             digest.update(hashlib.file_digest(stream, "sha256").digest())
     digest.update(form.model_dump_json(exclude={"files", "antenna"}).encode())
     if form.antenna is not None:
-        digest.update(hashlib.file_digest(form.antenna.file, "sha256").digest())
+        digest.update(hashlib.sha256(form.antenna.file.read()).digest())
         form.antenna.file.seek(0)
     return digest.hexdigest()
 

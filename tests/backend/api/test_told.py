@@ -100,6 +100,7 @@ async def test_what_is_known_since_counts_at_once(
 ) -> None:
     first = await calibration(client)
     reckoned.clear()
+    after = first
     for fact in since:
         await services.journal.append("m1", [fact])
         after = await calibration(client)
