@@ -56,6 +56,9 @@ HEARD_DB = 3.0
 """Power over the noise, both together, that the strongest direction must have: 3 dB is wave and noise alike."""
 MINIMUM_PEAK_WEIGHT = 0.05
 MAXIMUM_SIGMA_DEG = 60.0
+UNHEARD_BEAMS = 0.055
+"""Of a whole circle unheard, in beam widths: what echoes from there bend the lobe by through the antenna's side lobes.
+Likeliest for sectors of 120 to 300 degrees in the field world (docs/direction-finding.md)."""
 OTHER_ODDS = 3.0
 """Of another antenna to the pattern's before the sweep is seen, when nobody checked the pattern on the vehicle."""
 OTHER_ODDS_BORROWED = 8.0
@@ -78,8 +81,8 @@ class SparseDirectionFinder:
     """Implements hardware.ports.DirectionFinder. Pure but for a cache of pattern matrices.
 
     Added in quadrature to the sweep's own sigma, since no sweep can show it: heading_sigma_deg, what the vehicle's
-    heading is uncertain by, the pattern's mismatch_sigma_deg, what its antenna may point beside by, and
-    atan(drift / 100 m), what the uncertain place makes of it.
+    heading is uncertain by, the pattern's mismatch_sigma_deg, what its antenna may point beside by,
+    atan(drift / 100 m), what the uncertain place makes of it, and what was not heard of the circle.
     """
 
     minimum_quality: float = MINIMUM_QUALITY
@@ -133,10 +136,12 @@ class SparseDirectionFinder:
         probability = 0.0 if other is None else other_probability(other, pattern)
         bearing, own_sigma = _of_both(refined, other, probability)
         likelihood = sweep_likelihood(refined.circle, other, probability)
+        unheard = unheard_sigma_deg(binned.largest_gap_deg, curve.beam_deg)
         beyond = (bearing - binned.gap_start_deg) % 360.0
         in_gap = binned.largest_gap_deg > curve.beam_deg / 2.0 and 0.0 < beyond < binned.largest_gap_deg
         if in_gap:
             own_sigma = max(own_sigma, likelihood.spread_deg(bearing))
+        own_sigma = math.hypot(own_sigma, unheard)
         sigma = math.hypot(own_sigma, self.heading_sigma_deg, pattern.mismatch_sigma_deg, place_sigma_deg)
         quality = cosine_quality(curve, binned, bearing, noise_db)
         peaks = tuple(
@@ -164,8 +169,16 @@ class SparseDirectionFinder:
             fitted_db=refined.fitted_db,
             snr_db=None if noise_db is None else refined.peak_db - noise_db,
             remarks=remarks_on(pattern, probability),
-            likelihood=_with_place(likelihood, place_sigma_deg).packed(),
+            likelihood=_widened(likelihood, math.hypot(place_sigma_deg, unheard)).packed(),
         )
+
+
+def unheard_sigma_deg(gap_deg: float, beam_deg: float) -> float:
+    """What echoes from directions that were not heard may bend a bearing by, s = c B sqrt(gap / 360).
+
+    A gap of less than half a beam hides none.
+    """
+    return UNHEARD_BEAMS * beam_deg * math.sqrt(gap_deg / 360.0) if gap_deg > beam_deg / 2.0 else 0.0
 
 
 def other_probability(other: OtherAntenna, pattern: AntennaPattern) -> float:
@@ -193,8 +206,8 @@ def _of_both(refined: Refined, other: OtherAntenna | None, probability: float) -
     return chosen, math.sqrt((1.0 - probability) * known + probability * another)
 
 
-def _with_place(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:
-    """Convolved with what the uncertain place makes of it."""
+def _widened(likelihood: SweepLikelihood, sigma_deg: float) -> SweepLikelihood:
+    """Convolved with what the uncertain place and the unheard directions make of it."""
     return likelihood if sigma_deg < 0.5 else likelihood.blurred(sigma_deg)
 
 
