@@ -142,7 +142,7 @@ class SectorTurns:
     turn_rate: float
     share: float = 0.9
     margin: float = np.deg2rad(45.0)
-    narrowest: float = np.deg2rad(160.0)
+    narrowest: float = np.deg2rad(200.0)
     widest: float = np.deg2rad(270.0)
 
     def width(self, arc: float) -> float:

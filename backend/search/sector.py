@@ -54,8 +54,9 @@ NEARLY_DEG = 60.0
 """With less than this left of the circle it is turned whole."""
 BRACKET_DEG = 30.0
 SURE_QUALITY = 0.8
-SURE_SIGMA_DEG = 3.5
-"""Of a sweep alone: a whole turn's is seldom more, and another place costs more than the rest of the circle."""
+SURE_SIGMA_DEG = 10.0
+"""Of a sweep alone: more than this hardly shows a lobe. Less is no reason to turn on: where echoes make a sector's
+bearing uncertain, the rest of the circle seldom makes it better."""
 MOST_ELSEWHERE = 0.1
 TOLERANCE_DEG = CIRCLE_DEG - WHOLE_DEG
 """A vehicle stops this much short of what it was asked to turn."""

@@ -134,6 +134,10 @@ def test_it_stops_when_the_maximum_lies_well_within_and_little_speaks_for_anothe
     assert decided.why.elsewhere_percent < 5.0
 
 
+def test_an_uncertain_bearing_alone_is_no_reason_to_turn_on() -> None:
+    assert isinstance(look(PLAN, BEGIN, PLAN.width_deg, heard(180.0, sigma_deg=6.0)), Stop)
+
+
 def test_a_maximum_at_the_end_is_followed_and_one_at_the_beginning_takes_the_whole_circle() -> None:
     at_end = look(PLAN, BEGIN, 160.0, heard(BEGIN + 150.0))
     at_beginning = look(PLAN, BEGIN, 160.0, heard(BEGIN + 10.0))
@@ -147,7 +151,7 @@ def test_a_maximum_at_the_end_is_followed_and_one_at_the_beginning_takes_the_who
         (None, NothingFoundYet),
         (heard(180.0, accepted=False), NothingFoundYet),
         (heard(180.0, quality=0.75), QualityPoor),
-        (heard(180.0, sigma_deg=9.0), BearingUncertain),
+        (heard(180.0, sigma_deg=12.0), BearingUncertain),
         (heard(180.0, elsewhere=SweepLikelihood(np.zeros(360))), ElsewherePossible),
     ],
 )
