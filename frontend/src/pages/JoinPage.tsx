@@ -1,6 +1,7 @@
 // An invitation by link or QR code: what it offers, and the account that it makes.
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
+import { firstPlace } from "../commands/suggested";
 import { t } from "../i18n";
 import { ProblemBox } from "../panels/ProblemNote";
 import { acceptInvitation, type InvitationOffer, lookAtInvitation } from "../sources/accessApi";
@@ -31,8 +32,10 @@ export function JoinPage({ route }: { route: { code: string } }) {
           submit={t("entry.join.submit")}
           fresh
           onSubmit={async (name, password) => {
-            session.value = await acceptInvitation(route.code, name, password);
-            go("#/");
+            const entered = await acceptInvitation(route.code, name, password);
+            const place = await firstPlace(offer.role !== "viewer");
+            session.value = entered;
+            go(place);
           }}
         >
           <p data-testid="join-role">

@@ -2,6 +2,7 @@
 import type { ComponentChildren, ComponentType } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { asProblem } from "../commands/send";
+import { draftSuggested } from "../commands/suggested";
 import { t } from "../i18n";
 import { LabelForm } from "../panels/LabelForm";
 import { LibraryFilter } from "../panels/LibraryFilter";
@@ -18,7 +19,7 @@ import { change, settings } from "../state/settings";
 import { toneOfMission } from "../state/tone";
 import { phaseName } from "../state/words";
 import { formatDuration, formatNumber } from "../units/quantities";
-import type { MissionBrought, MissionSpec, MissionSummary, Problem } from "../wire";
+import type { MissionBrought, MissionSummary, Problem } from "../wire";
 import "../style/library.css";
 import "../style/review.css";
 
@@ -233,14 +234,6 @@ function Place({ missions }: { missions: readonly MissionSummary[] }) {
 
 /** What a first visitor may do, each with what it is good for. */
 function Welcome({ children, onProblem }: { children: ComponentChildren; onProblem: (problem: Problem) => void }) {
-  const takeSuggested = async () => {
-    try {
-      const drafted = await api.draftMission((await api.defaults()).spec as MissionSpec);
-      go(missionAddress(drafted.mission_id));
-    } catch (error) {
-      onProblem(asProblem(error));
-    }
-  };
   return (
     <div class="welcome" data-testid="welcome">
       <h2>{t("missions.welcome")}</h2>
@@ -253,7 +246,12 @@ function Welcome({ children, onProblem }: { children: ComponentChildren; onProbl
         <span>{t("missions.welcome.planHint")}</span>
       </a>
       {me.value?.role !== "viewer" && (
-        <button type="button" class="welcome-way" data-testid="welcome-suggested" onClick={() => void takeSuggested()}>
+        <button
+          type="button"
+          class="welcome-way"
+          data-testid="welcome-suggested"
+          onClick={() => void draftSuggested().then(go, (error: unknown) => onProblem(asProblem(error)))}
+        >
           <strong>{t("missions.welcome.suggested")}</strong>
           <span>{t("missions.welcome.suggestedHint")}</span>
         </button>

@@ -3,6 +3,7 @@ import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { SlideToConfirm } from "../commands/SlideToConfirm";
 import { asProblem, report, send } from "../commands/send";
+import { slideNext } from "../commands/suggested";
 import { type MessageKey, reasonRemedy, reasonText, t } from "../i18n";
 import { source } from "../state/connection";
 import { mission } from "../state/shown";
@@ -26,10 +27,13 @@ export async function runPreflight(missionId: string): Promise<void> {
 
 export function PreflightPanel({ missionId }: { missionId: string }) {
   const { checks, preflightPassed, spec } = mission.value;
-  const [sliding, setSliding] = useState(false);
+  const [sliding, setSliding] = useState(slideNext.peek() === missionId);
   useEffect(() => {
     if (checks === null && spec) void runPreflight(missionId);
   }, [missionId, checks === null, spec === null]);
+  useEffect(() => {
+    slideNext.value = null;
+  }, []);
   const refusing = checks?.filter((c) => !c.ok && c.blocking).length ?? 0;
   return (
     <section class="panel preflight" data-testid="preflight" data-passed={preflightPassed ?? ""} aria-label={t("preflight.title")}>
@@ -68,7 +72,7 @@ export function PreflightPanel({ missionId }: { missionId: string }) {
         </>
       )}
       <div class="start-foot">
-        {sliding ? (
+        {sliding && preflightPassed ? (
           <SlideToConfirm
             label={t("preflight.slide")}
             testId="start-slider"
