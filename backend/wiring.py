@@ -256,8 +256,7 @@ async def open_simulation(
                 async with _bearings_by_udp(settings, missions, clock):
                     yield services, receiver if isinstance(receiver, EmittersAroundHome) else None
             finally:
-                await services.workers.close()
-                await services.desk.close()
+                await services.close()
         finally:
             in_flight = missions is not None and missions.flights.active is not None
             if missions is not None:

@@ -75,3 +75,10 @@ class Services:
         object.__setattr__(self, "stocks", made)
         object.__setattr__(self, "iq", IqFolder.of_settings(self.settings))
         object.__setattr__(self, "told", ToldFolder.of_settings(self.settings))
+
+    async def close(self) -> None:
+        """Ends what runs beside requests; the journal is the caller's."""
+        for stock in self.stocks.values():
+            await stock.close()
+        await self.workers.close()
+        await self.desk.close()

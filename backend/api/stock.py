@@ -51,6 +51,12 @@ class Stock:
             full=kept is not None and (kept.number >= self.most or kept.size_bytes >= self.most_bytes),
         )
 
+    async def close(self) -> None:
+        """Nothing is asked of the store any more."""
+        if self._looking is not None:
+            self._looking.cancel()
+            await asyncio.gather(self._looking, return_exceptions=True)
+
     async def _look(self) -> None:
         with suppress(JournalUnavailable, OSError):  # the database's own part of the page says so
             self.known = await self.count()

@@ -61,21 +61,20 @@ def make_direct_engine(engine: AsyncEngine, timeout_s: float) -> Engine:
     return direct
 
 
-_threads: WeakKeyDictionary[Dialect, set[Thread]] = WeakKeyDictionary()
-"""Of every connection to SQLite, by what all variants of an engine share."""
+_opened: WeakKeyDictionary[Dialect, list[aiosqlite.Connection]] = WeakKeyDictionary()
+"""Every connection to SQLite whose thread may run, by what all variants of an engine share."""
 ENDS_S = 5.0
 
 
 def _keep_threads(engine: Engine) -> None:
     """Each connection to SQLite is a thread, which answers to the event loop; also one whose caller has given up."""
-    known = _threads.setdefault(engine.dialect, set())
+    known = _opened.setdefault(engine.dialect, [])
 
     def connect(*args: Any, **named: Any) -> aiosqlite.Connection:
         connection = aiosqlite.connect(*args, **named)
-        thread: Thread = connection._thread  # pyright: ignore[reportPrivateUsage] (as SQLAlchemy does)
-        thread.daemon = True
-        known.difference_update([one for one in known if one.ident is not None and not one.is_alive()])
-        known.add(thread)
+        _thread(connection).daemon = True
+        known[:] = [one for one in known if _thread(one).ident is None or _thread(one).is_alive()]
+        known.append(connection)
         return connection
 
     @event.listens_for(engine, "do_connect")
@@ -85,11 +84,18 @@ def _keep_threads(engine: Engine) -> None:
 
 async def dispose(engine: AsyncEngine) -> None:
     """The engine's connections are closed when it returns, those too of whoever was cut off in the middle: the thread
-    of such a one would else answer to an event loop that has ended."""
+    of such a one would else answer to an event loop that has ended. One that was cut off while it was set up is in no
+    pool, and closed by nobody else."""
     await engine.dispose()
-    under_way = [thread for thread in _threads.get(engine.dialect, ()) if thread.is_alive()]
-    if under_way:
-        await asyncio.to_thread(_join, under_way)
+    left = [connection for connection in _opened.get(engine.dialect, []) if _thread(connection).is_alive()]
+    for connection in left:
+        await connection.close()
+    if left:
+        await asyncio.to_thread(_join, map(_thread, left))
+
+
+def _thread(connection: aiosqlite.Connection) -> Thread:
+    return connection._thread  # pyright: ignore[reportPrivateUsage] (as SQLAlchemy does)
 
 
 def _join(threads: Iterable[Thread]) -> None:

@@ -234,7 +234,7 @@ def unanswered(error: BaseException, engine: AsyncEngine) -> Unanswered:
         return MachineBusy()
     if engine.dialect.name == "sqlite":
         orig = error.orig if isinstance(error, exc.DBAPIError) else None
-        if isinstance(orig, sqlite3.Error) and orig.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY:
+        if isinstance(orig, sqlite3.Error) and getattr(orig, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_BUSY:
             return DatabaseTaken()
         if isinstance(error, TimeoutError):
             return DiskBusy()

@@ -72,9 +72,12 @@ async def running_services(settings: Settings, vehicle: PaperVehicle, workers: W
     try:
         payload = PayloadHub((TOKEN,), lambda: NOW_S)
         access = Access(None, AuditLog(None, lambda: NOW_S), people_expected=False)
-        yield Services(
+        services = Services(
             room, journal, hub, settings, lambda: NOW_S, payload, workers, access=access, finder=finder, pattern=pattern
         )
+        yield services
+        for stock in services.stocks.values():
+            await stock.close()
     finally:
         await journal.close()
 

@@ -100,6 +100,7 @@ def test_every_refused_place_counts_until_the_search_area_changes() -> None:
         assert isinstance(refusal(walk.order(commands.Override(place=place))), PlaceRefusedBefore)
     walk.order(commands.Hold())
     walk.fold(AreaChanged(search=OTHER_AREA, by="anna"))
+    walk.give(inputs.NetsUp())
     assert refusal(walk.order(commands.Override(place=first))) is None
 
 

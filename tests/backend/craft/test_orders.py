@@ -211,6 +211,8 @@ def test_another_search_area_makes_what_was_planned_void() -> None:
     assert (walk.craft.chosen, walk.craft.avoid, walk.search.beliefs_current) == (None, (), False)
     walk.believe()
     assert walk.craft.phase == "hold"
+    assert refusal(walk.order(commands.Resume())) == refusals.NetsChanging()
+    walk.give(inputs.NetsUp())
     assert walk.order(commands.Resume())[-1] == effects.PlanNext(2, ())
 
 

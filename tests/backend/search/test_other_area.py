@@ -92,6 +92,7 @@ def test_bearings_count_on_and_what_was_planned_for_the_old_area_is_void() -> No
     assert walk.search.emitters["emitter-1"].bearing_ids == ("b1",)
     assert (walk.craft.chosen, walk.search.beliefs_current, walk.craft.automatic) == (None, False, False)
     walk.believe()
+    walk.to_craft(craft_inputs.NetsUp())
     resumed = [effect for effect in walk.command(commands.Resume()) if isinstance(effect, OfCraft)]
     (sought,) = [e.effect for e in resumed if isinstance(e.effect, craft_effects.PlanNext)]
     assert (sought.place_number, sought.avoid) == (3, ())
