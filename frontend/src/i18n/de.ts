@@ -467,7 +467,7 @@ export const de: Record<MessageKey, string> = {
   "timeline.empty": "Noch nichts geschehen",
   "timeline.previous": "Ereignis davor",
   "timeline.next": "Ereignis danach",
-  "timeline.rmse": "erwarteter Fehler",
+  "timeline.rmse": "Fehler",
 
   "preflight.title": "Vor dem Start",
   "preflight.run": "Prüfen",
