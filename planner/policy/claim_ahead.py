@@ -99,8 +99,10 @@ class ClaimAhead:
         return cost + self.failed * (share >= chance) + beyond * later
 
     def std_errors(self, chance: FloatArray) -> FloatArray:
-        """(n,) s, of the values of places with these chances."""
-        return self.failed * np.sqrt(chance * (1.0 - chance) / BEARINGS_DRAWN)
+        """(n,) s, of the values of places with these chances; with half a bearing more that claims and half one that
+        does not (Jeffreys), so that none of 32 is not certain."""
+        share = (BEARINGS_DRAWN * chance + 0.5) / (BEARINGS_DRAWN + 1.0)
+        return np.asarray(self.failed * np.sqrt(share * (1.0 - share) / BEARINGS_DRAWN))
 
 
 def claim_ahead(
