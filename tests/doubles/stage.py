@@ -18,6 +18,7 @@ from backend.events import (
     MissionStarted,
     NetsNoted,
     NetsPutBack,
+    Phase,
     PhaseChanged,
     Recorded,
 )
@@ -89,7 +90,7 @@ class MemoryJournal:
         if mission_id not in self.stored:
             return None
         state = self.state(mission_id)
-        crafts = {craft.craft_id: craft.phase for craft in state.engaged}
+        crafts: dict[str, Phase] = {craft.craft_id: craft.phase for craft in state.engaged}
         return Listed(state.search.started_at_s, state.search.stage == "ended", state.search.deleted, crafts)
 
     async def save_sweep(

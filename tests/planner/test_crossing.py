@@ -98,12 +98,13 @@ def test_where_no_place_crosses_widely_enough_the_widest_are_left() -> None:
     assert crossing.crossed_from(places).tolist() == [False, False, True]
 
 
-def widest_alone() -> tuple[Problem, JointBelief, tuple[float, float]]:
+def widest_alone() -> tuple[Problem, GridBelief, tuple[float, float]]:
     """No place crosses widely enough, and one of them the most widely."""
     problem, belief, crossing = waiting()
-    asking = replace(problem, crossing=replace(crossing, least=np.pi / 2))
+    wide = replace(crossing, least=np.pi / 2)
+    asking = replace(problem, crossing=wide)
     places = action_space(asking, belief)
-    (widest,) = places[asking.crossing.crossed_from(places)]
+    (widest,) = places[wide.crossed_from(places)]
     return asking, belief, (float(widest[0]), float(widest[1]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,7 +52,7 @@ def test_one_place_is_searched_from_at_a_time(monkeypatch: pytest.MonkeyPatch) -
     asked: list[int] = []
     search = csgraph.dijkstra
 
-    def counted(network: object, **how: object) -> object:
+    def counted(network: Any, **how: Any) -> Any:
         asked.append(np.size(how["indices"]))
         return search(network, **how)
 

@@ -193,12 +193,13 @@ def test_the_last_upload_counts_until_it_is_forgotten(tmp_path: Path) -> None:
 
 
 def test_notes_of_another_version_keep_nobody_from_the_ways(tmp_path: Path) -> None:
-    folder = WaysFolder(tmp_path)
+    files = WaysFiles(tmp_path)
+    folder = WaysFolder(files)
     path = tmp_path / "upload"
     path.write_bytes(json.dumps(road((7.001, 50.001), (7.002, 50.001))).encode())
     folder.keep_file("m", AREA, path, "w", NOW)
     told = json.loads(folder.json("m"))
-    folder.path("m").write_text(json.dumps(told | {"notes": [{"code": "of_a_later_version"}]}))
+    files.path("m").write_text(json.dumps(told | {"notes": [{"code": "of_a_later_version"}]}))
     assert [one.kind for one in folder.traced("m")] == ["road"]
 
 

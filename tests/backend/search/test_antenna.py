@@ -75,7 +75,7 @@ def test_it_is_the_last_one_flown_or_imported_with() -> None:
 def test_each_source_has_its_own() -> None:
     found = antennas(recorded(DRAFTED, started(YAGI), imported(LOOP)))
     craft, file = CraftSource(craft_id=FIRST_CRAFT), ImportSource(recording_id="r")
-    assert {source: one.name for source, one in found.items()} == {craft: "yagi", file: "loop"}
+    assert [(source, one.name) for source, one in found.items()] == [(craft, "yagi"), (file, "loop")]
     assert found[craft].offset_to_nose_deg == YAGI.offset_to_nose_deg
     assert antennas(recorded(DRAFTED, started(None))) == {}
 
