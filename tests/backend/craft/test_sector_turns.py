@@ -49,23 +49,23 @@ async def test_it_swings_the_short_way_to_the_beginning_and_turns_through_the_se
     stage = Stage(target=(0.0, 60.0))
     plan = planned_turn(expected(0.0))
     found = await measured(stage, plan)
-    assert stage.vehicle.turned_by == pytest.approx([-80.0, 160.0], abs=2.0)
+    assert stage.vehicle.turned_by == pytest.approx([-100.0, 200.0], abs=2.0)
     assert isinstance(found.fact, BearingMeasured)
     assert found.sweep is not None
     assert found.sweep.partial
     turn = found.fact.turn
     assert turn is not None
-    assert (turn.planned_deg, turn.turned_deg) == pytest.approx((160.0, 160.0), abs=1.0)
-    assert turn.begin_deg == pytest.approx(280.0, abs=2.0)
+    assert (turn.planned_deg, turn.turned_deg) == pytest.approx((200.0, 200.0), abs=1.0)
+    assert turn.begin_deg == pytest.approx(260.0, abs=2.0)
     assert isinstance(turn.planned_because, SectorExpected)
     assert turn.went_on_because == []
     assert isinstance(turn.stopped_because, MaximumSeen)
-    assert any(sector is not None and sector.goal_deg == 160.0 for sector in stage.publisher.sectors)
+    assert any(sector is not None and sector.goal_deg == 200.0 for sector in stage.publisher.sectors)
 
 
 async def test_a_nose_that_points_there_already_does_not_swing() -> None:
     stage = Stage(target=(0.0, 60.0))
-    await measured(stage, planned_turn(expected(80.0)))
+    await measured(stage, planned_turn(expected(100.0)))
     assert stage.vehicle.turned_by[0] > 0.0
 
 
