@@ -10,7 +10,7 @@ from planner.study.truth import Claim
 from tests.benchmarks import truth
 from tests.benchmarks.figures.circumstances import ROOT
 from tests.benchmarks.figures.reader import read
-from tests.benchmarks.truth import Series, merged, row, summed_up
+from tests.benchmarks.truth import Series, chosen, merged, row, summed_up
 
 RECORDED = ROOT / "docs" / "measurements" / "truth.json"
 BIAS5 = Series("bias5", "joint")
@@ -79,3 +79,11 @@ def test_of_tags_a_time_is_wanted_and_of_moving_emitters_the_truth(flown: list[i
     judged = {made.wanted.key: made.value for made in truth.figures(rows) if made.wanted is not None}
     assert judged == {"eight_tags": 300.0, "moving": 100.0}
     assert row(rows[0])[:3] == ("tags_8", "joint, shared", "nothing")
+
+
+def test_a_row_that_is_named_whole_is_flown_without_those_that_contain_its_name() -> None:
+    names = ("bias5", "walls", "walls_bias5", "tags_4_bias5")
+    assert chosen(names, ["bias5"]) == ["bias5"]
+    assert chosen(names, ["bias5", "walls_"]) == ["bias5", "walls_bias5"]
+    assert chosen(names, ["bias"]) == ["bias5", "walls_bias5", "tags_4_bias5"]
+    assert chosen(names, [""]) == list(names)

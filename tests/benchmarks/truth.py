@@ -198,10 +198,15 @@ def merged(before: Record | None, found: Sequence[Truth]) -> tuple[list[Figure],
     return made, Table(name="truth", columns=COLUMNS, rows=tuple(rows.values())), remark
 
 
+def chosen(names: Sequence[str], parts: Sequence[str]) -> list[str]:
+    """The names that are one of the parts, or contain one that is no name itself."""
+    return [name for name in names if any(part == name or (part not in names and part in name) for part in parts)]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Count what the claims of simulated searches are worth.")
     parser.add_argument("--missions", type=int, default=1000)
-    parser.add_argument("--only", default="", help="rows whose name contains one of these parts")
+    parser.add_argument("--only", default="", help="rows of these names, or whose name contains one of these parts")
     parser.add_argument("--models", default="joint,independent", help="what is believed of the errors")
     parser.add_argument("--flights", type=int, default=30, help="that teach the rows of LEARNED; 0: no such rows")
     parser.add_argument(
@@ -214,9 +219,7 @@ def main() -> None:
     arguments = parser.parse_args()
     begun = begin(__file__)
     models: list[Model] = [known_model(name) for name in arguments.models.split(",")]
-    names = [
-        name for name in (*ROWS.by_name, *SPEEDS, *TAGS) if any(part in name for part in arguments.only.split(","))
-    ]
+    names = chosen((*ROWS.by_name, *SPEEDS, *TAGS), arguments.only.split(","))
     series = [Series(name, model) for name in names for model in models]
     for name in (name for name in LEARNED if name in names and arguments.flights):
         series += [Series(name, "joint", flights=arguments.flights), Series(name, "joint", told=True)]
