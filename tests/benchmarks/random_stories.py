@@ -34,6 +34,8 @@ from tests.system.console import Console, console
 ORDERS = ("hold", "resume", "return", "land", "abort", "start", "keep_holding")
 REACH = ("hold", "return", "land")
 MOST_ACTS = 6
+ANSWER_S = 60.0
+"""Of the wall, for an answer of the simulated vehicle."""
 OBEYED_S = 60.0
 """Of the wall, for an order to be accepted and then seen at the vehicle, on a busy machine."""
 TRACEBACK = "Traceback (most recent call last)"
@@ -66,6 +68,9 @@ class Story:
     shown: Console
     told: list[str] = field(default_factory=list[str])
 
+    async def at_vehicle(self, do: str, **arguments: Any) -> dict[str, Any]:
+        return await self.vehicle.order(do, timeout_s=ANSWER_S, **arguments)
+
     async def craft_order(self, kind: str) -> dict[str, Any]:
         body = {"command_id": str(uuid4()), "command": {"kind": kind}}
         return self.answered(await self.shown.client.post("/api/crafts/craft-1/commands", json=body))
@@ -87,15 +92,15 @@ class Story:
         acts: dict[str, Callable[[], Awaitable[Any]]] = {
             "order": lambda: self.order(to_mission),
             "order to the craft": lambda: self.craft_order(to_craft),
-            "pilot": lambda: self.vehicle.order("pilot_mode"),
-            "give back": lambda: self.vehicle.order("give_back"),
-            "refuse": lambda: self.vehicle.order("fault", kind="refuse", count=self.chance.randint(1, 5)),
-            "ignore": lambda: self.vehicle.order("fault", kind="ignore_all", count=self.chance.randint(1, 3)),
-            "silent": lambda: self.vehicle.order("fault", kind="silent", count=self.chance.randint(1, 4)),
-            "link": lambda: self.vehicle.order("link_loss", seconds=for_seconds),
-            "satellites": lambda: self.vehicle.order("gps_loss", seconds=for_seconds),
-            "late link": lambda: self.vehicle.order("link_delay", seconds=self.chance.choice((0.08, 0.25))),
-            "battery": lambda: self.vehicle.order("battery", percent=self.chance.choice((12, 25, 40))),
+            "pilot": lambda: self.at_vehicle("pilot_mode"),
+            "give back": lambda: self.at_vehicle("give_back"),
+            "refuse": lambda: self.at_vehicle("fault", kind="refuse", count=self.chance.randint(1, 5)),
+            "ignore": lambda: self.at_vehicle("fault", kind="ignore_all", count=self.chance.randint(1, 3)),
+            "silent": lambda: self.at_vehicle("fault", kind="silent", count=self.chance.randint(1, 4)),
+            "link": lambda: self.at_vehicle("link_loss", seconds=for_seconds),
+            "satellites": lambda: self.at_vehicle("gps_loss", seconds=for_seconds),
+            "late link": lambda: self.at_vehicle("link_delay", seconds=self.chance.choice((0.08, 0.25))),
+            "battery": lambda: self.at_vehicle("battery", percent=self.chance.choice((12, 25, 40))),
             "kill": self.kill,
         }
         likely = {"order": 5, "order to the craft": 2, "kill": 2}
@@ -120,7 +125,7 @@ class Story:
         self.shown.mission_id = mission_id
 
     async def begin(self) -> None:
-        await self.vehicle.order("battery", percent=100)
+        await self.at_vehicle("battery", percent=100)
         await self.shown.draft(**LONG_SEARCH)
         await self.shown.ready(120)
         async with asyncio.timeout(4 * OBEYED_S):
@@ -132,21 +137,21 @@ class Story:
     async def calm(self) -> None:
         """Nothing is wrong any more, and the pilot has given back."""
         for kind in ("refuse", "ignore_all", "silent"):
-            await self.vehicle.order("fault", kind=kind, count=0)
-        await self.vehicle.order("link_delay", seconds=0.0)
-        await self.vehicle.order("link_loss", seconds=0.0)
-        await self.vehicle.order("gps_loss", seconds=0.0)
-        await self.vehicle.order("battery", percent=100)
-        if (truth := await self.vehicle.order("truth"))["in_air"]:
+            await self.at_vehicle("fault", kind=kind, count=0)
+        await self.at_vehicle("link_delay", seconds=0.0)
+        await self.at_vehicle("link_loss", seconds=0.0)
+        await self.at_vehicle("gps_loss", seconds=0.0)
+        await self.at_vehicle("battery", percent=100)
+        if (truth := await self.at_vehicle("truth"))["in_air"]:
             self.told.append(f"calm in {truth['mode']} at {truth['altitude_relative_m']:.0f} m")
-            await self.vehicle.order("give_back")
+            await self.at_vehicle("give_back")
 
     async def reach(self) -> None:
         """Raises TimeoutError when the vehicle in the air is out of reach."""
         for kind in self.chance.sample(REACH, len(REACH)):
             through = self.chance.choice((self.order, self.craft_order))
             async with asyncio.timeout(OBEYED_S):
-                while (await self.vehicle.order("truth"))["in_air"]:
+                while (await self.at_vehicle("truth"))["in_air"]:
                     await self.craft_order("resume")  # the pilot has given back: this server may fly again
                     answer = await through(kind)
                     if not answer["accepted"]:
@@ -162,18 +167,25 @@ class Story:
         """Seen at the vehicle within some seconds."""
         truth: Truth = {}
         for _ in range(40):
-            truth = await self.vehicle.order("truth")
+            truth = await self.at_vehicle("truth")
             if not truth["in_air"] or OBEYS[kind](truth):
                 return True
             await asyncio.sleep(0.1)
         self.told.append(f"{kind} is not done: {truth['mode']}, {truth['speed_m_s']:.1f} m/s")
         return False
 
+    async def flies(self) -> bool:
+        """Whether its mission does, as the list of missions says."""
+        missions = (await self.shown.client.get("/api/missions")).json()["missions"]
+        return any(one["flying"] for one in missions if one["mission_id"] == self.shown.mission_id)
+
     async def land(self) -> None:
+        """Until the mission has ended: one that is on the ground in hold ends with an order to land."""
         async with asyncio.timeout(4 * OBEYED_S):
-            while (await self.vehicle.order("truth"))["armed"]:
+            while (await self.at_vehicle("truth"))["armed"] or await self.flies():
                 await self.craft_order("resume")
                 await self.craft_order("land")
+                await self.order("land")
                 await asyncio.sleep(0.5)
 
 
@@ -211,12 +223,12 @@ async def run(first: int, stories: int, flavour: str, speedup: float, seed: int,
                     for _ in range(story.chance.randint(1, MOST_ACTS)):
                         await story.act()
                     await story.calm()
-                    in_air = (await vehicle.order("truth"))["in_air"]
+                    in_air = (await story.at_vehicle("truth"))["in_air"]
                     found.ended_on_the_ground += not in_air
                     await story.reach()
                     await story.land()
                 except (TimeoutError, AssertionError) as error:
-                    story.told.append(f"OUT OF REACH: {error!r}, {await vehicle.order('truth')}")
+                    story.told.append(f"OUT OF REACH: {error!r}, {await story.at_vehicle('truth')}")
                     found.unreached.append(f"story {number}: {'; '.join(story.told)}")
                     await story.calm()
                     await story.land()
