@@ -142,7 +142,7 @@ class Story:
         await self.at_vehicle("link_loss", seconds=0.0)
         await self.at_vehicle("gps_loss", seconds=0.0)
         await self.at_vehicle("battery", percent=100)
-        if (truth := await self.at_vehicle("truth"))["in_air"]:
+        if (truth := await self.at_vehicle("truth"))["armed"]:
             self.told.append(f"calm in {truth['mode']} at {truth['altitude_relative_m']:.0f} m")
             await self.at_vehicle("give_back")
 
