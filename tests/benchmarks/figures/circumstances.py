@@ -46,7 +46,7 @@ def load_until_now(begun: Begun) -> Load:
 
 
 def command_line(module: str, arguments: list[str]) -> str:
-    """What to type to have it again; where the record went is left out."""
+    """What to type to have it again; where the record went is left out, and a folder of this machine is no name."""
     kept, skipping = [], False
     for argument in arguments:
         if skipping:
@@ -54,7 +54,7 @@ def command_line(module: str, arguments: list[str]) -> str:
         elif argument == OUT:
             skipping = True
         elif not argument.startswith(f"{OUT}="):
-            kept.append(argument)
+            kept.append("FOLDER" if Path(argument).is_absolute() else argument)
     return shlex.join(["python", "-m", module, *kept])
 
 

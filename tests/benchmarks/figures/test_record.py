@@ -115,6 +115,8 @@ def test_the_command_is_told_without_where_its_record_went() -> None:
     assert command_line("tests.benchmarks.live_load", arguments) == (
         "python -m tests.benchmarks.live_load abort --times 3"
     )
+    folder = ["--pieces", "/somewhere/here", "--only", "a/b"]
+    assert command_line("m", folder) == "python -m m --pieces FOLDER --only a/b"
 
 
 def test_a_checkout_with_changes_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
