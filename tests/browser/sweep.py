@@ -102,19 +102,20 @@ def search_of_tags(server: Server) -> str:
     return mission
 
 
+def stored(server: Server, name: str) -> str:
+    """A stored journal as a mission of this server; its id."""
+    kept = json.loads(gzip.decompress((REPOSITORY / f"tests/golden/journals/{name}.json.gz").read_bytes()))
+    rows = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in kept["rows"]]
+    mission = kept["mission_id"]
+    body = bundle(to_records(mission, rows), {}, raw_files(mission, (), {}))
+    address = server.url.rstrip("/") + "/api/bundles"
+    httpx.post(address, content=body, timeout=60, headers={"Content-Type": "application/zip"})
+    return mission
+
+
 def brought(server: Server) -> list[str]:
-    """The stored journals as missions of this server; their ids."""
-    address = server.url.rstrip("/")
-    ids: list[str] = []
-    for name in JOURNALS:
-        path = REPOSITORY / "tests/golden/journals" / f"{name}.json.gz"
-        stored = json.loads(gzip.decompress(path.read_bytes()))
-        rows = [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in stored["rows"]]
-        mission = stored["mission_id"]
-        body = bundle(to_records(mission, rows), {}, raw_files(mission, (), {}))
-        httpx.post(f"{address}/api/bundles", content=body, timeout=60, headers={"Content-Type": "application/zip"})
-        ids.append(mission)
-    return ids
+    """Several stored journals as missions of this server; their ids."""
+    return [stored(server, name) for name in JOURNALS]
 
 
 def nothing(_: Screen) -> None:

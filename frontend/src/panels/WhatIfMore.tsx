@@ -38,14 +38,14 @@ function LeaveOut() {
   return (
     <fieldset class="leave-out" data-testid="what-if-without">
       <legend>{t("whatIf.without")}</legend>
-      {flownBearings.value.map((fact, index) => (
+      {flownBearings.value.map((fact) => (
         <label class="check" key={fact.bearing_id}>
           <input
             type="checkbox"
             checked={without.value.includes(fact.bearing_id)}
             onChange={() => (without.value = toggled(fact.bearing_id))}
           />
-          {index + 1}: {formatBearing(fact.bearing_deg)}
+          {fact.source.kind === "person" ? fact.source.name : fact.place_number}: {formatBearing(fact.bearing_deg)}
         </label>
       ))}
     </fieldset>

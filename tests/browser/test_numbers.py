@@ -1,0 +1,89 @@
+"""A bearing has the number of its place wherever it is named, and whoever ordered something is named once."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+from screen import OpenScreen, Screen
+from served import Server
+
+from tests.browser.sweep import stored
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
+
+JOURNAL = "orders"
+"""The operator refused its first place and moved its fourth: the bearings were taken at 2, 3, 5, 6 and 7."""
+
+ON_THE_MAP = """
+window.placesOnMap = [];
+const post = Worker.prototype.postMessage;
+Worker.prototype.postMessage = function (message, ...rest) {
+  const given = message?.data;
+  if (given?.source === "measured" && given.data?.features) {
+    window.placesOnMap = given.data.features
+      .filter(({ properties }) => properties.what === "place")
+      .map(({ properties, geometry }) => [properties.label, ...geometry.coordinates]);
+  }
+  return post.call(this, message, ...rest);
+};
+"""
+"""Remembers what the map is given to draw: its numbers are pixels."""
+
+
+def drawn(screen: Screen, bearings: int) -> list[tuple[str, float, float]]:
+    """Number, lon and lat of each place on the map, as soon as there are so many."""
+    screen.page.wait_for_function("(wanted) => placesOnMap.length === wanted", arg=bearings, timeout=60_000)
+    return [(label, lon, lat) for label, lon, lat in screen.evaluate("placesOnMap")]
+
+
+def test_a_bearing_has_the_number_of_its_place_on_map_lists_and_report(server: Server, open_screen: OpenScreen) -> None:
+    mission = stored(server, JOURNAL)
+    taken = [e for e in server.events(mission) if e["kind"] == "bearing_measured"]
+    numbers = [str(one["place_number"]) for one in taken]
+    towards = [f"{round(one['bearing_deg']) % 360:03d}°" for one in taken]
+    assert numbers == ["2", "3", "5", "6", "7"]
+
+    screen = open_screen(server)
+    screen.page.add_init_script(ON_THE_MAP)
+    screen.open(mission)
+    screen.page.reload()
+    screen.map_ready()
+    assert drawn(screen, len(taken)) == [
+        (number, one["place"]["lon"], one["place"]["lat"]) for number, one in zip(numbers, taken, strict=True)
+    ]
+    at_place = [re.compile(f"{deg} ± .* at place {n},") for n, deg in zip(numbers, towards, strict=True)]
+    expect(screen.row("bearing_measured")).to_have_text(at_place)
+    choices = screen.part("sweep").locator("select option")
+    picked = [f"Place {n}, {deg}" for n, deg in zip(numbers, towards, strict=True)]
+    expect(choices).to_have_text([re.compile("."), *reversed(picked)])
+
+    screen.row("bearing_measured").last.click()
+    screen.part("what-if").locator("summary").click()
+    counted = [f"{n}: {deg}" for n, deg in zip(numbers[1:], towards[1:], strict=True)]
+    expect(screen.part("what-if-without").locator("label")).to_have_text(counted)  # the first was left out in flight
+
+    screen.go(f"#/report/{mission}")
+    expect(screen.part("report")).to_have_attribute("data-ready", "true")
+    lines = screen.part("report-emitter").locator("tbody tr")
+    expect(lines.locator("td:nth-child(1)")).to_have_text(numbers)
+    expect(lines.locator("td:nth-child(4)")).to_have_text([re.compile(f"^{deg}") for deg in towards])
+    expect(screen.part("report-map").locator("g text")).to_have_text(numbers)
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_whoever_ordered_something_is_named_once_in_a_sentence(
+    server: Server, open_screen: OpenScreen, language: str
+) -> None:
+    mission = stored(server, JOURNAL)
+    orderly = {e["by"] for e in server.events(mission) if e.get("by")}
+    assert orderly == {"operator"}
+    screen = open_screen(server, f"#/mission/{mission}", {"language": language})
+    screen.page.locator(".timeline-controls input").check()
+    expect(screen.row("command_accepted").first).to_be_visible()
+    by = re.compile("operator|Bediener", re.IGNORECASE)
+    told = [row.inner_text() for row in screen.part("event-row").all()]
+    named = [len(by.findall(row)) for row in told]
+    assert sum(named) > 8, "who ordered it is said"
+    assert [row for row, times in zip(told, named, strict=True) if times > 1] == []
