@@ -6,12 +6,16 @@ from __future__ import annotations
 import gzip
 import io
 import json
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import serving
+from legible import serious
 from playwright.sync_api import Page, expect
+from recorded_turn import BESIDE
 from screen import OpenScreen, Screen
 from served import REPOSITORY, Server
 
@@ -19,29 +23,22 @@ from backend.store.brought import raw_files
 from backend.store.entries import EventRow, to_records
 from backend.store.upgrade import FIRST_FORM
 from backend.wire.bundle import bundle
+from hardware.direction_finding.pattern_file import pattern_json
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(300)]
 
 STORED = json.loads(gzip.decompress((REPOSITORY / "tests/golden/journals/demo-px4-open.json.gz").read_bytes()))
 ID = STORED["mission_id"]
 FLOWN = to_records(ID, [EventRow(seq, at_us, kind, FIRST_FORM, body) for seq, at_us, kind, body in STORED["rows"]])
-AXE = (REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js").read_text()
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True, "device_scale_factor": 2}
 SIZES = {"desktop": (1280, 800), "tablet": (1024, 768), "phone": (390, 844)}
 
 
 def look(page: Page, name: str, folder: Path) -> None:
     """No fault that axe calls serious in either theme, nothing wider than the screen; a picture of each size."""
-    page.evaluate(AXE)
+    assert serious(page) == [], name
     for theme in ("indoor", "outdoor"):
         page.evaluate(f"document.documentElement.dataset.theme = '{theme}'")
-        found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-        serious = [
-            f"{v['id']}: {v['nodes'][0]['html'][:120]}"
-            for v in found["violations"]
-            if v["impact"] in ("serious", "critical")
-        ]
-        assert serious == [], f"{name}, {theme}"
         for size, (width, height) in SIZES.items():
             page.set_viewport_size({"width": width, "height": height})
             page.screenshot(path=folder / f"{name}-{theme}-{size}.png")
@@ -79,6 +76,7 @@ def test_a_mission_from_elsewhere_is_found_compared_and_printed(
     part("what-if-sigma").fill("14")
     part("variant-name").fill("blunter, without the first")
     part("keep-variant").click()
+    everything_else_is_asked(screen, tmp_path)
     expect(page.get_by_text("The mission stays as it was flown.")).to_be_visible()
     part("open-compare").click()
     expect(part("compare-row")).to_have_count(2)
@@ -95,7 +93,11 @@ def test_a_mission_from_elsewhere_is_found_compared_and_printed(
     row.get_by_test_id("label-mission").click()
     part("label-name").fill("Owls by the river")
     part("label-tags").fill("night, owls")
+    part("label-notes").fill("Two of them, fed at dusk")
     part("label-save").click()
+    expect(row).to_contain_text("fed at dusk")
+    page.get_by_role("searchbox").fill("nobody's")
+    expect(page.get_by_test_id("mission-row")).to_have_count(0)
     page.get_by_role("searchbox").fill("owls")
     expect(page.get_by_test_id("mission-row")).to_have_count(1)
     expect(row).to_contain_text("Owls by the river")
@@ -126,6 +128,66 @@ def test_a_mission_from_elsewhere_is_found_compared_and_printed(
         assert sheet.count(b"/Type /Page\n") == 1, "a flight of three bearings is one sheet"
 
 
+def test_variants_are_kept_by_name_and_the_original_stays_as_it_was_flown(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    facts = said_of(server, open_screen, tmp_path)
+    flown = server.get(f"/api/missions/{ID}/courses")["courses"][0]
+    screen = open_screen(server, f"#/mission/{ID}")
+    page, part = screen.page, screen.part
+    screen.row("bearing_measured").last.click()
+    stated = part("expected-rmse").get_attribute("data-value")
+    part("what-if").locator("summary").click()
+    for name, sigma in (("a duller ear", "14"), ("a sharper ear", "2")):
+        part("what-if-sigma").fill(sigma)
+        part("variant-name").fill(name)
+        part("keep-variant").click()
+        expect(page.get_by_text(f"Kept as “{name}”")).to_be_visible()
+    expect(part("expected-rmse")).to_have_attribute("data-value", stated or "")
+
+    part("open-compare").click()
+    rows = part("compare-row")
+    expect(rows.locator("th")).to_have_text(["As it was flown", "a duller ear", "a sharper ear"])
+    expect(page.locator(".compare-legend li")).to_have_text(["As it was flown", "a duller ear", "a sharper ear"])
+    error = [float(re.findall(r"±([\d.]+)", row.inner_text())[0]) for row in rows.all()]
+    assert error[2] < error[0] < error[1]
+    original = rows.first.inner_text()
+    kept = server.get(f"/api/missions/{ID}/courses")["courses"]
+    assert [one["name"] for one in kept] == [None, "a duller ear", "a sharper ear"]
+    assert kept[0] == flown
+    page.reload()
+    expect(rows).to_have_count(3)
+    page.locator("[data-variant='a duller ear']").get_by_test_id("drop-variant").click()
+    expect(rows.locator("th")).to_have_text(["As it was flown", "a sharper ear"])
+    assert rows.first.inner_text() == original
+    expect(rows.first.get_by_test_id("drop-variant")).to_have_count(0)
+    beside = {"variant_kept", "variant_dropped"}
+    assert [fact for fact in server.events(ID) if fact["kind"] not in beside] == [
+        fact for fact in facts if fact["kind"] not in beside
+    ]
+
+
+def everything_else_is_asked(screen: Screen, folder: Path) -> None:
+    """Outlier model, estimator, planner, budget and pattern of a what-if reach the server, and it answers."""
+    part = screen.part
+    pattern = folder / "beside.json"
+    pattern.write_text(pattern_json(BESIDE))
+    part("what-if-outliers").fill("20")
+    part("what-if-errors").select_option("joint")
+    part("what-if-estimator").select_option("geometric_median")
+    part("what-if-planner").select_option("fisher")
+    part("what-if-budget").fill("200")
+    part("what-if-pattern").set_input_files(pattern)
+    with screen.page.expect_response("**/what-if") as answered:
+        part("what-if-ask").click()
+    asked = answered.value.request.post_data_json
+    wanted = {"outlier_probability": 0.2, "bearing_errors": "joint", "estimator": "geometric_median", "budget": 200}
+    assert asked is not None
+    assert {name: asked[name] for name in wanted} == wanted
+    assert (asked["base_policy"], asked["pattern"]["filename"]) == ("fisher", "beside.json")
+    assert answered.value.json()["reason"]["code"] == "samples_not_stored", "the flight came without its powers"
+
+
 def test_found_here_from_a_phone_is_in_the_calibration(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
     estimate = next(
         e["estimate"] for e in reversed(said_of(server, open_screen, tmp_path)) if e["kind"] == "belief_updated"
@@ -150,6 +212,44 @@ def said_of(server: Server, open_screen: OpenScreen, folder: Path) -> list[dict[
     """The events of the mission, which is brought in if it is not here yet."""
     brought_in(open_screen(server), folder)
     return server.events(ID)
+
+
+def test_a_bundle_opened_in_another_installation_is_the_same_mission(
+    server: Server, open_screen: OpenScreen, tmp_path: Path
+) -> None:
+    """Fetched and brought in on the pages; event for event, and what is made of them: report, comparison, what-if."""
+    facts = said_of(server, open_screen, tmp_path)
+    here = open_screen(server)
+    row = here.page.locator(f"[data-testid=mission-row][data-mission='{ID}']")
+    row.locator("details.export summary").click()
+    with here.page.expect_download() as taken:
+        row.get_by_test_id("export-bundle").click()
+    carried = tmp_path / "carried.zip"
+    taken.value.save_as(carried)
+
+    def reviewed(screen: Screen) -> list[str]:
+        screen.open(ID)
+        screen.row("bearing_measured").last.click()
+        screen.part("what-if").locator("summary").click()
+        screen.part("what-if-sigma").fill("20")
+        screen.part("what-if-ask").click()
+        found = [screen.part("what-if-steps").inner_text()]
+        screen.go(f"#/compare/{ID}")
+        found += screen.part("compare-row").first.all_inner_texts()
+        screen.go(f"#/report/{ID}")
+        expect(screen.part("report")).to_have_attribute("data-ready", "true")
+        return [*found, screen.part("report").inner_text()]
+
+    with serving(tmp_path / "elsewhere") as other:
+        there = open_screen(other)
+        there.part("bring-in").set_input_files(carried)
+        there.page.wait_for_url(f"**#/mission/{ID}")
+        told = other.events(ID)
+        assert told[: len(facts)] == facts
+        assert [fact["kind"] for fact in told[len(facts) :]] == ["mission_brought_in"]
+        assert reviewed(there) == reviewed(here)
+        errors = [[fix["error_m"] for fix in one.get("/api/calibration")["fixes"]] for one in (server, other)]
+        assert errors[0] == errors[1]
 
 
 def test_a_replay_shows_each_event_as_it_stood(server: Server, open_screen: OpenScreen, tmp_path: Path) -> None:
