@@ -112,15 +112,59 @@ def upload(server: Server, content: bytes) -> str:
     return answer.json()["map_id"]
 
 
-def near(picture: np.ndarray, colour: tuple[int, int, int]) -> float:
+def near(picture: np.ndarray, colour: tuple[int, int, int], within: int = 12) -> float:
     """Share of the pixels that have about this colour."""
-    return float((np.abs(picture - np.array(colour)).max(axis=2) < 12).mean())
+    return float((np.abs(picture - np.array(colour)).max(axis=2) < within).mean())
 
 
 def middle(picture: np.ndarray) -> np.ndarray:
     """Inside the area, where nothing but the map and the belief is drawn before the start."""
     height, width, _ = picture.shape
     return picture[int(0.3 * height) : int(0.66 * height), int(0.32 * width) : int(0.72 * width)]
+
+
+WORLD = {"outdoor": ((244, 243, 236), (207, 222, 230)), "indoor": ((29, 36, 42), (11, 18, 24))}
+"""Colours of land and water on the small map that ships."""
+
+
+def test_the_small_map_that_ships_is_seen_under_the_first_page(server: Server, open_screen: OpenScreen) -> None:
+    """For who has uploaded none: the world around an empty library, then the land around its first mission."""
+    foreign: list[str] = []
+
+    def shares(screen: Screen, theme: str) -> list[float]:
+        shot = screen.part("library-map").screenshot()
+        picture = np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+        return [near(picture, colour, 3) for colour in WORLD[theme]]
+
+    def until(screen: Screen, condition: Callable[[], bool], what: str) -> None:
+        late = time.monotonic() + PATIENCE_S
+        while not condition():
+            assert time.monotonic() < late, f"{what} did not come"
+            screen.page.wait_for_timeout(250)
+
+    def first_page(theme: str, gives_map: bool) -> Screen:
+        screen = open_screen(server, "#/health", {"theme": theme})
+        screen.page.on("request", lambda request: foreign.append(request.url))
+        if not gives_map:
+            screen.page.route("**/api/basemap", lambda route: route.abort())
+        screen.go("#/")
+        screen.map_ready("library-map")
+        return screen
+
+    for theme in WORLD:
+        plain = first_page(theme, gives_map=False)
+        expect(plain.part("welcome")).to_be_visible()
+        assert shares(plain, theme)[1] < 0.02, "what is seen below comes from the map that ships"
+        plain.page.close()
+        screen = first_page(theme, gives_map=True)
+        until(screen, lambda screen=screen, theme=theme: min(shares(screen, theme)) > 0.05, "land and water")
+    server.draft()
+    screen = first_page("outdoor", gives_map=True)
+    expect(screen.part("mission-row")).to_have_count(1)
+    until(screen, lambda: shares(screen, "outdoor")[0] > 0.3, "the land around the mission")
+    ours = urlsplit(server.url).netloc
+    hosts = {urlsplit(url).netloc for url in foreign if urlsplit(url).scheme.startswith("http")}
+    assert hosts == {ours}
 
 
 def test_pictures_of_a_package_lie_under_the_mission_and_its_belief(server: Server, browser: Browser) -> None:
