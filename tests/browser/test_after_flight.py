@@ -69,8 +69,9 @@ def row(screen: Screen, mission_id: str) -> Locator:
 def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next_mission(
     server: Server, open_screen: OpenScreen
 ) -> None:
-    for number in range(3):
+    for number in range(5):
         bring_in(server, checked(f"season-{number}", 6.0))
+    bring_in(server, checked("season-wrong", 90.0))
     screen = open_screen(server, "#/new")
     part = screen.part
     expect(part("area-size")).to_have_attribute("data-suggested", "true")
@@ -82,6 +83,9 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     screen.go("#/calibration")
     suggestion = part("suggestion")
     expect(suggestion).to_contain_text("read +6.0° ± ")
+    suggested = server.get("/api/calibration")["suggested"]
+    expect(screen.page.locator(".error-outlier")).to_have_count(3)
+    expect(screen.page.locator(".error-right")).to_have_count(15)
     for _ in range(2):
         part("take-over").click()
     expect(suggestion.get_by_role("status")).to_contain_text("quad with yagi")
@@ -95,6 +99,9 @@ def test_what_checked_missions_suggest_goes_into_the_equipment_and_into_the_next
     expect(part("preflight")).to_be_visible()
     sensor = server.get(f"/api/missions/{screen.mission_id}")["spec"]["sensor"]
     assert sensor["bearing_offset_deg"] == 6.0, "once, however often it was taken over"
+    taken_over = {name: sensor[name] for name in ("sigma_deg", "outlier_probability")}
+    assert taken_over == {name: suggested[name] for name in taken_over}
+    assert taken_over["outlier_probability"] == 0.17
 
     screen.go("#/new")
     part("profile").select_option("quad with yagi")
@@ -129,6 +136,7 @@ def test_missions_are_found_by_a_rectangle_over_them(server: Server, open_screen
         page.mouse.move(area["x"] + area["width"] + 4, area["y"] + area["height"] + 4, steps=5)
         page.mouse.up()
 
+    expect(row(screen, there).get_by_test_id("mini-map")).to_be_visible()
     area_there = field.locator("path").filter(has_text="further east")
     drag(area_there)
     expect(row(screen, here)).to_have_count(0)
@@ -170,6 +178,12 @@ def test_two_missions_are_one_report_with_an_overview(server: Server, open_scree
     expect(screen.part("report")).to_have_attribute("data-ready", "true")
     expect(screen.part("report-mission")).to_have_count(2)
     expect(screen.part("report-overview")).to_be_visible()
+    for part in ("report-map", "report-truth", "report-uncertain"):
+        expect(screen.part(part)).to_have_count(2)
+    screen.go(f"#/compare/{first}")
+    screen.part("compare-add").select_option(second)
+    expect(screen.part("compare-line")).to_have_count(2)
+    expect(screen.part("compare-row")).to_have_count(2)
 
 
 def test_before_the_first_bearing_no_place_is_said_and_a_pointer_scrolls_nothing_away(
@@ -223,6 +237,13 @@ def test_an_emitter_that_was_not_found_counts_and_a_found_place_replaces_it(
     part("truth-set").click()
     expect(part("truth-error")).to_be_visible()
     assert server.get("/api/calibration")["not_found"] == known["not_found"] - 1
+
+    written = part("truth-told").inner_text()
+    screen.map_ready()
+    part("truth-tap").click()
+    screen.page.mouse.click(*screen.map_point(0.5, 0.5))
+    expect(part("truth-told")).not_to_have_text(written, use_inner_text=True)
+    assert [e["how"] for e in server.events(mission_id) if e["kind"] == "truth_noted"] == ["map", "typed", "map"]
 
 
 def test_bearings_that_were_taken_elsewhere_are_brought_in_from_a_file(
