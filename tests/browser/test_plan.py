@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import Route, expect
 from screen import Screen
 from served import Server
+from shapely.geometry import box, shape
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(480)]
 
@@ -94,6 +95,40 @@ def test_corners_are_typed_in_mixed_notations(server: Server, editor: Screen) ->
     editor.part("paste-apply").click()
     expect(editor.part("area-size")).to_contain_text("4 corners")
     assert len(saved(server, editor)["area"]["coordinates"][0]) == 5
+
+
+MEADOW = (7.2030, 50.6234, 7.2060, 50.6250)
+POND = (7.2040, 50.6238, 7.2050, 50.6242)
+SLOPE = (7.2050, 50.6240, 7.2070, 50.6260)
+"""West, south, east, north: a field, a piece of it, and one that it overlaps."""
+
+
+def test_ground_in_two_parts_of_an_area_counts_once(server: Server, editor: Screen) -> None:
+    size, replaces = editor.part("area-size"), editor.part("draw-replaces")
+
+    def add(west: float, south: float, east: float, north: float) -> None:
+        corners = ((south, west), (south, east), (north, east), (north, west))
+        editor.part("paste-area").fill("\n".join(f"{lat} {lon}" for lat, lon in corners))
+        editor.part("paste-apply").click()
+
+    editor.page.get_by_text("Paste GeoJSON or corner").click()
+    add(*MEADOW)
+    expect(size).to_contain_text("4 corners")
+    once = size.inner_text()
+    add(*POND)
+    expect(size).to_have_text(once, use_inner_text=True)
+    replaces.check()
+    add(*SLOPE)
+    expect(size).not_to_have_text(once, use_inner_text=True)
+    add(*MEADOW)
+    expect(size).to_have_text(once, use_inner_text=True)
+    replaces.uncheck()
+    with editor.page.expect_response(lambda answer: answer.request.method == "POST" and "area" in answer.url):
+        add(*SLOPE)
+    expect(size).to_contain_text("8 corners")
+    area = saved(server, editor)["area"]
+    assert area["type"] == "Polygon"
+    assert shape(area).equals(box(*MEADOW).union(box(*SLOPE)))
 
 
 def test_what_the_server_refuses_stands_at_the_form_and_nothing_is_lost(editor: Screen) -> None:

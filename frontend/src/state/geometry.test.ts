@@ -24,6 +24,8 @@ describe.each(places)("around %f, %f", (lon, lat) => {
 
   it("a circle has the area of a circle", () => {
     expect(ringAreaM2(circle(from, 100, 360)) / (Math.PI * 1e4)).toBeCloseTo(1, 3);
+    const [outline, half] = [circle(from, 1000, 36).slice(1), 18];
+    expect(ringAreaM2([...outline.slice(half), ...outline.slice(0, half)])).toBeCloseTo(ringAreaM2(outline), 3);
   });
 });
 

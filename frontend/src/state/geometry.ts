@@ -98,11 +98,11 @@ export function boundsOf(points: readonly LonLat[]): [number, number, number, nu
   return [Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)];
 }
 
-/** Area of a ring in m^2 (shoelace on the tangent plane), without sign. */
+/** Area of a ring in m^2 (shoelace on the tangent plane in its middle), without sign: the same from whichever corner. */
 export function ringAreaM2(ring: readonly LonLat[]): number {
-  const origin = ring[0];
+  const origin = boundsOf(ring);
   if (!origin) return 0;
-  const [mx, my] = metresPerDegree(origin[1]);
+  const [mx, my] = metresPerDegree((origin[1] + origin[3]) / 2);
   let twice = 0;
   ring.forEach((p, i) => {
     const q = ring[(i + 1) % ring.length]!;
