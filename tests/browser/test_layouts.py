@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import io
+
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import FloatRect, Position, expect
 from screen import OpenScreen, Screen
 from served import Server
 
-from tests.browser.sweep import SIZES, faults
+from tests.browser.sweep import SIZES
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -85,18 +89,65 @@ def test_a_tap_marks_the_place_under_the_thumb_on_a_low_screen_too(server: Serve
     assert mark["y"] + mark["height"] / 2 == pytest.approx(chart["y"] + thumb["y"], abs=2)
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_german_at_130_percent_is_cut_off_nowhere(server: Server, open_screen: OpenScreen, size: str) -> None:
-    server.draft()
-    screen = open_screen(server, "", {"language": "de", "scale": 1.3}, **sized(size))
-    expect(screen.part("mission-row").first).to_be_visible()
-    found = {"missions": faults(screen.page)}
-    for name, ready in (("new", "edit-map"), ("mission/example", "map")):
-        screen.go(f"#/{name}")
-        screen.map_ready(ready)
-        found[name] = faults(screen.page)
-    for name in ("maps", "calibration", "people", "health"):
-        screen.go(f"#/{name}")
-        expect(screen.page.get_by_role("heading", level=1).first).to_be_visible()
-        found[name] = faults(screen.page)
-    assert {name: wrong for name, wrong in found.items() if wrong} == {}
+OVER_THE_MAP = ".map-tools > *, .readout, .maplibregl-ctrl, .map-area .banner"
+"""What lies there besides what is drawn."""
+ROSES = "(boxes) => boxes[3].click()"
+"""Their switch among the layers, in whatever language."""
+
+
+def covered(screen: Screen) -> list[FloatRect]:
+    """Parts of the map, px from its corner."""
+    corner = box(screen, "map")
+    found = [one.bounding_box() for one in screen.page.locator(OVER_THE_MAP).all() if one.is_visible()]
+    return [{**one, "x": one["x"] - corner["x"], "y": one["y"] - corner["y"]} for one in found if one is not None]
+
+
+def map_picture(screen: Screen) -> np.ndarray:
+    """(height, width, 3), without what lies over it."""
+    hide = screen.page.add_style_tag(
+        content=".map-area > :not(.map), .maplibregl-control-container {visibility: hidden}"
+    )
+    shot = screen.part("map").screenshot()
+    hide.evaluate("(tag) => tag.remove()")
+    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB")).astype(int)
+
+
+def rose_pixels(screen: Screen) -> np.ndarray:
+    """(n, 2), row and column of the map: what the switch of the roses shows and hides."""
+    boxes = screen.page.locator(".map-layers input")
+    shown = map_picture(screen)
+    boxes.evaluate_all(ROSES)
+    screen.page.wait_for_timeout(400)
+    hidden = map_picture(screen)
+    boxes.evaluate_all(ROSES)
+    screen.page.wait_for_timeout(400)
+    return np.argwhere(np.abs(shown - hidden).max(axis=2) > 12)
+
+
+def test_legends_cover_neither_a_rose_nor_the_vehicle(server: Server, open_screen: OpenScreen) -> None:
+    screen = open_screen(server, EXAMPLE, **sized("laptop"))
+    page = screen.page
+    screen.map_ready()
+    screen.expect_belief(1)
+    screen.row("bearing_measured").first.click()  # stands still from here on
+    expect(page.locator(".map-layers input")).to_have_count(7)
+    for size, (width, height) in SIZES.items():
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_timeout(800)
+        expect(screen.part("legend")).to_be_hidden()
+        middle, corner = box(screen, "vehicle"), box(screen, "map")
+        vehicle = (middle["y"] + middle["height"] / 2 - corner["y"], middle["x"] + middle["width"] / 2 - corner["x"])
+        roses = rose_pixels(screen)
+        assert len(roses) > 100, f"{size}: no rose is drawn"
+        for part in covered(screen):
+            low = np.array([part["y"], part["x"]])
+            high = low + np.array([part["height"], part["width"]])
+            seen = np.vstack([roses, np.array(vehicle)])
+            assert not ((seen >= low) & (seen < high)).all(axis=1).any(), f"{size}: {part} covers it"
+        if size == "phone":
+            screen.part("card-sweep").click()
+        plot, legend = box(screen, "polar"), page.locator(".sweep .legend")
+        if legend.is_visible():
+            at = legend.bounding_box()
+            assert at is not None
+            assert at["y"] + at["height"] <= plot["y"], f"{size}: the plot's legend lies over its rose"
