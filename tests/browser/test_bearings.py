@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from uuid import uuid4
 
@@ -68,6 +69,10 @@ def test_a_phone_adds_two_bearings_to_a_flying_search_and_takes_one_back(
     excluded = [e["bearing_id"] for e in events if e["kind"] == "bearing_excluded"]
     assert excluded == [said[1]["bearing_id"]]
     assert "hold" not in [e["after"] for e in events if e["kind"] == "phase_changed"], "the craft is not disturbed"
+    page.get_by_test_id("hold").tap()
+    expect(page.get_by_test_id("state-words")).to_have_attribute("data-phase", "hold")
+    page.get_by_test_id("abort").tap()
+    expect(page.get_by_test_id("state-words")).to_have_attribute("data-phase", re.compile("aborted|returning"))
 
 
 def test_a_search_without_a_craft_is_advised_until_it_is_localized(server: Server, open_screen: OpenScreen) -> None:

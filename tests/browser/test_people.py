@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from legible import serious
 from playwright.sync_api import expect
 from screen import OpenScreen, Screen
 from served import Server
@@ -76,6 +77,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(admin.part("sign-in-page")).to_be_visible()
     expect(admin.part("indicators")).to_have_count(0)
     expect(admin.part("entry-code")).to_have_value(shared.code)
+    assert serious(admin.page) == []
     admin.part("entry-code").fill("AAAA-AAAA-AAAA-AAAA")
     enter(admin, "Ada")
     expect(admin.page.get_by_role("alert")).to_contain_text("not known")
@@ -88,6 +90,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(admin.part("made-invitation")).to_have_count(2)
     links = {each.input_value() for each in admin.part("invitation-link").all()}
     assert len(links) == 2, "each phone has a link of its own"
+    assert serious(admin.page) == []
     admin.page.get_by_role("button", name="Done").click()
 
     late = opened(open_screen, shared)
@@ -99,6 +102,7 @@ def test_a_team_enters_and_hands_control_around(shared: Shared, open_screen: Ope
     expect(admin.part("made-invitation").get_by_role("img")).to_be_visible()
     phone = opened(open_screen, shared, link.split("/", 3)[3], settings={"language": "de"}, **PHONE)
     expect(phone.part("join-role")).to_contain_text("Operator")
+    assert serious(phone.page) == []
     enter(phone, "Ben")
     expect(phone.part("menu")).to_be_visible()
     again = opened(open_screen, shared, link.split("/", 3)[3])
