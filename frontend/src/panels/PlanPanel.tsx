@@ -63,7 +63,8 @@ function CandidateTable({ plan }: { plan: PlanChosen }) {
   );
   const canPropose = cursor.value === null && !mission.value.ended;
   return (
-    <div class="candidate-box" ref={box}>
+    // it scrolls, and in a review none of its rows takes the keyboard
+    <div class="candidate-box" ref={box} tabIndex={canPropose ? undefined : 0}>
       <table class="candidates" data-testid="candidates">
         <caption class="visually-hidden">{t("plan.candidates")}</caption>
         <thead>
