@@ -175,6 +175,7 @@ export function EditPage({ route }: { route: EditRoute }) {
 
   const load = () => {
     setProblem(null);
+    draft.value = null; // what is typed until it has come would be lost
     specFor(route).then(
       ({ spec, suggested }) => (draft.value = { key, spec, hasArea: true, suggested, text: {} }), // kept from the first change on
       (error: unknown) => setProblem(asProblem(error)),
@@ -185,10 +186,7 @@ export function EditPage({ route }: { route: EditRoute }) {
     const kept = from === null ? storedDraft(key) : null;
     setRestored(kept !== null);
     if (kept) update(kept);
-    else {
-      draft.value = null;
-      load();
-    }
+    else load();
     const stopCoverage = watchCoverage();
     return () => {
       clearPreview();
