@@ -15,10 +15,13 @@ from urllib.parse import urlsplit
 
 import pytest
 from conftest import SETTINGS, serving
+from legible import wrong
 from playwright.sync_api import Browser, Page, expect
 from radio_link import RadioLink, radio_link
 from screen import Screen
 from served import Server
+
+from tests.browser.sweep import HELD, SIZES, Shown
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(480)]
 
@@ -221,6 +224,8 @@ def test_the_operator_sends_it_elsewhere_and_resumes(flight: Flight) -> None:
     expect(screen.part("proposal")).to_have_count(0)
     chosen = [event for event in flight.events if event["kind"] == "plan_chosen"]
     assert chosen[-1]["source"] == "operator"
+    expect(screen.part("time-left")).to_be_visible()
+    expect(screen.row("plan_chosen").last).not_to_contain_text(re.compile("operator.*operator"))
     if screen.phase() == "hold":
         screen.resume()
     expect(screen.part("sweep-bearing")).to_be_visible()
@@ -234,6 +239,9 @@ def test_the_search_area_is_changed_by_a_slide_and_the_bearings_count_on(flight:
     screen.map_ready("edit-map")
     screen.draw([(0.8, 0.3), (0.95, 0.3), (0.95, 0.6), (0.8, 0.6)])
     expect(screen.part("area-size")).to_contain_text("8 corners")
+    screen.part("draw-replaces").check()
+    screen.draw([(0.15, 0.15), (0.85, 0.15), (0.85, 0.85), (0.15, 0.85)])
+    expect(screen.part("area-size")).to_contain_text("4 corners")
     screen.part("outlook-ask").click()
     expect(screen.part("outlook-time")).to_contain_text("Localized in about")
     expect(screen.part("outlook-error")).to_contain_text("expected error")
@@ -241,6 +249,8 @@ def test_the_search_area_is_changed_by_a_slide_and_the_bearings_count_on(flight:
     screen.slide("area-slider")
     screen.map_ready()
     expect(screen.row("area_changed")).to_be_visible()
+    (changed,) = [event for event in flight.events if event["kind"] == "area_changed"]
+    assert len(changed["search"]["area"]["coordinates"][0]) == 5, "the area was replaced, not joined"
     flight.recorded_again("belief_updated", before.count("belief_updated"))
     assert flight.kinds().count("bearing_measured") == before.count("bearing_measured")
     assert screen.phase() == "hold"
@@ -259,6 +269,17 @@ def test_an_area_away_from_the_vehicle_is_refused_before_it_can_be_slid_to(fligh
     screen.part("area-cancel").click()
     screen.map_ready()
     assert flight.kinds().count("area_changed") == 1
+
+
+def test_the_screens_of_a_flight_are_legible_and_cut_off_nowhere_in_german(flight: Flight) -> None:
+    width, height = SIZES["laptop"]
+    screen = flight.watch(language="de", scale=1.3)
+    screen.page.set_viewport_size({"width": width, "height": height})
+    mission = flight.screen.mission_id
+    shown = Shown(flight.server, mission, mission, mission, mission)
+    assert [one for name in sorted(HELD) for one in wrong(screen, shown, name)] == []
+    screen.page.context.close()
+    assert flight.screen.phase() == "hold"
 
 
 def test_a_second_browser_sees_the_same(flight: Flight, second: Screen) -> None:
